@@ -1,7 +1,6 @@
-// The C interface over the C++ one: every exception becomes a status and what the caller's error handle
-// holds.
+// The C interface over the C++ one: exceptions become a status and details in the caller's error handle.
 #include "api/impl.h"
-// The public headers come after the host's.
+// Public headers must follow the host's (api/core.h).
 #include <sundog/session.h>
 #include <sundog/sundog.h>
 
@@ -19,7 +18,7 @@ struct sundog_devices {
 };
 struct sundog_film {
   sundog::v0::Film film;
-  std::vector<std::pair<std::string, sundog::v0::Image>> images;  // "": the picture
+  std::vector<std::pair<std::string, sundog::v0::Image>> images;  // "": the beauty image
 };
 struct sundog_session {
   sundog::v0::Session session;
@@ -38,7 +37,7 @@ sundog_status keep(sundog_error* error, sundog_status status, const char* line, 
   try {
     *error = {line, file, place};
   } catch (...) {
-    *error = {};  // there is no memory even for the message
+    *error = {};  // out of memory, even for the message
   }
   return status;
 }
@@ -49,7 +48,7 @@ sundog_status status_of(ErrorKind kind) {
 static_assert(static_cast<int>(ErrorKind::internal) + SUNDOG_USAGE == SUNDOG_INTERNAL);
 static_assert(static_cast<int>(SessionState::failed) == SUNDOG_FAILED);
 
-/// f(), which may throw or return a status of its own.
+/// Runs f(), which may throw or return a status.
 template <class F>
 sundog_status guarded(sundog_error* kept, const F& f) noexcept {
   try {
@@ -84,7 +83,7 @@ std::vector<std::string> split(const char* list) {
   return items;
 }
 
-/// A new handle of what `make` returns.
+/// Stores the result of `make` in a new handle.
 template <class Handle, class F>
 sundog_status made(sundog_error* error, Handle** handle, const char* name, const F& make) noexcept {
   return guarded(error, [&] {
@@ -93,8 +92,7 @@ sundog_status made(sundog_error* error, Handle** handle, const char* name, const
   });
 }
 
-/// Triangles name vertices by 32 bits. Throws Error (usage) for what no array has, such as a negative number
-/// as a size_t.
+/// Indices have 32 bits. Throws Error (usage) for longer arrays, such as a negative number passed as size_t.
 void check_count(std::size_t length) {
   if (length > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::usage,
@@ -108,7 +106,7 @@ std::span<const std::array<T, count>> groups(const T* values, std::size_t length
   return {reinterpret_cast<const std::array<T, count>*>(values), values ? length : 0};
 }
 
-/// A mesh in C's arrays. Throws Error (usage) for NULL where values are wanted.
+/// A view of C arrays. Throws Error (usage) for required arrays that are NULL.
 MeshView mesh_of(const float* positions, size_t vertex_count, const uint32_t* triangles,
                  size_t triangle_count, const float* normals, const float* uvs) {
   wanted(positions, "positions");
@@ -119,7 +117,7 @@ MeshView mesh_of(const float* positions, size_t vertex_count, const uint32_t* tr
           .uvs = groups<2>(uvs, vertex_count)};
 }
 
-/// Calls release() when its last holder lets go, if it was handed over before.
+/// Calls release() when the last holder lets go, once the mesh has been handed over.
 struct Owner {
   void (*release)(void* user);
   void* user;
@@ -132,7 +130,7 @@ struct Owner {
     if (!handed_over || !release) return;
     try {
       release(user);
-    } catch (...) {  // nobody could be told
+    } catch (...) {  // nobody is left to report it to
     }
   }
 };

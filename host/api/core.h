@@ -1,6 +1,6 @@
-// The names of the host that the public interface is made of, as core::Image and the like: Image alone is the
-// public one (include/sundog). Each source here includes this before any public header, because the host's
-// own headers must not see those.
+// Aliases for the host's types that the public interface wraps (core::Image and so on), since Image alone
+// means the public one (include/sundog). Each source in this folder includes this before any public header,
+// because the host's headers must not see those.
 #pragma once
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// Devices as programs see them.
+// Public Device values over the host's device list, and the threads that drivers keep.
 #include "api/impl.h"
 
 #include <unistd.h>
@@ -30,21 +30,21 @@ Device device_of(core::DeviceInfo info, const std::shared_ptr<core::DriverThread
   return device;
 }
 
-/// What the process's variables say, as docs/library.md lists them.
+/// The process's environment variables, listed in docs/library.md.
 const core::EnvironmentPtr& environment() {
   static const core::EnvironmentPtr read = sundog::plain_environment();
   return read;
 }
 
-/// An owner of threads that drivers have not let go of. In a child of fork() there is none to be waited for.
+/// Owns threads that drivers keep. A child of fork() lacks these threads, so it does not wait for them.
 std::shared_ptr<core::DriverThreads> make_owner() {
   return {new core::DriverThreads, [](const core::DriverThreads* threads) {
             if (!is_forked()) delete threads;
           }};
 }
 
-/// Of renders and sessions on a device that was not named. Made after the drivers are loaded: so it waits for
-/// the threads inside of them before they are taken away at the end of the process.
+/// Owns threads of renders and sessions that were given no device. Created after the drivers are loaded,
+/// hence destroyed before they are unloaded at the end of the process.
 const std::shared_ptr<core::DriverThreads>& threads_of_process() {
   static const auto threads = make_owner();
   return threads;

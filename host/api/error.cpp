@@ -1,4 +1,4 @@
-// The host's exceptions as the one that programs see.
+// Converts the host's exceptions to the public Error.
 #include <new>
 
 #include "api/impl.h"

@@ -1,4 +1,4 @@
-// Pictures: shared, immutable pixels over the host's images.
+// Public images: shared, immutable pixels of the host's images.
 #include <algorithm>
 
 #include "api/impl.h"

@@ -1,26 +1,26 @@
-// What the public handles hold.
+// Internals of the public handles, and conversions from public to host values.
 #pragma once
 #include "api/core.h"
-// The public names come after the host's.
+// Public headers must follow the host's.
 #include <sundog/error.h>
 #include <sundog/render.h>
 #include <sundog/scene.h>
 
 #include <mutex>
 
-/// No program sees it, though its class is public.
+/// Hides a nested class of a public one from programs.
 #define SUNDOG_LOCAL __attribute__((visibility("hidden")))
 
 namespace sundog {
 inline namespace v0 {
 
-/// "0.1.0".
+/// The version, "0.1.0".
 const char* version_text() noexcept;
 
-/// Throws the exception in hand as an Error; those of a program's own callbacks as they are.
+/// Rethrows the current exception as an Error; exceptions of callbacks stay as they are.
 [[noreturn]] void throw_public();
 
-/// f(), with the host's exceptions turned into Errors.
+/// Calls f() and turns the host's exceptions into Errors.
 template <class F>
 auto translated(const F& f) -> decltype(f()) {
   try {
@@ -36,35 +36,35 @@ struct SUNDOG_LOCAL Image::Impl {
 
 struct SUNDOG_LOCAL Device::Handle {
   core::DeviceInfo info;
-  std::shared_ptr<core::DriverThreads> threads;  // of all devices that were listed with it
+  std::shared_ptr<core::DriverThreads> threads;  // shared by all devices that were listed together
 };
 
-/// Rows with those who own their threads.
+/// Devices and the owners of their threads.
 struct SUNDOG_LOCAL HostDevices {
   std::vector<std::shared_ptr<core::DriverThreads>> threads;
   std::vector<core::DeviceInfo> infos;
 };
 
-/// Called before threads are used, the library's or a driver's. Throws UsageError in a process that was
-/// forked from one that had some: it has none of them, and would wait for ever for what they hold.
+/// Call before using threads of the library or of a driver. Throws UsageError in a child of fork() whose
+/// parent used some: the child lacks these threads and would wait forever for their locks.
 void enter_threads();
-/// A driver's compiler makes objects of its own while it works, which the end of the process takes away
-/// before threads_of_process(): where a thread is left in a driver, it is waited for before them.
+/// A driver's compiler creates static objects as it runs; exit destroys them before threads_of_process().
+/// This waits for a thread left in a driver before that happens.
 void wait_for_threads_at_exit() noexcept;
-/// Whether this process is such a one. Not to be asked before any threads are used.
+/// Whether this process is such a child. Call only after threads have been used.
 bool is_forked() noexcept;
 
 struct SUNDOG_LOCAL Film::Impl {
-  core::RenderResult result;  // without the image and the AOVs below
+  core::RenderResult result;  // the image and AOVs are moved to the members below
   core::ToneMap tone_map;
   Image image;
   std::map<std::string, Image> aovs;
-  sundog::ImageTexts texts;  // of an EXR's header
+  sundog::ImageTexts texts;  // for an EXR's header
   Figures figures;
   std::vector<std::string> warnings;
 };
 
-/// The document, and its description as far as it has been read.
+/// The document, and its description once it is read.
 struct SUNDOG_LOCAL Scene::Impl {
   nlohmann::json document;
   std::filesystem::path file;
@@ -76,7 +76,7 @@ struct SUNDOG_LOCAL Scene::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() = default;
 
-  /// Any thread, while nobody changes the scene. Throws SceneError.
+  /// Reads the document on first use. Thread-safe while nobody changes the scene. Throws SceneError.
   std::shared_ptr<const core::SceneDescription> describe() const;
   void forget_description();
 
@@ -89,15 +89,15 @@ struct SUNDOG_LOCAL Scene::Impl {
 Image share(core::Image image);
 Image share(std::shared_ptr<const core::Image> image);
 
-/// Of the handles, or the default device, whose threads the process owns. Throws DeviceError, UsageError.
+/// The given devices, or the default one, whose threads the process owns. Throws DeviceError, UsageError.
 HostDevices devices_of(const std::vector<Device>& devices);
 
 core::WorkGroup group_of(const WorkGroup& group);
 
-/// Throws UsageError for less than 0.
+/// Throws UsageError for negative values.
 int tile_of(int tile);
 
-/// Throws UsageError, which names them, for less than 0 and for what is no number.
+/// Throws UsageError with the option's name for negative values and NaN.
 double seconds_of(const char* name, double seconds);
 
 }  // namespace v0

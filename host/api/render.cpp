@@ -1,4 +1,4 @@
-// One picture: the scene's description, its tables, the devices, the film.
+// render(): compiles a Scene, opens the devices, renders, and converts options and results.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,8 +13,8 @@ namespace sundog {
 inline namespace v0 {
 namespace {
 
-/// Calls back into the program, and stops for it. A thread that a driver keeps may come back when render()
-/// has long returned, and calls nobody then. What a callback throws stops the render and is kept for its end.
+/// Calls the program's callbacks until close(): a thread left in a driver may return after render() has. An
+/// exception of a callback stops the render and is rethrown by close().
 class Callbacks : public std::enable_shared_from_this<Callbacks> {
  public:
   explicit Callbacks(const RenderOptions& options)
@@ -32,7 +32,7 @@ class Callbacks : public std::enable_shared_from_this<Callbacks> {
       };
   }
   void stop() noexcept { stop_ = true; }
-  /// From now on nothing is called. Throws what a callback threw.
+  /// Ends all calls. Rethrows a callback's exception.
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -152,7 +152,7 @@ Film render(const Scene& scene, const RenderOptions& options) {
   try {
     film = translated([&] { return render_host(scene, options, *callbacks); });
   } catch (...) {
-    callbacks->close();  // its own exception comes first
+    callbacks->close();  // a callback's exception takes precedence
     throw;
   }
   callbacks->close();

@@ -1,4 +1,4 @@
-// Scenes: a JSON document, with meshes from memory beside it.
+// The public Scene: a JSON document, with meshes from memory beside it.
 #include <utility>
 
 #include "api/impl.h"
@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Stands for the file in messages about scenes that have none.
+/// Replaces the file name in messages about scenes without a file.
 constexpr const char* no_file = "(scene)";
 
 [[noreturn]] void fail_at(std::string_view pointer, const std::string& reason) {
@@ -17,7 +17,7 @@ constexpr const char* no_file = "(scene)";
               {.file = {}, .place = std::string(pointer), .reason = reason, .log = {}});
 }
 
-/// f() of the pointer, with the JSON library's refusals as Errors.
+/// Calls f() with the parsed pointer; turns the JSON library's exceptions into Errors.
 template <class F>
 auto at(std::string_view pointer, const F& f) {
   try {
@@ -27,7 +27,7 @@ auto at(std::string_view pointer, const F& f) {
   }
 }
 
-/// Whether a value can be set there: an index is that of a row, or of the next one.
+/// Whether a value can be set at `place`: array indices must exist or append.
 bool has_room(const json& document, json::json_pointer place) {
   for (std::size_t depth = 0; !place.empty(); place = place.parent_pointer()) {
     if (++depth > sundog::max_json_depth) return false;
@@ -63,7 +63,7 @@ Scene::Impl::Impl(const Impl& other)
 }
 
 void Scene::Impl::forget_description() {
-  std::shared_ptr<const core::SceneDescription> old;  // goes without the lock: a mesh's owner may do anything
+  std::shared_ptr<const core::SceneDescription> old;  // freed outside the lock: a mesh's owner runs any code
   const std::lock_guard lock(mutex_);
   old.swap(described_);
 }

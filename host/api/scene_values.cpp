@@ -1,4 +1,4 @@
-// Values in code, as the keys of a scene's document.
+// Writes the public structs (Camera, Material, Light, ...) into a scene's document.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A member of the document, made `empty` where there is none. Throws Error (usage) for one of another kind.
+/// Returns a member of the document, created as `empty` if missing. Throws Error (usage) if it has another
+/// type.
 json& member(json& document, const char* key, const json& empty) {
   const std::string place = document.is_object() ? std::string("/") + key : "";
   if (document.is_object() && !document.contains(key)) document[key] = empty;
@@ -28,8 +29,7 @@ void append(json& document, const char* list, json value) {
   member(document, list, json::array()).push_back(std::move(value));
 }
 
-/// Adds an object. One without a material has the default one, which the document gets too: each object of it
-/// names one.
+/// Adds an object. One without a material gets "default", which is added to the document.
 void place(json& document, json object, const Placement& placement) {
   json& objects = member(document, "objects", json::array());
   const std::string material = placement.material.empty() ? "default" : placement.material;
@@ -44,7 +44,7 @@ void place(json& document, json object, const Placement& placement) {
 json light_json(const Light& light) {
   json value{{"type", light.type}, {"color", light.color}, {"intensity", light.intensity}};
   const auto facts = std::ranges::find(sundog::light_types, light.type, &sundog::LightTypeFacts::name);
-  if (facts == sundog::light_types.end()) return value;  // the reader of scenes lists the types
+  if (facts == sundog::light_types.end()) return value;  // the scene reader reports the unknown type
   if (facts->placed) value["position"] = light.position;
   if (facts->aimed) value["direction"] = light.direction;
   if (facts->has_extent()) value["samples"] = light.samples;
@@ -57,7 +57,7 @@ json light_json(const Light& light) {
 
 json material_json(const Material& material) {
   json value{{"type", material.type}};
-  if (material.color != Vec3{1, 1, 1}) value["color"] = material.color;  // glass has none
+  if (material.color != Vec3{1, 1, 1}) value["color"] = material.color;  // glass has no colour
   const auto put = [&](const char* key, const std::optional<double>& number) {
     if (number) value[key] = *number;
   };
@@ -77,7 +77,7 @@ json material_json(const Material& material) {
   throw Error(ErrorKind::usage, "mesh \"" + name + "\": " + why);
 }
 
-/// The numbers where they are, held by their owner; of a view without one, a copy.
+/// Shares numbers that have an owner; copies those without one.
 template <class To, class From, std::size_t count>
 sundog::MeshArray<To> held(std::span<const std::array<From, count>> from, std::shared_ptr<const void> owner) {
   static_assert(sizeof(To) == sizeof from[0] && alignof(To) == alignof(From));

@@ -1,4 +1,4 @@
-// A session: the host's, with scenes as documents.
+// The public Session over the host's RenderSession.
 #include "api/impl.h"
 
 #include <sundog/session.h>
@@ -8,8 +8,7 @@ inline namespace v0 {
 
 struct SUNDOG_LOCAL Session::Impl {
   mutable std::mutex mutex;
-  std::vector<std::shared_ptr<core::DriverThreads>>
-      threads;  // guarded by the mutex; they outlive the session
+  std::vector<std::shared_ptr<core::DriverThreads>> threads;  // guarded by the mutex; outlive the session
   std::unique_ptr<core::RenderSession> session;
   std::shared_ptr<const core::SceneDescription> newest;  // guarded by the mutex
 
@@ -18,7 +17,7 @@ struct SUNDOG_LOCAL Session::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    // A fork has no threads that could be waited for: the session is left as it is.
+    // A forked child lacks the session's threads, so waiting would hang: the session leaks.
     if (is_forked()) [[maybe_unused]]
       const auto* const left = session.release();
     session.reset();
@@ -56,7 +55,8 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
     settings.patience = seconds_of("patience", options.patience);
     settings.work_group = group_of(options.work_group);
     settings.tile = tile_of(options.tile);
-    std::shared_ptr<const core::SceneDescription> before;  // goes without the lock: its meshes have owners
+    std::shared_ptr<const core::SceneDescription>
+        before;  // destroyed outside the lock: owners of its meshes may run any code
     const std::lock_guard lock(impl_->mutex);
     before = std::exchange(impl_->newest, description);
     return impl_->entered().start(std::move(description), settings);

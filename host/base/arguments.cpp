@@ -1,4 +1,4 @@
-// See arguments.h.
+// Command-line options over CLI11; see arguments.h.
 #include "base/arguments.h"
 
 #include <CLI/CLI.hpp>
@@ -10,7 +10,7 @@ Option* Option::hidden() { return option_->group(""), this; }
 Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
 Option* Option::expected(int count) { return option_->expected(count), this; }
 Option* Option::range(double low, double high) {
-  // Whole bounds are shown as whole numbers.
+  // Show whole bounds as integers.
   if (low == static_cast<int>(low) && high == static_cast<int>(high))
     return option_->check(CLI::Range(static_cast<int>(low), static_cast<int>(high))), this;
   return option_->check(CLI::Range(low, high)), this;

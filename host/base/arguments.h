@@ -1,5 +1,5 @@
-// Options of a command line, without the header of the library that reads them: CLI11 takes seconds in each
-// file that includes it. The calls have its names.
+// Command-line options over CLI11, without its header, which takes seconds to compile in each file that
+// includes it. Functions have CLI11's names.
 #pragma once
 #include <functional>
 #include <memory>
@@ -17,19 +17,19 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   Option* required();
-  Option* hidden();                              // in no help
-  Option* type_name(const std::string& name);    // as the help shows its value
-  Option* expected(int count);                   // values behind it
-  Option* one_value_each();                      // may be given several times, each time with one value
-  Option* range(double low, double high);        // both ends included
+  Option* hidden();                              // omitted from help
+  Option* type_name(const std::string& name);    // placeholder of the value in help
+  Option* expected(int count);                   // number of values
+  Option* one_value_each();                      // repeatable, one value each time
+  Option* range(double low, double high);        // inclusive
   Option* positive();                            // above 0
-  Option* one_of(std::vector<std::string> all);  // of these texts
+  Option* one_of(std::vector<std::string> all);  // allowed values
 
  private:
   CLI::Option* option_;
 };
 
-/// A command, or a program: its options and its own commands. What is declared lives as long as it does.
+/// A program or a command: its options and subcommands. Targets of options must outlive it.
 class Arguments {
  public:
   explicit Arguments(const std::string& about, const std::string& name = "");
@@ -39,21 +39,21 @@ class Arguments {
 
   Arguments* add_subcommand(const std::string& name, const std::string& about);
   void require_subcommand(int count);
-  /// Called once this command is chosen and its options are read.
+  /// Called after parsing if this command was chosen.
   void callback(std::function<void()> call);
-  /// `target` keeps its value where the option is not given.
+  /// `target` keeps its value if the option is not given.
   template <class T>
   Option* add_option(const std::string& name, T& target, const std::string& help = "");
   Option* add_flag(const std::string& name, bool& target, const std::string& help);
 
-  /// The library's own, for what is not here.
+  /// The underlying CLI11 parser, for rarer calls.
   CLI::App& parser() { return *app_; }
 
  private:
   explicit Arguments(CLI::App* app);
   Option* keep(CLI::Option* option);
 
-  std::unique_ptr<CLI::App> root_;  // of a program; null for a command of another
+  std::unique_ptr<CLI::App> root_;  // owner if this is a program; null for a subcommand
   CLI::App* app_;
   std::vector<std::unique_ptr<Arguments>> commands_;
   std::vector<std::unique_ptr<Option>> options_;

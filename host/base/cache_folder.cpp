@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Why a folder is not the user's own; empty where it is, and where there is none.
+/// Why a folder is not the user's own; empty if it is, or does not exist.
 std::string refusal(const fs::path& folder) {
   struct stat found{};
   if (::stat(folder.c_str(), &found) != 0)

@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-/// Seconds since it was made.
+/// Counts seconds from its construction.
 class Stopwatch {
  public:
   double seconds() const {

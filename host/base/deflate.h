@@ -1,4 +1,4 @@
-// Bytes packed as a zlib stream (RFC 1950), at libdeflate's fastest level.
+// zlib streams (RFC 1950) at libdeflate's fastest level.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -9,7 +9,7 @@ namespace sundog {
 
 std::string deflated(std::string_view bytes);
 
-/// The `size` bytes that `packed` holds; nothing when it is damaged or holds another number of bytes.
+/// Unpacks `size` bytes; nothing if `packed` is damaged or holds another number of bytes.
 std::optional<std::string> inflated(std::string_view packed, std::size_t size);
 
 }  // namespace sundog

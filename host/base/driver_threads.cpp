@@ -7,7 +7,7 @@ bool has_ended(const DriverThread& thread) {
   return thread.ended.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// Until it is joined, a thread keeps the addresses of its stack.
+/// Joins threads that have ended, because an unjoined thread keeps its stack's address space.
 void join_ended(std::vector<DriverThread>& threads) {
   std::erase_if(threads, [](DriverThread& left) {
     if (!has_ended(left)) return false;
@@ -26,7 +26,7 @@ void DriverThreads::wait() {
   }
   const auto limit = std::chrono::steady_clock::now() + patience_;
   for (DriverThread& left : all) {
-    const bool own = left.thread.get_id() == std::this_thread::get_id();  // which lets go of its owner last
+    const bool own = left.thread.get_id() == std::this_thread::get_id();  // it dropped the last reference
     if (!own && left.ended.wait_until(limit) == std::future_status::ready)
       left.thread.join();
     else

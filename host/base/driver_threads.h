@@ -1,5 +1,5 @@
-// Threads inside a driver's compiler or launch whose work is no longer needed. A driver cannot be
-// interrupted, so the owner of its devices takes such threads over and joins them last.
+// Threads inside a driver's compiler or launch whose result is no longer needed. A driver cannot be
+// interrupted, so the owner of its devices adopts such threads and joins them last.
 #pragma once
 #include <chrono>
 #include <future>
@@ -10,13 +10,13 @@
 
 namespace sundog {
 
-/// A thread, and how its end is waited for with a limit.
+/// A thread and a future that allows a timed wait for its end.
 struct DriverThread {
   std::thread thread;
   std::shared_future<void> ended;
 };
 
-/// f() in a thread of its own.
+/// Runs f() in a new thread.
 template <class F>
 DriverThread start_thread(F f) {
   std::promise<void> end;
@@ -28,11 +28,11 @@ DriverThread start_thread(F f) {
           std::move(ended)};
 }
 
-/// Any thread may call it.
+/// Adopts abandoned threads and joins them. Thread-safe.
 class DriverThreads {
  public:
-  /// A thread that a driver has not let go of after `patience` hangs. The longest compilation seen took 40 s,
-  /// on llvmpipe.
+  /// A thread still in a driver after `patience` counts as hung. The longest compilation seen took 40 s
+  /// (llvmpipe).
   explicit DriverThreads(std::chrono::milliseconds patience = std::chrono::minutes(1))
       : patience_(patience) {}
   ~DriverThreads() { wait(); }
@@ -40,9 +40,9 @@ class DriverThreads {
   DriverThreads& operator=(const DriverThreads&) = delete;
 
   void take(DriverThread thread);
-  /// For all that it has; those that hang are detached.
+  /// Joins all threads; detaches those that hang.
   void wait();
-  /// How many have not ended.
+  /// Number of threads still running.
   unsigned count();
 
  private:
@@ -51,7 +51,7 @@ class DriverThreads {
   std::vector<DriverThread> threads_;
 };
 
-/// Hands the thread over; without anybody who takes it, waits for its end.
+/// Hands the thread to its owner; waits for its end if the owner is gone.
 void leave_thread(const std::weak_ptr<DriverThreads>& to, DriverThread thread);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// See environment.h. The only source below `app` that asks for variables.
+// Reads the environment (environment.h). The only source below `app` that does.
 #include "base/environment.h"
 
 #include <unistd.h>
@@ -38,13 +38,12 @@ constexpr const char* usual_folders = "/usr/local/bin:/usr/bin:/bin";
 
 std::map<std::string, std::string> driver_variables() {
   std::map<std::string, std::string> result = {
-      // PoCL compiles a kernel for each local size and again for grids below 65536, and once more to give its
-      // binary out. One version for all was as fast in every kernel measured, so each kernel is compiled
-      // once.
+      // PoCL compiles a kernel for each local size, again for grids below 65536, and once more to return its
+      // binary. A single version was as fast in every kernel measured.
       {"POCL_WORK_GROUP_SPECIALIZATION", "0"},
-      // Intel's driver compiles each kernel a second time, for 16 work-items at once. That is nine tenths of
-      // its compile time; pictures are the same to the bit, by the wide tracer as fast, by the compact one
-      // slower.
+      // Intel's driver compiles each kernel a second time, for 16 work-items at once, which takes nine tenths
+      // of the compile time. Without it, pictures keep their bits; the wide tracer is as fast, the compact
+      // one slower.
       {"CL_CONFIG_USE_VECTORIZER", "False"},
       {"PATH", usual_folders},
   };
@@ -52,7 +51,7 @@ std::map<std::string, std::string> driver_variables() {
        {"POCL_WORK_GROUP_SPECIALIZATION", "CL_CONFIG_USE_VECTORIZER", "PATH", "POCL_EXTRA_BUILD_FLAGS",
         "POCL_WORK_GROUP_METHOD", "POCL_CACHE_DIR", "HWLOC_SYNTHETIC", "HWLOC_XMLFILE", "HWLOC_FSROOT"})
     if (const char* value = std::getenv(name)) result[name] = value;
-  // PoCL ends a process in which it finds no linker.
+  // PoCL aborts the process if it finds no linker.
   if (std::string& path = result["PATH"]; !has_program(path, "ld")) path += std::string(":") + usual_folders;
   return result;
 }

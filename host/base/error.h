@@ -1,5 +1,5 @@
-// The few exceptions of sundog. Library code throws them; main() catches them once and turns them into an
-// exit status. Each message is one line: the place, what was wanted, what was found, the mend.
+// sundog's exceptions. Library code throws them; main() catches them once and turns them into an exit status.
+// Each message is one line: the place, what was expected, what was found, the remedy.
 #pragma once
 #include <stdexcept>
 #include <string>

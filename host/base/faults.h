@@ -1,4 +1,4 @@
-// Faults on demand, to test what is done about them. A program hands them down (base/environment.h), or none.
+// Injects failures, to test how sundog handles them. A program passes them down in its HostEnvironment.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -14,7 +14,7 @@ namespace sundog {
 /// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
 /// them:
 ///     build@P:D           the kernels do not build on the device
-///     kernels@P:D         the driver makes no kernels of a program that it has built from its source
+///     kernels@P:D         the driver creates no kernels from a program that it built from source
 ///     compile@P:D         the process that compiles for the device ends without a result
 ///     alloc=STATUS@P:D    a buffer of more than SIZE bytes gives the OpenCL status
 ///     launch=STATUS@P:D   a launch of more than SIZE work-items gives the OpenCL status
@@ -25,23 +25,23 @@ namespace sundog {
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch
-///     kill@compile        the process that compiles is killed
+///     kill@compile        the compiling process is killed
 ///     stop@P:D            a launch stops the process, as SIGSTOP from outside does
 ///     write@NAME          a picture, checkpoint or part of that name cannot be written, as on a full disk
-///     room=KIBIBYTES@pocl no more can be written to the folder where PoCL writes
+///     room=KIBIBYTES@pocl size limit of PoCL's folder
 ///     hold@NAME           reading an opened scene file of that name never begins
-///     stall@NAME          writing one of that name never ends
+///     stall@NAME          writing a file of that name never ends
 class Faults {
  public:
-  /// `end_process` does what crash, kill and stop say. Throws UsageError for a text that is none.
+  /// `end_process` performs crash, kill and stop. Throws UsageError for malformed text.
   explicit Faults(const std::string& text, std::function<void(const std::string& kind)> end_process = {});
   ~Faults();
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
 
-  /// VALUE (0 without one) where a fault strikes now. Any thread.
+  /// Returns VALUE (default 0) if a fault strikes now. Thread-safe.
   std::optional<int> strike(std::string_view kind, std::string_view where, std::size_t size);
-  /// Ends or stops the process where a fault of that kind strikes now.
+  /// Ends or stops the process if such a fault strikes now.
   void end_process(const char* kind, std::string_view where, std::size_t size);
 
  private:
@@ -50,7 +50,7 @@ class Faults {
   std::function<void(const std::string& kind)> end_process_;
 };
 
-/// strike(); null: nothing does.
+/// strike() for a pointer that may be null.
 std::optional<int> fault(const std::shared_ptr<Faults>& faults, std::string_view kind, std::string_view where,
                          std::size_t size = 0);
 

@@ -36,18 +36,18 @@ std::string read_file(const fs::path& path) { return read_regular_file(path); }
 
 namespace {
 
-/// The name's beginning where the whole leaves no room for what a temporary adds to it.
+/// Shortens a name that leaves no room for a temporary's suffix.
 std::string shortened(std::string name) {
   constexpr std::size_t most = 200;  // of 255
   if (name.size() <= most) return name;
   std::size_t size = most;
-  while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0u) == 0x80u) --size;  // no half letter
+  while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0u) == 0x80u) --size;  // whole characters
   name.resize(size);
   return name;
 }
 
-/// Temporaries are PATH.HOST.PID.N.tmp and locked while they are written: one whose lock is free has lost its
-/// writer. The host's name is in it because a lock may not be seen from another machine.
+/// Temporaries are named PATH.HOST.PID.N.tmp and locked while written; an unlocked one has lost its writer.
+/// The host name is included because locks may be invisible to other machines.
 std::string temporary_prefix(const fs::path& path) {
   static const std::string host = [] {
     char name[256] = {};
@@ -57,9 +57,9 @@ std::string temporary_prefix(const fs::path& path) {
   return fmt::format("{}.{}.", shortened(path.filename().string()), host);
 }
 
-/// Where symbolic links lead in the end, whether something is there or not.
+/// Resolves symbolic links, even dangling ones.
 fs::path behind_links(fs::path path) {
-  constexpr int most_links = 40;  // as the kernel follows
+  constexpr int most_links = 40;  // the kernel's limit
   std::error_code no_link;
   for (int i = 0; i < most_links; ++i) {
     const fs::path next = fs::read_symlink(path, no_link);
@@ -69,7 +69,7 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
-/// Sets errno where it fails.
+/// Sets errno on failure.
 bool write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(file, bytes.data(), bytes.size());
@@ -79,7 +79,7 @@ bool write_all(int file, std::string_view bytes) {
   return true;
 }
 
-/// write_all() to a pipe or a device; waits for a pipe's reader.
+/// write_all() to a pipe or device; waits for a pipe's reader.
 bool write_into(const fs::path& path, std::string_view bytes) {
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
   if (file < 0) return false;
@@ -90,7 +90,7 @@ bool write_into(const fs::path& path, std::string_view bytes) {
   return written;
 }
 
-/// An open, locked file beside its final place; removed at the end unless it was moved there.
+/// An open, locked file beside its destination; deleted unless renamed to it.
 class Temporary {
  public:
   explicit Temporary(const fs::path& path) {
@@ -109,11 +109,11 @@ class Temporary {
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
 
-  /// These set errno where they fail.
+  /// Set errno on failure.
   bool is_open() const { return file_ >= 0; }
   bool write(std::string_view bytes) const {
     if (!write_all(file_, bytes)) return false;
-    const int twin = ::dup(file_);  // closing reports what the disk refuses late; the lock stays
+    const int twin = ::dup(file_);  // closing it reports late write errors; the lock stays
     return twin < 0 || ::close(twin) == 0;
   }
   bool move_to(const fs::path& path) {
@@ -123,7 +123,7 @@ class Temporary {
   }
 
  private:
-  /// Another process may have removed it before it was locked.
+  /// Another process may have removed the file before it was locked.
   bool taken_away() const {
     struct stat now = {};
     const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;

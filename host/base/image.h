@@ -1,4 +1,4 @@
-// Image: a plain array of linear float pixels, the result of a render and the input of `compare`.
+// Image: an array of linear float pixels; the result of a render and the input of `compare`.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// Linear colour, row 0 at the top, `channels` floats a pixel (interleaved), size width*height*channels.
+/// Linear colours, row 0 at the top, `channels` interleaved floats per pixel; size width*height*channels.
 struct Image {
   int width = 0, height = 0, channels = 4;
   std::vector<float> data;

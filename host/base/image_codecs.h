@@ -1,5 +1,5 @@
-// One image format each: bytes in memory to and from an Image. Only image_io.cpp and the tests use these; a
-// decoder throws std::runtime_error with the reason alone, image_io.cpp adds the file's name.
+// Codecs between bytes in memory and an Image, one format each. Only image_io.cpp and tests use them.
+// Decoders throw std::runtime_error with the reason; image_io.cpp adds the file's name.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace sundog {
 std::string encode_png(const Image& image);
 /// The PNG with texts ahead of its pixels, each an iTXt chunk.
 std::string with_png_texts(std::string png, const ImageTexts& texts);
-/// Those of a file; none where it is no PNG.
+/// Texts of a PNG; empty for other files.
 ImageTexts decode_png_texts(std::string_view bytes);
 /// Likewise, without alpha; colours in full resolution.
 std::string encode_jpeg(const Image& image);
@@ -22,10 +22,10 @@ std::optional<float> png_decoding_exponent(std::string_view bytes);
 
 /// Whether an image file has alpha, by its header.
 bool has_alpha(std::string_view bytes);
-/// The same of an EXR file that check_exr_header() lets pass.
+/// Likewise for an EXR file that passes check_exr_header().
 bool exr_has_alpha(std::string_view bytes);
 
-/// Radiance RGBE: no alpha, nothing negative, about 1 % precision.
+/// Radiance RGBE: no alpha or negative values, precision about 1 %.
 std::string encode_hdr(const Image& image);
 Image decode_hdr(std::string_view file);
 
@@ -33,15 +33,15 @@ Image decode_hdr(std::string_view file);
 std::string encode_pfm(const Image& image);
 Image decode_pfm(std::string_view bytes);
 
-/// Throws for an EXR file of several parts or samples a pixel, and for one whose header asks for more memory
-/// than its length can have use for: before a decoder, which takes that memory.
+/// Throws for a multi-part or deep EXR file, and for a header that requests more memory than a file of this
+/// length can use. Call before decoding, which allocates that memory.
 void check_exr_header(std::string_view bytes);
 /// Throws IoError only: there is nothing it refuses.
 std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color,
                        const ImageTexts& texts = {});
 Image decode_exr(std::string_view bytes);
 AovImages decode_exr_aovs(std::string_view bytes);
-/// The header's attributes that are texts.
+/// The header's text attributes.
 ImageTexts decode_exr_texts(std::string_view bytes);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Two images of one size against each other: figures, and a picture that shows where they differ.
+// Compares two images of one size: statistics, and a picture of the differences.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@ namespace sundog {
 /// from everything but itself (NaN equals NaN).
 struct ImageDifference {
   double mean = 0, rms = 0;          // over all finite channel differences
-  double max = 0;                    // of the pixels' differences; may be infinite
+  double max = 0;                    // over pixels; may be infinite
   double percentile_99 = 0;          // 99 % of the pixels differ by no more; may be infinite
   double psnr = 0;                   // decibels, peak 1; infinite for equal images
   std::uint64_t pixels = 0;          // of each image
@@ -24,9 +24,8 @@ struct ImageDifference {
 /// to compare alpha too.
 ImageDifference compare_images(const Image& a, const Image& b, double tolerance, int channels = 3);
 
-/// `a` dimmed to grey; where the images differ, a colour for the size of the difference on a logarithmic
-/// scale: blue (1e-5 and less), cyan (3e-4), green, yellow (3e-2), red (1 and more), magenta for what is not
-/// finite.
+/// Returns `a` dimmed to grey, with differing pixels coloured by a logarithmic scale: blue (1e-5 and less),
+/// cyan (3e-4), green, yellow (3e-2), red (1 and more), magenta (non-finite).
 Image difference_image(const Image& a, const Image& b, int channels = 3);
 
 }  // namespace sundog

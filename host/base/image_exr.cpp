@@ -60,7 +60,7 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
-/// How a layer's channels are called.
+/// Names of a layer's channels.
 Suffixes channel_suffixes(const std::string& aov, int channels) {
   if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
   if (channels == 2) return {"U", "V"};
@@ -69,8 +69,8 @@ Suffixes channel_suffixes(const std::string& aov, int channels) {
   return {all.begin(), all.begin() + channels};
 }
 
-/// Adds interleaved samples as a channel; `fill` is the value where a file has none. The library takes no
-/// const pixels, but writes to them only when it reads a file.
+/// Adds interleaved samples as a channel; `fill` replaces channels missing in a file. The library takes
+/// non-const pixels, but writes to them only when reading a file.
 template <class Sample>
 void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* samples, const Image& shape,
                float fill = 0) {
@@ -93,11 +93,10 @@ std::vector<half> halves_of(const Image& image) {
 std::int64_t width_of(const Imath::Box2i& window) { return std::int64_t{window.max.x} - window.min.x + 1; }
 std::int64_t height_of(const Imath::Box2i& window) { return std::int64_t{window.max.y} - window.min.y + 1; }
 
-/// Pixels of the display window that a file may have without pixels of its own in them.
+/// Limit for pixels of the display window outside the data window.
 constexpr std::int64_t most_empty_pixels = std::int64_t{1} << 24;
 
-/// Reads the picture that the file shows, its display window: what lies outside of it is cut off, and what
-/// the data window does not hold is 0.
+/// Reads the display window: crops what lies outside it and fills pixels outside the data window with 0.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : stream_(bytes), file_(stream_) {
@@ -154,7 +153,7 @@ class Reader {
     return image;
   }
 
-  /// The library addresses pixels by their place in the data window: the base is that of pixel (0, 0).
+  /// The library addresses pixels relative to the data window; shifts the base to pixel (0, 0).
   void shift(Imf::FrameBuffer& buffer, int channels) const {
     const std::ptrdiff_t pixels = std::ptrdiff_t{origin_.y} * width_ + origin_.x;
     for (auto slice = buffer.begin(); slice != buffer.end(); ++slice)
@@ -168,7 +167,7 @@ class Reader {
   int width_ = 0, height_ = 0;
 };
 
-/// Bytes that a file does not exceed: blocks that cannot be compressed are stored as they are.
+/// Upper bound of a file's size: incompressible blocks are stored uncompressed.
 std::size_t greatest_size(const Imf::Header& header) {
   std::size_t pixel = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
@@ -207,7 +206,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
     }
   }
   std::string bytes;
-  bytes.reserve(greatest_size(header) + text_bytes);  // a string that grows takes twice as much
+  bytes.reserve(greatest_size(header) + text_bytes);  // a growing string would need twice the memory
   MemoryOut out(bytes);
   {
     Imf::OutputFile file(out, header);

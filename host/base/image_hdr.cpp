@@ -1,6 +1,6 @@
-// Reading Radiance pictures (Ward, "Real Pixels", Graphics Gems II): text lines, a blank one, "-Y height +X
+// Reads Radiance pictures (Ward, "Real Pixels", Graphics Gems II): text lines, a blank one, "-Y height +X
 // width", then scanlines of red, green, blue mantissas and a shared exponent, flat or run-length coded.
-// stb_image's own reader is not used: it never ends on a file that is cut short.
+// stb_image's reader never ends on truncated files.
 #include <fmt/format.h>
 
 #include <array>
@@ -54,14 +54,14 @@ Size read_header(Bytes& bytes) {
       size.width <= 0 || size.height <= 0)
     throw std::runtime_error(
         fmt::format("HDR header: wanted -Y height +X width, found '{}'", resolution.substr(0, 40)));
-  // A run of 127 equal bytes takes two, for each of the four components.
+  // The best compression: two bytes for a run of 127, in each of four components.
   if (static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) / 32 > bytes.left())
     throw std::runtime_error(fmt::format("the HDR data is cut short: {}x{} pixels in {} bytes", size.width,
                                          size.height, bytes.left()));
   return size;
 }
 
-/// One component of a scanline: runs (a count above 128, a value) and literals (a count, values).
+/// Decodes one component of a scanline: runs (count above 128, value) and literals (count, values).
 void read_runs(Bytes& bytes, std::vector<Rgbe>& row, std::size_t component) {
   for (std::size_t x = 0; x < row.size();) {
     std::size_t count = bytes.next();
@@ -73,8 +73,8 @@ void read_runs(Bytes& bytes, std::vector<Rgbe>& row, std::size_t component) {
   }
 }
 
-/// The format's older form: pixels, of which (1, 1, 1, n) repeats the last one n times, and a second such
-/// mark in a row counts 256 times as much.
+/// Decodes the older form: flat pixels, where (1, 1, 1, n) repeats the last pixel n times and each
+/// consecutive mark counts 256 times the one before.
 void read_flat(Bytes& bytes, std::vector<Rgbe>& row, Rgbe pixel) {
   unsigned shift = 0;
   for (std::size_t x = 0; x < row.size();) {

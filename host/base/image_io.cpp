@@ -1,4 +1,4 @@
-// The doors of the image formats: which one a file means, and errors with the file's name.
+// Picks the codec for an image file, and adds the file's name to errors.
 #include "base/image_io.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ Image decode(std::string_view bytes) {
   return linear_image(decode_stored(bytes));
 }
 
-/// Calls `read(bytes)`; what goes wrong in it becomes a SceneError about the file.
+/// Calls `read(bytes)`; converts its exceptions to a SceneError about the file.
 template <class Read>
 auto read_named(const fs::path& path, const Read& read) {
   const std::string bytes = read_input(path, most_frame_bytes);

@@ -1,5 +1,5 @@
-// Reading and writing images: by file extension .png and .jpg (8-bit sRGB), .exr, .hdr, .pfm are written; the
-// same and 16-bit PNG are read, whatever the file's name.
+// Reads and writes image files. The extension selects the written format: .png and .jpg (8-bit sRGB), .exr,
+// .hdr, .pfm; the content decides when reading, which also takes 16-bit PNG.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace sundog {
 
-/// How an EXR keeps the colour channels (AOVs are always 32-bit floats).
+/// Precision of an EXR's colour channels (AOVs are always 32-bit floats).
 enum class ExrColor { half, full };
 
-/// Words about an image, by their names: what made it, of what. PNG and EXR keep them.
+/// Named texts about an image, such as the program and scene that made it. Kept by PNG and EXR.
 using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at
@@ -26,10 +26,10 @@ void write_image(const Image& image, const std::filesystem::path& path, const Ao
 std::string encode_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                          ExrColor color = ExrColor::half, const ImageTexts& texts = {});
 
-/// The extensions that are written, without the dot.
+/// Extensions that can be written, without the dot.
 const std::vector<std::string>& image_formats();
 
-/// True where a program would show an alpha channel of coverage as holes.
+/// Whether the alpha channel is omitted because programs would show coverage as holes.
 bool drops_alpha(const std::filesystem::path& path);
 
 /// Whether a file of this name has 8 bits a channel: .png, .jpg, .jpeg.
@@ -38,21 +38,21 @@ bool has_eight_bits(const std::filesystem::path& path);
 /// Whether a file of this name keeps ImageTexts: .png, .exr.
 bool keeps_texts(const std::filesystem::path& path);
 
-/// Throws UsageError for an extension `write_image` would refuse: call it before a long render.
+/// Throws UsageError for an extension that `write_image` refuses. Call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 
 /// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB, unless a PNG states
 /// another gamma). Throws SceneError on a bad file.
 Image read_image(const std::filesystem::path& path);
 
-/// The same, and whether the file itself has alpha: where not, the image's is 1.
+/// An image, and whether the file has alpha; if not, the image's alpha is 1.
 struct ImageInFile {
   Image image;
   bool alpha = false;
 };
 ImageInFile read_image_in_file(const std::filesystem::path& path);
 
-/// The texts of a PNG or an EXR; empty for other formats. Throws SceneError on a bad file.
+/// Texts of a PNG or EXR; empty for other formats. Throws SceneError for a bad file.
 ImageTexts read_texts(const std::filesystem::path& path);
 
 /// The extra images of an EXR, by name; empty for other formats. Throws SceneError on a bad file.

@@ -1,5 +1,5 @@
 // Portable float maps (Debevec): "PF" for colour, "Pf" for grey, width, height, and a scale whose sign gives
-// the byte order (negative: little-endian); then the rows, from the bottom one up.
+// the byte order (negative: little-endian); then rows, bottom first.
 #include <fmt/format.h>
 
 #include <bit>
@@ -21,7 +21,7 @@ std::uint32_t swap_bytes(std::uint32_t v) {
 struct Header {
   int width = 0, height = 0, channels = 0;
   bool little_endian = true;
-  std::size_t data = 0;  // where the samples begin
+  std::size_t data = 0;  // offset of the samples
 };
 
 std::string_view next_word(std::string_view bytes, std::size_t& at) {

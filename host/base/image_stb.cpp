@@ -78,7 +78,7 @@ std::string encode_jpeg(const Image& image) {
 }
 
 std::string encode_hdr(const Image& image) {
-  constexpr float greatest = 1e38f;  // what RGBE's exponent reaches
+  constexpr float greatest = 1e38f;  // limit of RGBE's exponent
   std::vector<float> colors;
   colors.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
   for (int y = 0; y < image.height; ++y)

@@ -16,7 +16,7 @@
 
 namespace sundog {
 
-/// Those that live.
+/// The live ReadLogs.
 struct ReadLogs {
   std::mutex mutex;
   std::vector<ReadLog*> logs;
@@ -36,7 +36,7 @@ struct ReadLogs {
 
 namespace {
 
-/// An open file that is closed at the end.
+/// Closes the file on destruction.
 struct File {
   int descriptor = -1;
   explicit File(const char* path) : descriptor(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
@@ -55,7 +55,7 @@ std::string size_text(std::uintmax_t bytes) {
   return bytes % (1 << 20) == 0 ? fmt::format("{} MiB", bytes >> 20) : fmt::format("{} bytes", bytes);
 }
 
-/// Up to a byte more than `most`; none where reading fails.
+/// Reads up to most + 1 bytes; returns false on a read error.
 bool read_all(int descriptor, std::uintmax_t expected, std::uintmax_t most, std::string& bytes) {
   constexpr std::size_t least_step = 1 << 16;
   std::size_t size = 0;
@@ -88,7 +88,7 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
   ReadLogs::all().note({path, {found.st_dev, found.st_ino}});
   const auto size = S_ISREG(found.st_mode) ? static_cast<std::uintmax_t>(found.st_size) : 0;
   if (size > most) fail(fmt::format("is larger than {}", size_text(most)));
-  ::fcntl(file.descriptor, F_SETFL, 0);  // a stream is waited for
+  ::fcntl(file.descriptor, F_SETFL, 0);  // block on streams
   while (fault(faults, "hold", path.filename().string())) std::this_thread::sleep_for(std::chrono::hours(1));
   std::string bytes;
   if (!read_all(file.descriptor, size, most, bytes)) unreadable();
@@ -122,7 +122,7 @@ std::string read_input(const std::filesystem::path& path, std::uintmax_t most,
                        const std::shared_ptr<Faults>& faults) {
   try {
     return read_regular_file(path, most, faults);
-  } catch (const IoError& error) {  // its message opens with the path, as SceneError's does
+  } catch (const IoError& error) {  // its message starts with the path, as SceneError's does
     throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
   }
 }

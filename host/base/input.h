@@ -1,4 +1,4 @@
-// Files that the user names.
+// Reads files that the user names, and logs which files were read.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,29 +13,29 @@ class Faults;
 
 constexpr std::uintmax_t most_input_bytes = std::uintmax_t{2} << 30;
 
-/// The bytes of a regular file of at most `most` bytes; whether it is one is asked of the opened file, and a
-/// pipe or a device is not waited for. A pipe that the caller has opened itself may be named: /dev/stdin,
-/// /dev/fd/N. `faults` may strike. Throws IoError "PATH: ...".
+/// Reads a regular file of at most `most` bytes. Checks the type of the opened file, so that a pipe or device
+/// cannot block. A pipe that the caller has opened may be named as /dev/stdin or /dev/fd/N. `faults` may
+/// strike. Throws IoError "PATH: ...".
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                               const std::shared_ptr<Faults>& faults = nullptr);
 
-/// The same. Throws SceneError: a file that cannot be read is a bad input.
+/// read_regular_file(), but throws SceneError: an unreadable file is bad input.
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                        const std::shared_ptr<Faults>& faults = nullptr);
 
-/// A file by its place on a disk: the same under each of its names, be they links.
+/// Identifies a file on a disk, whatever its name or links.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0;
   friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
 };
 
 struct ReadFile {
-  std::filesystem::path path;  // as it was opened
+  std::filesystem::path path;  // as opened
   FileIdentity identity;
 };
 
-/// While it lives, each file that any thread reads by read_regular_file() or read_input() is noted in it, and
-/// those that note_file() names.
+/// While it lives, records each file that any thread reads with read_regular_file() or read_input(), or
+/// passes to note_file().
 class ReadLog {
  public:
   ReadLog();
@@ -50,7 +50,7 @@ class ReadLog {
   std::vector<ReadFile> files_;
 };
 
-/// Notes a file that is named, and may not be read: nothing must take its place either.
+/// Records a file that need not be read but must not be overwritten.
 void note_file(const std::filesystem::path& path);
 
 }  // namespace sundog

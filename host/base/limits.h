@@ -1,4 +1,4 @@
-// The largest frame: files and options beyond it are refused.
+// Limits of a frame; files and options beyond them are refused.
 #pragma once
 #include <cstdint>
 
@@ -6,12 +6,12 @@ namespace sundog {
 
 constexpr int most_edge = 65536;  // of width and height
 constexpr std::int64_t most_pixels = 1 << 28;
-constexpr int most_parts = 65536;  // of a frame, for machines that share nothing but a folder
+constexpr int most_parts = 65536;  // of a frame, for machines that share only a folder
 
-/// More than any file of a frame takes: sums, weights, AOVs and what is done, of most_pixels.
+/// Upper bound of any file of a frame: sums, weights, AOVs and progress of most_pixels.
 constexpr std::uintmax_t most_frame_bytes = 80 * static_cast<std::uintmax_t>(most_pixels);
 
-/// Whether there may be a frame of these edges.
+/// Whether a frame may have this size.
 constexpr bool is_frame_size(std::int64_t width, std::int64_t height) {
   return width >= 1 && width <= most_edge && height >= 1 && height <= most_edge &&
          width * height <= most_pixels;

@@ -23,14 +23,14 @@ MaybeBytes less(const MaybeBytes& a, const MaybeBytes& b) { return a && b ? std:
 
 std::uint64_t rest(std::uint64_t limit, std::uint64_t used) { return limit > used ? limit - used : 0; }
 
-/// The number that a file of one number holds; none for "max".
+/// Reads a file of one number; none for "max".
 MaybeBytes number_in(const fs::path& file) {
   std::ifstream in(file);
   std::uint64_t value = 0;
   return in >> value ? MaybeBytes(value) : std::nullopt;
 }
 
-/// The number behind a name in a file of "name number" or "name: number" lines.
+/// The number after `name` in a file of "name number" or "name: number" lines.
 MaybeBytes number_of(const fs::path& file, std::string_view name) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -44,7 +44,7 @@ MaybeBytes number_of(const fs::path& file, std::string_view name) {
   return std::nullopt;
 }
 
-/// What the names of a cgroup's files are.
+/// File names of a cgroup version.
 struct Names {
   const char *limit, *used, *reclaimable;
 };
@@ -58,7 +58,7 @@ MaybeBytes left_in(const fs::path& group, const Names& names) {
   return rest(*limit, rest(*used, files));
 }
 
-/// The least of a group and the groups around it, up to where they are mounted.
+/// The minimum over a group and its ancestors, up to the mount point.
 MaybeBytes left_up_from(const fs::path& mount, const std::string& group, const Names& names) {
   MaybeBytes least = left_in(mount, names);
   fs::path at = mount;
@@ -69,7 +69,7 @@ MaybeBytes left_up_from(const fs::path& mount, const std::string& group, const N
   return least;
 }
 
-/// Lines are "0::/group" (version 2) and "7:memory:/group" (version 1).
+/// Lines are "0::/group" (version 2) or "7:memory:/group" (version 1).
 MaybeBytes left_in_groups(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   MaybeBytes least;
@@ -115,7 +115,7 @@ void prefer_large_pages(void* at, std::size_t bytes) {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // larger pieces go back to the system when freed
+  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // freeing a larger block unmaps it
   ::mallopt(M_MMAP_THRESHOLD, largest_piece);
   ::mallopt(M_TRIM_THRESHOLD, most);
 #endif

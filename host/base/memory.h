@@ -1,4 +1,4 @@
-// How much memory there is to take, and large pieces of it.
+// Available memory, and allocation of large blocks.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace sundog {
 
-/// Bytes that this process can still take: what the machine has available, or less where a cgroup (a
-/// container, a batch job) or the limit of the address space leaves less. None where neither is known.
-/// `root`: where proc and sys lie.
+/// Bytes that this process can still allocate: the machine's available memory, or less if a cgroup (a
+/// container, a batch job) or the address space limit allows less. None if unknown. `root` contains proc and
+/// sys.
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
-/// Asks for large pages where the system gives them to those who ask: memory that is about to be touched for
-/// the first time then costs much less. Small pieces stay as they are.
+/// Requests huge pages for memory that is about to be touched for the first time, which makes that much
+/// cheaper. Small blocks are left alone.
 void prefer_large_pages(void* at, std::size_t bytes);
 
-/// For a program that makes frame after frame: keeps memory that is freed for what is allocated next, up to a
-/// quarter of a GiB. Given back to the system, each 4 KiB of the next frame's films would cost a page fault.
-/// Where the C library is not glibc it does nothing. To be called before there are threads.
+/// For programs that render many frames: keeps up to a quarter of a GiB of freed memory for later
+/// allocations; otherwise each 4 KiB of the next frame's films costs a page fault. Does nothing without
+/// glibc. Call before starting threads.
 void keep_freed_memory();
 
-/// Makes an empty vector `size` zeros.
+/// Grows an empty vector to `size` zeros.
 template <class T>
 void fill_large(std::vector<T>& memory, std::size_t size) {
   memory.reserve(size);

@@ -1,10 +1,10 @@
-// A file that is in memory alone, for another process to read or write.
+// Anonymous files in memory that another process can read or write.
 #pragma once
 #include <string>
 
 namespace sundog {
 
-/// A descriptor of a file that holds `text`, read from its start; -1 where there can be none.
+/// Returns a descriptor of a file that holds `text`, positioned at its start; -1 if that fails.
 int memory_file(const std::string& text);
 
 }  // namespace sundog

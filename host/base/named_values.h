@@ -1,5 +1,4 @@
-// Values of an enumeration with the names that files and people use for them, in one table: neither depends
-// on the order of the other.
+// Tables of enumeration values and their names in files and options, independent of the enumeration's order.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +14,7 @@ struct NamedValue {
   Value value;
 };
 
-/// The names, in the table's order. Rows may be of any type with a `name`.
+/// The names in table order. Rows may be of any type with a `name`.
 template <class Row, std::size_t N>
 constexpr std::array<std::string_view, N> names_of(const std::array<Row, N>& table) {
   std::array<std::string_view, N> names{};
@@ -23,7 +22,7 @@ constexpr std::array<std::string_view, N> names_of(const std::array<Row, N>& tab
   return names;
 }
 
-/// The value of that name, if the table has it.
+/// The value of that name, if any.
 template <class Value, std::size_t N>
 constexpr std::optional<Value> value_named(const std::array<NamedValue<Value>, N>& table,
                                            std::string_view name) {
@@ -31,7 +30,7 @@ constexpr std::optional<Value> value_named(const std::array<NamedValue<Value>, N
   return row == table.end() ? std::nullopt : std::optional(row->value);
 }
 
-/// The name of a value of the table; std::logic_error for others.
+/// The name of a value. Throws std::logic_error if it is missing.
 template <class Value, std::size_t N>
 constexpr std::string_view name_of_value(const std::array<NamedValue<Value>, N>& table, Value value) {
   const auto row = std::ranges::find(table, value, &NamedValue<Value>::value);

@@ -11,7 +11,7 @@ namespace {
 using glm::dmat3;
 using glm::dvec3;
 
-/// Rows become columns: glm's matrices are made of columns.
+/// glm builds matrices from columns.
 dmat3 rows(dvec3 a, dvec3 b, dvec3 c) { return glm::transpose(dmat3(a, b, c)); }
 
 /// The chromaticity of a black body (Kim and others 2002, US patent 7024034: cubic splines).

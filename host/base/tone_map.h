@@ -1,5 +1,5 @@
-// From scene-linear colours to those of a screen: white balance, exposure, and a curve that compresses what
-// is brighter than white. For files of 8 bits a channel; others keep what was rendered.
+// Tone mapping for 8-bit files: white balance, exposure, and a curve that compresses highlights. Other files
+// keep the rendered values.
 #pragma once
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// none: colours above 1 are cut off.
+/// none: clips colours above 1.
 /// reinhard: L / (1 + L) on the luminance (Reinhard and others 2002, "Photographic Tone Reproduction for
 /// Digital Images", equation 3). Never reaches white.
 /// aces: the fit of Narkowicz 2016 to the ACES output transform, each channel by itself; saturates.
@@ -23,13 +23,13 @@ inline constexpr auto tone_curve_names = names_of(tone_curves);
 
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;
-  double exposure = 0;       // in stops: colours are multiplied by 2^exposure first
-  double white_balance = 0;  // kelvin, 1667..25000: light of this temperature becomes white; 0: as rendered
+  double exposure = 0;       // in stops: multiplies colours by 2^exposure before the curve
+  double white_balance = 0;  // kelvin, 1667..25000: light of this temperature turns white; 0: off
 };
 
 inline constexpr double least_white = 1667, greatest_white = 25000;
 
-/// Applies `map` to the first three channels; values that are not finite, and alpha, stay.
+/// Applies `map` to the first three channels; alpha and non-finite values are unchanged.
 void apply(const ToneMap& map, Image& image);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Axis-aligned boxes of the builder: four lanes a corner, so that one instruction serves x, y and z.
+// Axis-aligned boxes for the BVH builder: four lanes per corner, so that one instruction handles x, y and z.
 #pragma once
 #include <bit>
 #include <limits>
@@ -14,8 +14,8 @@ inline Lanes lanes(float value) { return Lanes{value, value, value, value}; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 
-/// A box. The fourth lane of each corner is free for the owner. Not initialised: the builder makes many that
-/// it does not use.
+/// A box. The fourth lane of each corner is free for the owner. Uninitialised, because the builder creates
+/// many that it does not use.
 struct Bounds {
   Lanes lower, upper;
 
@@ -35,22 +35,22 @@ struct Bounds {
   bool empty() const { return !(lower[0] <= upper[0]); }
 };
 
-/// Half the surface area of a box that is not empty, its edges first multiplied by `scale` (no overflow at
-/// 1e30). A trace of the edges' sum is added, so that flat and thin boxes can still be told from each other.
+/// Half the surface area of a non-empty box with its edges scaled by `scale` (no overflow at 1e30). A trace
+/// of the sum of edges distinguishes flat and thin boxes.
 inline float half_area(const Bounds& box, float scale) {
   const Lanes edge = (box.upper - box.lower) * lanes(scale);
   return edge[0] * (edge[1] + edge[2]) + edge[1] * edge[2] + 1e-6f * (edge[0] + edge[1] + edge[2]);
 }
 
-/// What the builder sorts: a primitive's box with its number in the fourth lane of `lower`.
-/// The number is kept as a normal float's bits, so that arithmetic on the spare lane costs nothing.
+/// A primitive's box, as the builder sorts it, with its index in the fourth lane of `lower`. The index is
+/// stored as a normal float, because denormals in the spare lane would slow arithmetic.
 struct Ref {
   Bounds box;
 
   static constexpr u32 bias = 0x40000000u;
   static Ref of(const Bounds& bounds, u32 prim) {
     Ref ref{bounds};
-    // -0 becomes +0: a minimum over both would depend on their order
+    // -0 becomes +0, because a minimum of both would depend on their order
     ref.box.lower = ref.box.lower + lanes(0.0f);
     ref.box.upper = ref.box.upper + lanes(0.0f);
     ref.box.lower[3] = std::bit_cast<float>(prim + bias);

@@ -18,14 +18,14 @@ namespace {
   throw SceneError(scene.file.string(), place, what);
 }
 
-/// `vector` at length 1; fails with `what` when it has no direction.
+/// Normalises `vector`; fails with `what` if it has no direction.
 dvec3 unit(const SceneDescription& scene, const dvec3& vector, const char* place, const std::string& what) {
   const double length = glm::length(vector);
   if (!(length > 0) || !std::isfinite(length)) fail(scene, place, what);
   return vector / length;
 }
 
-/// A camera's frame and the vectors from pixel to pixel.
+/// A camera's axes and the vectors from pixel to pixel.
 struct Frame {
   dvec3 forward, up, corner, dx, dy;
 };

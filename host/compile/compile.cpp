@@ -1,4 +1,4 @@
-// compile(): the parts of scene_compiler.h, all of them new.
+// compile(): compiles all parts in scene_compiler.h.
 #include "compile/compiled_scene.h"
 #include "compile/scene_compiler.h"
 

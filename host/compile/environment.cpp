@@ -19,10 +19,10 @@ using std::numbers::pi;
 constexpr u32 most_columns = 2048, most_rows = 1024;  // cells
 constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
 
-/// Columns: to the right, up and ahead, as the picture is turned.
+/// Columns: right, up and ahead, with the picture's rotation.
 glm::dmat3 axes_of(const EnvironmentDescription& e) {
   const dvec3 up = glm::normalize(e.up);
-  // As near to +x and -z as an upright picture has them.
+  // As close to +x and -z as in an upright picture.
   dvec3 right = glm::cross(dvec3(0, 0, -1), up);
   if (glm::length(right) < 1e-6) right = dvec3(1, 0, 0);
   right = glm::normalize(right);
@@ -56,7 +56,7 @@ Picture picture_of_gradient(const EnvironmentDescription& e) {
   return picture;
 }
 
-/// Towards the sun, in the environment's axes: x to the right, y up, z ahead.
+/// Direction to the sun in the environment's axes: x right, y up, z ahead.
 dvec3 sun_in_axes(const EnvironmentDescription& e) {
   const double height = e.sun_altitude * pi / 180, azimuth = e.sun_azimuth * pi / 180;
   return {std::cos(height) * std::sin(azimuth), std::sin(height), std::cos(height) * std::cos(azimuth)};
@@ -64,18 +64,18 @@ dvec3 sun_in_axes(const EnvironmentDescription& e) {
 
 Sky sky_of(const EnvironmentDescription& e) { return {e.turbidity, e.sun_altitude * pi / 180}; }
 
-/// The part of its light that reaches the ground through crystals.
+/// The fraction of sunlight that crystals transmit to the ground.
 double sun_share(const EnvironmentDescription& e) {
   if (e.type != EnvironmentType::halo) return 1;
   return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));
 }
 
-/// The light of `light_along(zenith, azimuth)` above the horizon, and of the ground below it.
+/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below it.
 template <class Light>
 Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, const Light& light_along) {
   const dvec3 factor = e.color * e.intensity;
   Picture picture{u32(columns), u32(rows), std::vector<float4>(std::size_t(columns) * std::size_t(rows))};
-  dvec3 level(0);  // irradiance of level ground, over pi
+  dvec3 level(0);  // irradiance on horizontal ground, over pi
   for (int y = 0; y < rows / 2; ++y)
     for (int x = 0; x < columns; ++x) {
       const double zenith = pi * (y + 0.5) / rows, azimuth = 2 * pi * (x + 0.5) / columns - pi;
@@ -98,7 +98,7 @@ Picture picture_of_sky(const EnvironmentDescription& e) {
   });
 }
 
-/// The sky behind the crystals is smooth: it is blended between the pixels of a coarse picture.
+/// The sky behind the crystals is smooth, so it is interpolated from a coarse picture.
 Picture picture_of_halo(const EnvironmentDescription& e, const HaloMap& map) {
   EnvironmentDescription plain = e;
   plain.color = dvec3(1);
@@ -132,14 +132,14 @@ double luminance(const float4& c) {
   return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
 }
 
-/// The luminance (w) of a pixel; columns go round, and the first and the last row stand for what is beyond.
+/// The luminance (w) of a pixel; columns wrap around, rows are clamped.
 double luminance_at(const Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
   const std::ptrdiff_t width = picture.width, height = picture.height;
   const std::ptrdiff_t row = std::clamp<std::ptrdiff_t>(y, 0, height - 1), column = (x + width) % width;
   return double(picture.pixels[static_cast<std::size_t>(row * width + column)].w);
 }
 
-/// The mean luminance of the blended picture over a pixel's square.
+/// Mean luminance of the interpolated picture over a pixel's square.
 double light_of_pixel(const Picture& picture, u32 x, u32 y) {
   constexpr std::array share{0.125, 0.75, 0.125};  // of a pixel and its neighbours along an axis
   double sum = 0;
@@ -150,7 +150,7 @@ double light_of_pixel(const Picture& picture, u32 x, u32 y) {
   return sum;
 }
 
-/// The same over a cell between the middles of four pixels, of which pixel (x, y) is right of it and below.
+/// Mean luminance over a cell between four pixel centres, of which pixel (x, y) is the lower right.
 double light_between_pixels(const Picture& picture, u32 x, u32 y) {
   double sum = 0;
   for (const int j : {-1, 0})
@@ -159,7 +159,7 @@ double light_between_pixels(const Picture& picture, u32 x, u32 y) {
   return sum;
 }
 
-/// Running sums as shares of the whole; even ones where there is no light. Returns the whole.
+/// Appends the normalised cumulative sums; uniform ones if there is no light. Returns the total.
 double append_shares(std::span<const double> light, std::vector<float>& shares) {
   double whole = 0, sum = 0;
   for (const double value : light) whole += value;
@@ -171,14 +171,14 @@ double append_shares(std::span<const double> light, std::vector<float>& shares) 
   return whole;
 }
 
-/// Pixels a cell along an axis.
+/// Pixels per cell along an axis.
 u32 pixels_a_cell(u32 pixels, u32 most) {
   u32 each = 1;
   while (pixels / each > most || pixels % each != 0) ++each;
   return each;
 }
 
-/// Between the middles of four pixels directions are chosen as the light is blended, which matters about a
+/// Whether sampling cells lie between four pixel centres, where light is interpolated; this matters near a
 /// sun of a few pixels. Computed skies are smooth.
 bool are_cells_between_pixels(const Picture& picture, EnvironmentType type) {
   const bool dark = std::ranges::all_of(picture.pixels, [](const float4& pixel) { return pixel.w == 0; });
@@ -186,13 +186,13 @@ bool are_cells_between_pixels(const Picture& picture, EnvironmentType type) {
          picture.height <= most_rows;
 }
 
-/// Moves `step` on to the last step of running sums that begins at or before u.
+/// Advances `step` to the last step of cumulative sums that begins at or before u.
 void step_to(std::span<const float> sums, double u, std::size_t& step) {
   while (step + 2 < sums.size() && double(sums[step + 1]) <= u) ++step;
 }
 
-/// For running sums their words, as shared/environment.h has them. A device's product of a number and a count
-/// may round over the border of a word: the words reach a little further.
+/// The cutpoint words of cumulative sums (shared/environment.h). A device may round across a word's border,
+/// so words reach slightly further.
 void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) {
   const u32 words = CUTPOINTS_OF(static_cast<u32>(sums.size() - 1));
   const double count = words, slack = 1e-6, below_one = 1 - 0x1p-24;
@@ -204,10 +204,10 @@ void append_cutpoints(std::span<const float> sums, std::vector<u32>& cutpoints) 
   }
 }
 
-/// The shares of cells, row by row.
+/// Sampling probabilities of cells, row by row.
 struct CellShares {
-  std::vector<double> rows;  // the light of each
-  std::vector<float> sums;   // the running sums of each row's cells
+  std::vector<double> rows;  // light per row
+  std::vector<float> sums;   // cumulative sums of each row's cells
   std::vector<u32> words;    // their cutpoints
 };
 
@@ -238,13 +238,12 @@ CellShares shares_of_pixels(const Picture& picture, Environment& e, std::vector<
   return cells;
 }
 
-/// Cells between the middles of pixels: a row more than the picture has; the first and the last one are half
-/// as high.
+/// Cells between pixel centres: one more row than the picture; the first and last are half as high.
 CellShares shares_between_pixels(const Picture& picture, Environment& e, std::vector<float>& facts) {
   e.columns = picture.width;
   e.rows = picture.height + 1;
   CellShares cells;
-  std::vector<double> evenness;  // the part of a row's solid angle in its part of the picture
+  std::vector<double> evenness;  // the solid angle of a row relative to its share of the picture
   double whole = 0;
   for (u32 row = 0; row < e.rows; ++row) {
     const double top = std::max(row - 0.5, 0.0) / picture.height,
@@ -256,7 +255,7 @@ CellShares shares_between_pixels(const Picture& picture, Environment& e, std::ve
     evenness.push_back(angle / (bottom - top));
     whole += cells.rows.back();
   }
-  const double cell = 2 * pi * pi / e.columns;  // of width and height in the picture
+  const double cell = 2 * pi * pi / e.columns;  // width times height in the picture
   for (const double even : evenness) facts.push_back(static_cast<float>(even / (cell * whole)));
   facts.push_back(0);
   return cells;

@@ -12,23 +12,22 @@
 namespace sundog {
 namespace {
 
-/// Mitchell and Netravali 1988 with B = C = 1/3, of radius 2.
+/// Mitchell and Netravali 1988 with B = C = 1/3; radius 2.
 double mitchell(double x) {
   if (x < 1) return (7 * x * x * x - 12 * x * x + 16.0 / 3) / 6;
   return (-7.0 / 3 * x * x * x + 12 * x * x - 20 * x + 32.0 / 3) / 6;
 }
 
-/// Of radius 1 (Harris 1978, the one of four terms).
+/// Radius 1 (Harris 1978, four terms).
 double blackman_harris(double x) {
   const double angle = std::numbers::pi * x;
   return 0.35875 + 0.48829 * std::cos(angle) + 0.14128 * std::cos(2 * angle) + 0.01168 * std::cos(3 * angle);
 }
 
-/// Of radius 1 with a standard deviation of a third, lowered so that it ends at 0.
+/// Radius 1, standard deviation 1/3, lowered to end at 0.
 double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
 
-/// The distances that equal shares of the part of one sign reach to: FILTER_STEPS + 1 of them. Returns the
-/// part's area.
+/// Distances at equal quantiles of the part of one sign: FILTER_STEPS + 1 of them. Returns the part's area.
 double add_distances(Filter filter, double radius, double sign, float* distances) {
   constexpr int steps = 1 << 14;
   std::vector<double> area(steps + 1);  // from the centre to step i

@@ -1,6 +1,6 @@
-// Reconstruction filters: how far from its pixel's centre a sample's light counts for the pixel, and how
-// much. Camera samples are placed by the filter's own density, so that each counts the same (filter
-// importance sampling: Ernst, Stamminger and Greiner 2006).
+// Reconstruction filters: the weight of a sample by its distance from the pixel's centre. Camera samples are
+// placed with the filter's density, so that all have equal weight (filter importance sampling: Ernst,
+// Stamminger and Greiner 2006).
 #pragma once
 #include <vector>
 
@@ -8,15 +8,15 @@
 
 namespace sundog {
 
-/// The filter's value at the distance `x` along an axis from the centre, up to a factor; 0 beyond its radius.
-/// Filters are products of this for both axes.
+/// The filter's 1D value at distance `x` from the centre, up to a factor; 0 beyond its radius. Filters are
+/// separable products of it.
 double filter_value(Filter filter, double radius, double x);
 
-/// The radius in pixels, the filter's own where the settings name none.
+/// The radius in pixels; the filter's default if the settings give none.
 double filter_radius(const RenderSettings& settings);
 
-/// The table filter_offset() of kernels/lib/core/filter.cl reads; empty for a box of one pixel, which needs
-/// none. See shared/filter.h.
+/// The table for filter_offset() in kernels/lib/core/filter.cl (shared/filter.h); empty for a box of one
+/// pixel, which needs none.
 std::vector<float> filter_table(const RenderSettings& settings);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// The turns of a Fibonacci lattice, as tables that sum over facets need them for each viewer.
+// Tabulated rotations of a Fibonacci lattice, for sums over microfacets per viewer.
 #pragma once
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@ struct LatticeTurn {
   double cosine, sine;
 };
 
-/// Of a lattice of `places`, each of which is `step` places further around than the last.
+/// For a lattice of `places`, each rotated by `step` places from the previous one.
 template <int places, int step>
 const std::array<LatticeTurn, places>& lattice_turns() {
   static const auto turns = [] {

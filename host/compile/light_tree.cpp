@@ -40,8 +40,8 @@ LightNode node_over(std::span<const Lamp> lamps) {
   return {{lower.x, lower.y, lower.z}, static_cast<float>(power), {upper.x, upper.y, upper.z}, 0};
 }
 
-/// Appends the subtree, halved across the longest axis of the lamps' middles. The left child follows its
-/// parent.
+/// Appends the subtree, split in halves along the longest axis of the lamps' centres. The left child follows
+/// its parent.
 void append(std::span<Lamp> lamps, std::vector<LightNode>& nodes) {
   const std::size_t at = nodes.size();
   nodes.push_back(node_over(lamps));
@@ -75,7 +75,7 @@ void add_light_tree(const SceneDescription& scene, CompiledScene& out) {
       std::ranges::any_of(out.lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
   const bool chooses = scene.render.light_samples > 0 || traces_paths(scene.render.integrator) || triangles;
   if (!chooses || lamps.empty() || (lamps.size() == 1 && !triangles)) {
-    // General kernels ask for the way to each light: there is no choice on it.
+    // General kernels request the path to each light, but here there is nothing to choose.
     out.light_leaves = std::vector<u32>(out.lights.size(), 0u);
     return;
   }

@@ -1,12 +1,12 @@
-// A tree over the lights with an extent, by which points choose one of many.
+// A tree over area lights, by which shading points choose one of many.
 #pragma once
 #include "compile/compiled_scene.h"
 
 namespace sundog {
 
-/// Fills `out.light_nodes` for the lights with an extent of `out.lights`, and replaces their rays in
-/// `out.light_rays` by as many chosen ones as `scene.render.light_samples` says. Nothing where that is 0, or
-/// no more than one light has an extent.
+/// Fills `out.light_nodes` for the area lights in `out.lights`, and replaces their rays in `out.light_rays`
+/// by the number in `scene.render.light_samples`. Does nothing if that is 0 or there is at most one area
+/// light.
 void add_light_tree(const SceneDescription& scene, CompiledScene& out);
 
 }  // namespace sundog

@@ -22,17 +22,17 @@ double smith_lambda(double cosine, double alpha) {
   return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
 }
 
-// Places of a Fibonacci lattice, which is as even along the sum of its axes as along each: edges where light
-// begins to be sent through cut no whole row of it.
+// A Fibonacci lattice, which is even along the sum of its axes as well: the limit of transmission cuts no
+// whole row of it.
 constexpr int draws = 377, lattice_turn = 233;
 
-// What white lobes are let to lose, so that none returns more than all light between the tables' places.
+// Energy that white lobes may lose, so that none exceeds 1 between table entries.
 constexpr double gain_margin = 0.0015, glass_margin = 0.005;
 
-/// Normals of facets about +z, each drawn by what a viewer in the plane y = 0 sees of it.
+/// Facet normals about +z, sampled by their visible area for a viewer in the plane y = 0.
 using Normals = std::array<dvec3, draws>;
 
-/// As kernels/lib/shade/rough.cl has them.
+/// As in kernels/lib/shade/rough.cl.
 Normals visible_normals(const dvec3& wo, double alpha) {
   const auto& turns = lattice_turns<draws, lattice_turn>();
   const dvec3 stretched = glm::normalize(dvec3(alpha * wo.x, 0, wo.z));
@@ -55,7 +55,7 @@ double cosine_of(u32 column, u32 columns, double alpha) {
   return std::clamp(LOBE_COSINE(double(column) / (columns - 1), alpha), 1e-6, 1.0);
 }
 
-/// Between the columns of a row of the tables, as kernels read it.
+/// A position between columns of the tables, as kernels interpolate.
 struct ColumnPlace {
   u32 left;
   double to_next;
@@ -72,13 +72,13 @@ double in_row(const Row& row, const ColumnPlace& at) {
   return std::lerp(double(row[at.left]), double(row[at.left + 1]), at.to_next);
 }
 
-/// Light that comes from the cosine at `from` and the part of it that is sent on.
+/// Light from the cosine at `from`, and the fraction that is reflected.
 struct Sent {
   ColumnPlace from;
   double part;
 };
 
-/// A white lobe's light by visible normals, each with the same weight.
+/// A white lobe's light by equally weighted visible normals.
 std::vector<Sent> sent_to(double cosine, double alpha) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double lambda_o = smith_lambda(cosine, alpha);
@@ -129,7 +129,7 @@ void add_gains(std::vector<float>& table) {
   });
 }
 
-/// Fresnel's reflectance at the cosine c; eta: the index behind over that before. `bent`: the cosine behind.
+/// Fresnel reflectance at the cosine c; eta: index behind over index before. `bent`: the cosine behind.
 double reflectance(double c, double eta, double& bent) {
   const double square = 1 - (1 - c * c) / (eta * eta);
   bent = square > 0 ? std::sqrt(square) : 0;
@@ -138,8 +138,8 @@ double reflectance(double c, double eta, double& bent) {
   return (s * s + p * p) / 2;
 }
 
-/// The part of light that a white interface's facets reflect or transmit to a viewer without a second
-/// meeting.
+/// The fraction of light that a white interface's facets reflect or transmit to a viewer by single
+/// scattering.
 double glass_energy(const dvec3& wo, const Normals& normals, double alpha, double eta) {
   const double seen = 1 + smith_lambda(wo.z, alpha);
   double sum = 0;
@@ -154,7 +154,7 @@ double glass_energy(const dvec3& wo, const Normals& normals, double alpha, doubl
   return sum / draws;
 }
 
-/// The mean over directions, by their cosine, of 1 minus a row's values: more places at small cosines.
+/// The mean over directions of 1 minus a row's values, by cosine; samples are denser at small cosines.
 double mean_lost(const float* row, double alpha) {
   constexpr int places = 256;
   double sum = 0;
@@ -165,14 +165,13 @@ double mean_lost(const float* row, double alpha) {
   return std::max(sum / places, 0.0);
 }
 
-/// Of the thicker medium, 1 - 1 / eta. Interfaces between equal indices are none: what is nearly so is
-/// computed a little beside.
+/// 1 - 1 / eta of the thicker medium. Equal indices make no interface, so the limit is computed slightly off.
 double less_of(u32 index) {
   const double root = double(index) / (GLASS_INDICES - 1);
   return std::max(double(GLASS_REACH) * root * root, 1e-3);
 }
 
-/// The part of even light that enters the thicker medium.
+/// The fraction of uniform light that enters the thicker medium.
 double mean_entering(double eta) {
   double sum = 0, bent = 0;
   for (int i = 0; i < 256; ++i) {
@@ -182,7 +181,7 @@ double mean_entering(double eta) {
   return sum / 256;
 }
 
-/// What is lost at the first meeting with a facet, in the mean, and where it goes.
+/// Mean loss at the first facet, and where the lost light goes.
 void add_further(std::vector<float>& table) {
   table.resize(GLASS_LOST + GLASS_INDICES * 2 * GLASS_STEPS);
   for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i) {

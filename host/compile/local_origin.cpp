@@ -18,18 +18,18 @@ constexpr std::size_t most_places = 64;
 constexpr int least_decimals = -6, most_decimals = 8;
 constexpr double rounding = 0x1p-50;  // of sums of a few doubles
 
-/// `value` to a multiple of `step`; 0 where that is no number.
+/// `value` rounded to a multiple of `step`; 0 if that is not finite.
 double rounded_to(double value, double step) {
   const double multiple = std::round(value / step) * step;
   return std::isfinite(multiple) ? multiple : 0;
 }
 
-/// The length of the view, to a power of two below it; 0 where there is none.
+/// The view's length, rounded down to a power of two; 0 if it has none.
 double view_step(double length) {
   return length > 0 && std::isfinite(length) ? std::ldexp(1.0, std::ilogb(length)) : 0;
 }
 
-/// Where the first things of the scene lie along an axis: the camera, lights, objects.
+/// Positions along an axis of the camera, the lights and the first objects.
 std::vector<double> places_along(const SceneDescription& scene, int axis) {
   std::vector<double> places{scene.camera.target[axis], scene.camera.position[axis]};
   for (const LightDescription& light : scene.lights)
@@ -39,7 +39,7 @@ std::vector<double> places_along(const SceneDescription& scene, int axis) {
   return places;
 }
 
-/// Decimal places of a number that is known to `error`; below 0: zeros before the point, of a round one.
+/// Decimals of a number known to `error`; negative: trailing zeros before the point.
 int decimals(double value, double error) {
   for (int count = least_decimals; count < most_decimals; ++count)
     if (const double unit = std::pow(10.0, -count);
@@ -48,14 +48,14 @@ int decimals(double value, double error) {
   return most_decimals;
 }
 
-/// How badly an origin suits places: the decimals that write it and them, how many are not at it, the
-/// target's distance. `least` decimals count for its own: a round number is no merit of a place.
+/// How badly an origin suits the positions: total decimals, positions not at the origin, distance of the
+/// target. The origin itself counts at least `least` decimals, so a round number is no advantage.
 std::tuple<int, std::size_t, double> unfitness(double origin, double target,
                                                const std::vector<double>& places, int least) {
   int sum = std::max(least, decimals(origin, rounding * std::abs(origin)));
   std::size_t others = 0;
   double last = std::numeric_limits<double>::quiet_NaN();
-  for (const double place : places) {  // of those in one place, one
+  for (const double place : places) {  // coincident ones count once
     others += place != origin;
     if (place != std::exchange(last, place))
       sum += std::max(0, decimals(place - origin, rounding * std::max(std::abs(place), std::abs(origin))));
@@ -63,7 +63,7 @@ std::tuple<int, std::size_t, double> unfitness(double origin, double target,
   return {sum, others, std::abs(origin - target)};
 }
 
-/// `origin`, or that place near the target that suits the others better.
+/// `origin`, or a position near the target that suits the others better.
 double rounder_origin(double origin, double target, double reach, std::vector<double> places) {
   std::ranges::sort(places);
   auto best = unfitness(origin, target, places, least_decimals);
@@ -96,7 +96,7 @@ double far_part(double offset, double period, const Camera& camera) {
 }
 
 SplitPoint split_point(const dvec3& v) {
-  // One by one: of whole vectors GCC 12 takes the way to float and back for nothing.
+  // Componentwise: for whole vectors GCC 12 converts to float and back in vain.
   const auto high = [](double value) { return static_cast<float>(value); };
   const auto low = [&](double value) { return static_cast<float>(value - double(high(value))); };
   return {{high(v.x), high(v.y), high(v.z), 0}, {low(v.x), low(v.y), low(v.z), 0}};

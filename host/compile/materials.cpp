@@ -32,7 +32,7 @@ bool same(const Medium& a, const Medium& b) {
          a.spectrum == b.spectrum;
 }
 
-/// The world's medium, with its fog where that scatters.
+/// The world's medium, including fog that scatters.
 MediumDescription world_medium(const SceneDescription& scene) {
   MediumDescription medium = scene.media.empty() ? MediumDescription{} : scene.media[0];
   if (!fog_scatters(scene)) return medium;
@@ -47,7 +47,7 @@ MediumDescription world_medium(const SceneDescription& scene) {
   return medium;
 }
 
-/// The media without duplicates, and for each of the description its index there.
+/// Adds the media without duplicates; returns the index of each.
 std::vector<u32> add_media(const SceneDescription& scene, CompiledScene& out) {
   std::vector<Medium>& media = out.media.edit();
   SpectraMaker spectra(scene);
@@ -73,15 +73,15 @@ std::vector<u32> add_media(const SceneDescription& scene, CompiledScene& out) {
   return index_of;
 }
 
-/// Whether light is bent where some media of the scene meet.
+/// Whether some media of the scene differ in index, so that interfaces refract.
 bool bends_light(const std::vector<Medium>& media) {
   return std::ranges::any_of(media, [&](const Medium& m) {
     return m.absorption.w != media[0].absorption.w || m.spectrum != media[0].spectrum;
   });
 }
 
-/// Whether facets of a thin material send paths through it. What is not there is seen straight on, so facets
-/// of a material that is partly there only reflect.
+/// Whether a thin material's facets scatter transmitted paths. Partial opacity is seen straight through, so
+/// facets of such a material only reflect.
 bool is_frosted(const SceneDescription& scene, const MaterialDescription& material) {
   const bool there = material.opacity == 1 && material.textures.opacity < 0 && !material.one_sided;
   const double alpha = material.roughness * material.roughness;
@@ -89,9 +89,8 @@ bool is_frosted(const SceneDescription& scene, const MaterialDescription& materi
          !is_zero(material.transmission) && alpha >= double(LEAST_ALPHA);
 }
 
-/// Whether shadow rays stop at a material. Paths find by themselves what lights send through bending
-/// interfaces and frosted walls, and shadow rays that went straight through these would find it a second
-/// time. So would photons.
+/// Whether shadow rays stop at a material. Paths themselves find light through refracting interfaces and
+/// frosted walls (as do photons), so shadow rays passing straight through would count it twice.
 bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
   const bool by_path =
       (traces_paths(scene.render.integrator) && bends && material.medium >= 0) || is_frosted(scene, material);

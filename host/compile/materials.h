@@ -1,4 +1,4 @@
-// Materials, media and lights as the kernels read them.
+// Compiles materials, media and lights.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,26 +7,25 @@
 
 namespace sundog {
 
-/// Fills `out.media` (the same medium under several names becomes one; the world's stays alone at 0) and
-/// `out.materials`. When some object or mesh is without a material, a default one is appended. Returns its
-/// index, or NO_MATERIAL.
+/// Fills `out.media` (equal media are merged, except the world's at 0) and `out.materials`. If some object or
+/// mesh lacks a material, appends a default one. Returns its index, or NO_MATERIAL.
 u32 add_materials(const SceneDescription& scene, CompiledScene& out);
 
-/// Whether some object or mesh is without a material.
+/// Whether some object or mesh lacks a material.
 bool lacks_materials(const SceneDescription& scene);
 
-/// Fills `out.lights`, whose positions count from `out.origin`, and `out.info.ambient`. Throws SceneError for
-/// a direction of length zero.
+/// Fills `out.lights`, with positions relative to `out.origin`, and `out.info.ambient`. Throws SceneError for
+/// a zero direction.
 void add_lights(const SceneDescription& scene, CompiledScene& out);
 
-/// One light that is not ambient; `place` is its own in the scene file.
+/// Adds a non-ambient light; `place` is its place in the scene file.
 void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
                CompiledScene& out);
 
-/// Whether the world's fog is a medium that scatters, and no fog with a light of its own.
+/// Whether the world's fog is a scattering medium instead of emitting light itself.
 bool fog_scatters(const SceneDescription& scene);
 
-/// The world's fog, into `out.info`, unless it scatters.
+/// Writes the world's fog to `out.info`, unless it scatters.
 void add_fog(const SceneDescription& scene, CompiledScene& out);
 
 }  // namespace sundog

@@ -20,7 +20,7 @@
 namespace sundog {
 namespace {
 
-constexpr float farthest_vertex = 1e36f;  // beyond, sums of coordinates leave the float's range
+constexpr float farthest_vertex = 1e36f;  // beyond, sums of coordinates overflow a float
 
 [[noreturn]] void fail(const SceneDescription& scene, std::size_t mesh, const std::string& what) {
   std::string place;
@@ -53,7 +53,7 @@ void check_attributes(const SceneDescription& scene, std::size_t index) {
       fail(scene, index, fmt::format("material {} of {}", material, scene.materials.size()));
 }
 
-/// Names the first triangle corner of the meshes that makes no box.
+/// Reports the first triangle corner that has no valid box.
 [[noreturn]] void fail_corner(const SceneDescription& scene, std::span<const std::size_t> meshes) {
   for (const std::size_t index : meshes) {
     const Mesh& mesh = scene.meshes[index];
@@ -74,7 +74,7 @@ void check_attributes(const SceneDescription& scene, std::size_t index) {
   throw std::logic_error("meshes that were refused have no bad corner");
 }
 
-/// The box of a triangle, empty when a corner is no vertex or is out of range.
+/// The box of a triangle; empty if a corner is invalid or out of range.
 Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
   Bounds box = Bounds::none();
   for (int corner = 0; corner < 3; ++corner) {
@@ -86,9 +86,9 @@ Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
   return box;
 }
 
-/// The power of two that PlacedMesh::unit is.
+/// The value of PlacedMesh::unit.
 double table_unit(const Mesh& mesh) {
-  constexpr int far = 24;  // 2^24 is 1.7e7: the product of three lengths of a small triangle stays normal
+  constexpr int far = 24;  // 2^24 is 1.7e7: products of three edges of a small triangle stay normal
   const auto greatest = [&](const tbb::blocked_range<std::size_t>& range, float most) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::vec3 size = glm::abs(mesh.positions[i]);
@@ -106,7 +106,7 @@ double table_unit(const Mesh& mesh) {
 /// The mesh in units of the tables.
 Mesh resized(const Mesh& mesh, double unit) {
   Mesh result = mesh;
-  const double scale = 1 / unit;  // of a power of two: nothing is rounded but what vanishes beside the rest
+  const double scale = 1 / unit;  // a power of two: exact, except for vanishing values
   for (glm::vec3& p : result.positions) p = glm::vec3(glm::dvec3(p) * scale);
   return result;
 }
@@ -114,7 +114,7 @@ Mesh resized(const Mesh& mesh, double unit) {
 /// A BVH and the meshes that share it.
 struct Tree {
   std::vector<std::size_t> meshes;
-  Mesh copy;  // their positions and triangles, where they are several or the tables hold them in another unit
+  Mesh copy;  // positions and triangles of several meshes, or scaled
   WideBvh bvh;
 
   const Mesh& mesh(const SceneDescription& scene) const {
@@ -122,7 +122,7 @@ struct Tree {
   }
 };
 
-/// The positions and triangles of several meshes as one.
+/// Joins the positions and triangles of several meshes.
 Mesh join_meshes(const SceneDescription& scene, std::span<const std::size_t> meshes) {
   Mesh joined;
   std::vector<glm::vec3>& positions = joined.positions.values();
@@ -139,7 +139,7 @@ Mesh join_meshes(const SceneDescription& scene, std::span<const std::size_t> mes
   return joined;
 }
 
-/// The meshes of each BVH. Those in another unit have one of their own.
+/// The meshes of each BVH. Scaled ones are not shared.
 std::vector<Tree> plan_trees(const SceneDescription& scene, const std::vector<PlacedMesh>& placed) {
   std::vector<Tree> trees;
   for (const std::vector<std::size_t>& group : mesh_groups(scene)) {
@@ -187,7 +187,7 @@ TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 fir
     const glm::uvec3& triangle = mesh.triangles[members[lane]];
     const glm::vec3& v0 = mesh.positions[triangle.x];
     glm::vec3 v1 = mesh.positions[triangle.y], v2 = mesh.positions[triangle.z];
-    // A point is never hit; what has no area might be, by rounding, and has no normal.
+    // A point is never hit; a degenerate triangle might be, by rounding, and has no normal.
     if (!has_area(v0, v1, v2)) v1 = v2 = v0;
     block.v0_x[lane] = v0.x, block.v0_y[lane] = v0.y, block.v0_z[lane] = v0.z;
     block.v1_x[lane] = v1.x, block.v1_y[lane] = v1.y, block.v1_z[lane] = v1.z;
@@ -197,7 +197,7 @@ TriangleBlock make_block(const Mesh& mesh, std::span<const u32> members, u32 fir
   return block;
 }
 
-/// Copies the tree behind what the tables hold already, its indices made absolute.
+/// Copies the tree to the tables with absolute indices.
 void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std::span<Bvh8Node> nodes,
                  u32 first_node, std::span<TriangleBlock> blocks, u32 first_block) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
@@ -214,7 +214,7 @@ void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std:
   });
 }
 
-/// Where each triangle's corners are: in the first of the blocks that have it.
+/// Stores each triangle's position: the first block that contains it.
 void note_places(std::span<const TriangleBlock> blocks, u32 first_block,
                  std::span<TriangleShading> all_triangles) {
   for (std::size_t i = blocks.size(); i-- > 0;)
@@ -223,7 +223,7 @@ void note_places(std::span<const TriangleBlock> blocks, u32 first_block,
         all_triangles[blocks[i].prim[lane]].place = (first_block + static_cast<u32>(i)) * 8 + lane;
 }
 
-/// Rows of the tables: how many there are, or where a mesh begins.
+/// Row counts of the tables, or a mesh's first rows.
 struct Rows {
   std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
 };
@@ -237,7 +237,7 @@ void check_rows(const SceneDescription& scene, const Rows& sum) {
                     sum.triangles, sum.blocks));
 }
 
-/// Where each tree begins, and at the end the sums. Notes where its meshes begin.
+/// The first rows of each tree, then the totals. Also stores those of the meshes.
 std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<Tree>& trees,
                           std::vector<PlacedMesh>& placed) {
   std::vector<Rows> first(1);
@@ -280,8 +280,7 @@ std::vector<Bounds> grandchildren(const std::vector<Bvh8Node>& nodes) {
   return boxes;
 }
 
-/// The boxes of parts of a mesh in a tree that it shares: of rows of its triangles, which lie near each
-/// other.
+/// Boxes of parts of a mesh in a shared tree: runs of its triangles, which lie close together.
 std::vector<Bounds> boxes_of_rows(const Mesh& mesh) {
   constexpr std::size_t parts = 32;
   const std::size_t step = (mesh.triangles.size() + parts - 1) / parts;
@@ -303,7 +302,7 @@ std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) 
   return materials;
 }
 
-/// Writes the rows of a tree's meshes, in parallel.
+/// Writes a tree's meshes to the tables, in parallel.
 void fill_tables(const SceneDescription& scene, const Tree& tree, const Rows& first, u32 default_material,
                  CompiledScene& out, std::vector<PlacedMesh>& placed) {
   const Mesh& mesh = tree.mesh(scene);

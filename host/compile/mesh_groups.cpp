@@ -9,8 +9,8 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t most_sharing = 16;  // instances of a BVH stand in a row: leaves stay near each other
-constexpr float least_overlap = 0.25f;    // of the smaller box's area
+constexpr std::size_t most_sharing = 16;  // instances of a BVH are contiguous, so leaves stay close
+constexpr float least_overlap = 0.25f;    // relative to the smaller box's area
 
 struct Candidate {
   std::size_t mesh;
@@ -33,7 +33,7 @@ bool overlap(const Bounds& a, const Bounds& b) {
   return half_area(both, scale) >= least_overlap * std::min(half_area(a, scale), half_area(b, scale));
 }
 
-/// Meshes that one object places each, which does not move, sorted by transform.
+/// Meshes placed by exactly one object, without motion, sorted by transform.
 std::vector<Candidate> candidates_of(const SceneDescription& scene) {
   std::vector<std::size_t> placed(scene.meshes.size());
   std::vector<const Object*> object_of(scene.meshes.size());
@@ -56,7 +56,7 @@ std::vector<Candidate> candidates_of(const SceneDescription& scene) {
   return candidates;
 }
 
-/// Sets of meshes that join.
+/// Disjoint sets of meshes.
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count), size_(count, 1) {
@@ -78,7 +78,7 @@ class Sets {
   std::vector<std::size_t> parent_, size_;
 };
 
-/// Joins those of one transform that overlap.
+/// Joins overlapping meshes of one transform.
 void join_overlapping(std::span<Candidate> same_place, const SceneDescription& scene, Sets& sets) {
   if (same_place.size() < 2) return;
   for (Candidate& one : same_place) one.box = box_of(scene.meshes[one.mesh]);

@@ -1,4 +1,4 @@
-// Which meshes share a BVH: those that lie in each other, as liquid in ice.
+// Finds meshes that should share a BVH because they are nested, like liquid in ice.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace sundog {
 
-/// The meshes of each BVH, in ascending order, of all that objects place; most have one of their own. Meshes
-/// share one where a single object places each, by the same transform and without motion, and their boxes
-/// overlap by much: nearly every ray would walk both of two trees in one place. At most 16 share one.
+/// The meshes of each BVH, in ascending order; most have their own. Up to 16 meshes share one if each is
+/// placed by a single object, with equal transforms and no motion, and their boxes overlap so much that
+/// nearly every ray would traverse both trees.
 std::vector<std::vector<std::size_t>> mesh_groups(const SceneDescription& scene);
 
 }  // namespace sundog

@@ -10,7 +10,7 @@
 namespace sundog {
 namespace {
 
-/// The radiance that the outside of triangles of a material sends out, where it is the same all over them.
+/// The radiance emitted outside by a material's triangles, if uniform.
 dvec3 even_emission(const SceneDescription& scene, int material) {
   if (material < 0) return dvec3(0);
   const MaterialDescription& of = scene.materials[static_cast<std::size_t>(material)];
@@ -30,7 +30,7 @@ Light light_of(const Object& object, const Mesh& mesh, const glm::uvec3& corners
   };
   const dvec3 a = world(corners.x), u = world(corners.y) - a, v = world(corners.z) - a;
   dvec3 across = glm::cross(u, v);
-  // A mirroring transform turns the corners round, not what is outside.
+  // A mirroring transform reverses the winding, but not the outside.
   if (glm::determinant(glm::dmat3(object.world_from_object)) < 0) across = -across;
   const double twice = glm::length(across);
   Light light{};
@@ -51,7 +51,7 @@ bool shines_somewhere(const SceneDescription& scene, const Object& object, const
                              [&](int material) { return even_emission(scene, material) != dvec3(0); });
 }
 
-/// For each object the light in the table that it shows as a lamp, or NO_LIGHT. Ambient lights have no row.
+/// For each object, the row of the light that it shows, or NO_LIGHT. Ambient lights have no row.
 std::vector<u32> lamps_of(const SceneDescription& scene) {
   std::vector<u32> rows, lamps;
   u32 row = 0;
@@ -71,7 +71,7 @@ void add_mesh_lights(const SceneDescription& scene, CompiledScene& out) {
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape || object.light >= 0) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(shape->mesh)];
-    if (object.moves()) continue;  // met, not chosen
+    if (object.moves()) continue;  // found by rays, not sampled
     if (mesh.triangles.size() > most_shining || !shines_somewhere(scene, object, mesh)) continue;
     first[i] = static_cast<u32>(out.lights.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

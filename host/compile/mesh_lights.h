@@ -1,4 +1,4 @@
-// Meshes that shine: each triangle of theirs becomes a light that surfaces choose.
+// Compiles emissive meshes to one light per triangle.
 #pragma once
 #include "compile/compiled_scene.h"
 #include "compile/mesh_bvh.h"
@@ -6,10 +6,9 @@
 
 namespace sundog {
 
-/// Appends a light for each triangle of the meshes whose materials emit by a colour of their own. Their
-/// instances, and those of lamps for path tracing, get the index of their light. To be called once the
-/// instances are placed. What shines by a texture, and meshes of more
-/// than `most_shining` triangles, are left to the rays that meet them.
+/// Appends a light for each triangle of meshes whose materials have a uniform emission. Stores the light's
+/// index in their instances, and in those of visible lights for path tracing. Call after placing instances.
+/// Meshes with textured emission or more than `most_shining` triangles are left to rays that hit them.
 void add_mesh_lights(const SceneDescription& scene, CompiledScene& out);
 
 constexpr std::size_t most_shining = 200'000;

@@ -24,7 +24,7 @@
 namespace sundog {
 namespace {
 
-/// Indices that the loaders promise; a scene made by hand may break them.
+/// Validates indices; a scene made in memory may break them.
 void check_objects(const SceneDescription& scene) {
   const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
   for (const Object& object : scene.objects) {
@@ -53,7 +53,7 @@ void check_integrator(const SceneDescription& scene) {
                                  scene.render.integrator));
 }
 
-/// Samples that more are added to come of a sequence.
+/// Samples that grow in number must come from a sequence.
 u32 sampler_of(const RenderSettings& settings) {
   const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
   return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
@@ -75,7 +75,7 @@ void set_view(const SceneDescription& scene, CompiledScene& out) {
   out.features.guides = !out.guides.empty();
 }
 
-/// log2 of the places that each pixel has in the one sequence of blue noise; rays to a light divide samples.
+/// log2 of each pixel's places in the blue noise sequence; rays to a light divide samples.
 void set_sample_room(CompiledScene& out) {
   if (out.features.sampler != SAMPLER_BLUE_NOISE) return;
   u32 parts = 1;
@@ -83,8 +83,8 @@ void set_sample_room(CompiledScene& out) {
   out.features.sample_room = static_cast<u32>(std::bit_width(out.info.samples * parts - 1));
 }
 
-/// Whether surfaces ask by shafts what stands before lights with an extent: there are few things to ask
-/// about, and light changes on its way by surfaces alone.
+/// Whether surfaces test occlusion of area lights by shafts: there are few instances, and only surfaces
+/// change light on its way.
 bool asks_by_shafts(const CompiledScene& scene) {
   return scene.features.area_lights && !traces_paths(scene.integrator) && !scene.features.absorption &&
          scene.info.instance_count <= SHAFT_INSTANCES && scene.info.field_end == scene.info.instance_count;
@@ -110,7 +110,7 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
-/// The same for all scenes; rough glass has a table more.
+/// Equal for all scenes; rough glass has one more table.
 const SharedTable<float>& lobe_energies(bool glass) {
   const auto first = [](u32 count) {
     const auto rows = built_lobe_energy().first(count);
@@ -121,7 +121,7 @@ const SharedTable<float>& lobe_energies(bool glass) {
   return glass ? with_glass : usual;
 }
 
-/// The lights as surfaces choose them, once it is known what shines.
+/// Builds the light tables once all emitters are known.
 void finish_lights(const SceneDescription& scene, CompiledScene& out) {
   add_mesh_lights(scene, out);
   add_light_tree(scene, out);
@@ -156,7 +156,7 @@ struct SceneCompiler::Parts {
   ScenePart touching;
   ScenePart fields;
 
-  /// The numbers that parts have found.
+  /// Copies numbers found by the parts.
   void set_numbers(CompiledScene& out) const {
     out.info.ambient = lights.made.info.ambient;
     out.info.fog = lights.made.info.fog;
@@ -180,7 +180,7 @@ SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
 
 namespace {
 
-/// Makes the part anew unless its key is that of what is there. Returns whether it was made.
+/// Makes the part unless its key is unchanged. Returns whether it was made.
 template <class P, class Make>
 bool renew(P& part, const ContentKey& key, const Make& make) {
   if (part.key == key) return false;

@@ -1,5 +1,5 @@
-// SceneCompiler: compile() for one scene after another. Parts whose content is that of the scene before are
-// kept; the result has the bytes of compile() all the same.
+// SceneCompiler: compiles successive scenes, and keeps parts whose content has not changed; the result equals
+// compile()'s to the byte.
 #pragma once
 #include <memory>
 
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// What was made, not kept, in all calls so far.
+/// Number of parts compiled, not reused, over all calls.
 struct CompileWork {
   std::uint64_t meshes = 0;     // parts of meshes: their BVHs and tables
   std::uint64_t bvhs = 0;       // of meshes, and over instances
@@ -15,13 +15,13 @@ struct CompileWork {
   std::uint64_t surfaces = 0;   // parts of materials, media and textures
   std::uint64_t fields = 0;     // parts of fields
   std::uint64_t instances = 0;  // parts of instances
-  std::uint64_t touching = 0;   // searches for solids that lie on others
+  std::uint64_t touching = 0;   // searches for touching solids
   friend bool operator==(const CompileWork&, const CompileWork&) = default;
 };
 
-/// The parts and what they depend on: lights (with the environment), surfaces (materials, media, textures),
-/// meshes, instances (objects, and the meshes' boxes), fields (and how near the camera is, for deep views).
-/// The view is made each time. One thread at a time.
+/// The parts: lights (with the environment), surfaces (materials, media, textures), meshes, instances
+/// (objects, and the meshes' boxes), fields (and the camera's distance, for deep views). The view is always
+/// recompiled. Not thread-safe.
 class SceneCompiler {
  public:
   SceneCompiler();
@@ -29,7 +29,7 @@ class SceneCompiler {
   SceneCompiler(SceneCompiler&&) noexcept;
   SceneCompiler& operator=(SceneCompiler&&) noexcept;
 
-  /// As compile(). After an exception the parts are those of the scenes before.
+  /// As compile(). After an exception, parts remain from earlier scenes.
   CompiledScene compile(const SceneDescription& scene);
   const CompileWork& work() const { return work_; }
 

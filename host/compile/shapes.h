@@ -1,6 +1,5 @@
-// The exact solids as unit shapes (kernels/shared/shapes.h): the part of a shape's size that a transform can
-// carry, what stays in parameters, and the geometry of the unit shape: how far it reaches, its flat faces,
-// its distance.
+// The exact solids as unit shapes (kernels/shared/shapes.h): the part of a size that a transform applies, the
+// remaining parameters, and geometry of the unit shape: support, flat faces, distance.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,35 +10,35 @@ namespace sundog {
 
 struct UnitShape {
   ShapeKind shape = SHAPE_MESH;
-  dvec3 scale{1};  // unit shape to the description's object space
+  dvec3 scale{1};  // unit shape to object space
   float4 parameters{};
 };
 
-/// Throws SceneError (at `object`'s place) for sizes that are not positive, and for a torus or rounded box
-/// that cuts itself.
+/// Throws SceneError (at `object`'s place) for sizes that are not positive, and for a self-intersecting torus
+/// or rounded box.
 UnitShape unit_shape(const SceneDescription& scene, const Object& object);
 
 // The functions below take exact solids, not meshes or fields.
 
-/// Greatest dot(direction, p) over the points p of a bounded solid.
+/// Support: maximum of dot(direction, p) over the points p of a bounded solid.
 double reach(const UnitShape& unit, const dvec3& direction);
 
-/// A flat face: the parallelogram center + [-1, 1] u + [-1, 1] v holds it.
+/// A flat face, contained in the parallelogram center + [-1, 1] u + [-1, 1] v.
 struct FlatFace {
   dvec3 normal, center, u, v;
   bool unbounded = false;
 };
 std::vector<FlatFace> flat_faces(const UnitShape& unit);
 
-/// How a solid's surface bends.
+/// Curvature of a solid's surface.
 struct Curvature {
   double greatest;          // infinite at a cone's tip
-  bool straight_y = false;  // a stretch along y bends nothing
+  bool straight_y = false;  // stretching along y does not change it
 };
 /// Nothing for solids without curved surfaces.
 std::optional<Curvature> curvature(const UnitShape& unit);
 
-/// Zero on the surface, below zero inside, and nowhere steeper than the distance to it; a cylinder or cone
+/// A lower bound of the distance: zero on the surface, negative inside, slope at most 1; a cylinder or cone
 /// counts as capped. Not for solids that are always open.
 double unit_distance(const UnitShape& unit, const dvec3& q);
 

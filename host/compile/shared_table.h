@@ -1,5 +1,5 @@
-// SharedTable: a vector that copies share until one of them is changed. So a scene that differs from another
-// in one part has the other parts' tables for nothing, and a device sees which it holds already.
+// SharedTable: a copy-on-write vector. Scenes that differ in one part share the other parts' tables, and a
+// device recognises the ones it already holds.
 #pragma once
 #include <cstddef>
 #include <initializer_list>
@@ -35,7 +35,7 @@ class SharedTable {
   const_iterator begin() const { return rows().begin(); }
   const_iterator end() const { return rows().end(); }
 
-  /// The rows to be changed: a copy of its own where others share them. One thread at a time.
+  /// The rows for modification, copied first if shared. Not thread-safe.
   std::vector<T>& edit() {
     if (!rows_)
       rows_ = std::make_shared<std::vector<T>>();
@@ -48,10 +48,10 @@ class SharedTable {
   void assign(std::size_t size, const T& row) { rows_ = std::make_shared<std::vector<T>>(size, row); }
   void clear() { rows_.reset(); }
 
-  /// What keeps the rows where they are, as long as they are not edited; null where there are none.
+  /// Keeps the rows' memory alive and unchanged until edited; null without rows.
   std::shared_ptr<const void> owner() const { return rows_; }
 
-  /// Whether both have the same rows in memory: then they are equal.
+  /// Whether both refer to the same memory, hence are equal.
   bool shares(const SharedTable& other) const { return rows_ == other.rows_; }
 
  private:

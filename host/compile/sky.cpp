@@ -21,7 +21,7 @@ dvec3 perez(const dvec3* c, double cos_zenith, double sun) {
   return value;
 }
 
-/// Luminance and chromaticity to linear sRGB (IEC 61966-2-1).
+/// Converts luminance and chromaticity to linear sRGB (IEC 61966-2-1).
 dvec3 rgb_of(double luminance, double x, double y) {
   const double X = x / y * luminance, Z = (1 - x - y) / y * luminance;
   return glm::max(
@@ -30,7 +30,7 @@ dvec3 rgb_of(double luminance, double x, double y) {
       dvec3(0));
 }
 
-/// Chromaticity at the zenith: a cubic in the sun's angle whose coefficients are quadratics in the turbidity.
+/// Chromaticity at the zenith: a cubic in the sun's angle with coefficients quadratic in turbidity.
 double zenith_chromaticity(const double (&c)[3][4], double turbidity, double angle) {
   double sum = 0;
   for (const auto& row : c) {

@@ -1,5 +1,5 @@
-// The table `spectra` of a scene: what wavelengths add to colours, the spectra of red and blue, and the
-// indices of refraction of the media that disperse.
+// Compiles the table `spectra` of a scene: colours of wavelengths, basis spectra of red and blue, and
+// refractive indices of dispersive media.
 #pragma once
 #include <utility>
 #include <vector>
@@ -11,10 +11,10 @@ namespace sundog {
 
 class SpectraMaker {
  public:
-  /// Only paths carry wavelengths: with another integrator the table stays empty.
+  /// Only paths carry wavelengths; with another integrator the table stays empty.
   explicit SpectraMaker(const SceneDescription& scene);
 
-  /// Where the indices of a medium begin; the same for the same dispersion. NO_SPECTRUM without one.
+  /// The offset of a medium's indices, shared by equal dispersions; NO_SPECTRUM without dispersion.
   u32 add(const Dispersion& dispersion);
 
   std::vector<float> take_table() { return std::move(table_); }

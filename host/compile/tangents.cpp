@@ -1,7 +1,7 @@
-// Tangents of normal maps, as bakers make them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited",
-// and the conventions of his MikkTSpace): at each corner the mean of the tangents of the triangles that share
-// its position, normal and coordinates, and turn these the same way, each in the plane of the normal and
-// weighted by its angle there. Triangles have corners of their own: no list of indices is made.
+// Tangents for normal maps as bakers compute them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces
+// Revisited", and the conventions of MikkTSpace): at each corner the mean of the tangents of the triangles
+// that share its position, normal, coordinates and handedness, each projected to the normal's plane and
+// weighted by its angle there. Works per triangle corner, without an index list.
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-/// What corners must share to share a tangent.
+/// Properties that corners with a common tangent share.
 struct CornerKey {
   std::array<float, 8> values;  // position, normal, u and v
   bool mirrored;
@@ -30,10 +30,10 @@ struct CornerHash {
   }
 };
 
-/// The ways in which u and v grow on a triangle, that of u unit; zero where the coordinates have no area.
+/// Directions of increasing u and v on a triangle, normalised for u; zero if the coordinates are degenerate.
 struct FaceTangent {
   dvec3 tangent{0}, bitangent{0}, normal{0};
-  /// Whether a frame of this normal must be turned round to have v grow along its bitangent.
+  /// Whether the frame with this normal must be mirrored for v to increase along its bitangent.
   bool mirrored(const dvec3& n) const { return glm::dot(glm::cross(n, tangent), bitangent) < 0; }
 };
 
@@ -61,7 +61,7 @@ double angle_at(const Mesh& mesh, const glm::uvec3& triangle, int corner) {
   return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
 }
 
-/// On the octahedron (Meyer and others 2010): 16 and 15 bits, and the sign of the frame at the top.
+/// Octahedral encoding (Meyer and others 2010): 16 and 15 bits, and the frame's sign on top.
 u32 pack_tangent(const dvec3& tangent, bool mirrored) {
   const dvec3 t = tangent / (std::abs(tangent.x) + std::abs(tangent.y) + std::abs(tangent.z));
   const auto fold = [](double a, double b) { return (1 - std::abs(b)) * (a < 0 ? -1 : 1); };
@@ -70,7 +70,7 @@ u32 pack_tangent(const dvec3& tangent, bool mirrored) {
          static_cast<u32>(std::lround((y * 0.5 + 0.5) * 32767)) << 16 | (mirrored ? 0x80000000u : 0u);
 }
 
-/// The tangent that the model's file has at a vertex, or the one that was made.
+/// The vertex's tangent from the model's file, or `made`.
 CornerTangent given_or(const Mesh& mesh, u32 vertex, const CornerTangent& made) {
   if (mesh.tangents.empty()) return made;
   const glm::vec4& given = mesh.tangents[vertex];

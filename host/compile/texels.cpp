@@ -15,7 +15,7 @@ std::size_t units_of(const TexelLevel& level, u32 format) {
   return (units + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT;
 }
 
-/// Puts a level's row into its tiles; what a tile has beyond the image's edge stays 0 and is never read.
+/// Writes a level's rows to tiles; tile texels beyond the image's edge stay 0 and are never read.
 class RowWriter {
  public:
   RowWriter(const StoredImage& image, const TexelPages& pages)
@@ -35,7 +35,7 @@ class RowWriter {
   }
 
  private:
-  /// `part` bytes of the row go into each tile. No page's end cuts a tile.
+  /// Each tile gets `part` bytes of the row. Tiles do not cross pages.
   template <std::size_t part>
   void write(const TexelLevel& level, u32 y, const std::uint8_t* samples) const {
     const u32 shift = format_ & TEXEL_SIZE_MASK, whole = level.width / TEXEL_TILE;

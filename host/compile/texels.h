@@ -1,4 +1,4 @@
-// An image's levels as tiles of texels.
+// Stores an image's mip levels as tiles of texels.
 #pragma once
 #include <vector>
 
@@ -7,13 +7,13 @@
 
 namespace sundog {
 
-/// TEXEL_* of an image.
+/// The image's TEXEL_* format.
 u32 texel_format(const StoredImage& image);
 
-/// Bytes of an image and its smaller levels on a device.
+/// Size of an image and its mip levels on a device, in bytes.
 std::size_t texel_bytes(const StoredImage& image);
 
-/// Where levels of these sizes lie, the first one at `first` units; returns the first free unit behind them.
+/// Places levels from `first` on, in units; returns the first free unit after them.
 std::size_t lay_out_levels(const StoredImage& image, std::size_t first, std::vector<TexelLevel>& levels);
 
 /// The memory of all levels, in pages of `units` each.
@@ -22,7 +22,7 @@ struct TexelPages {
   std::size_t units;
 };
 
-/// Writes the image and its smaller levels to their places.
+/// Writes the image and its mip levels to their places.
 void write_levels(const StoredImage& image, SampleUse use, const TexelLevel* levels, const TexelPages& pages);
 
 }  // namespace sundog

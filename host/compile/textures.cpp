@@ -18,7 +18,7 @@
 namespace sundog {
 namespace {
 
-/// Large memory is touched by all threads before one fills it.
+/// Zeros large memory with all threads before a single one fills it.
 std::vector<u32> zeroed_words(std::size_t count) {
   constexpr std::size_t step = 1024, least = std::size_t{1} << 20;
   std::vector<u32> words;
@@ -32,13 +32,13 @@ std::vector<u32> zeroed_words(std::size_t count) {
 
 float4 pack4(const glm::dvec4& v) { return pack(dvec3(v), v.w); }
 
-/// Makes nodes of the textures that materials name, each once; images that no node uses are left out.
+/// Converts the textures that materials use to nodes, each once; skips unused images.
 class TextureCompiler {
  public:
   TextureCompiler(const SceneDescription& scene, CompiledScene& out) : scene_(scene), out_(out) {}
 
   void compile() {
-    out_.material_maps.push_back({});  // number 0 says that there is none
+    out_.material_maps.push_back({});  // entry 0 means none
     for (std::size_t i = 0; i < scene_.materials.size(); ++i)
       if (const MaterialDescription& material = surface_for(scene_, scene_.materials[i]);
           has_maps(material)) {
@@ -90,8 +90,8 @@ class TextureCompiler {
     out_.material_maps.push_back(maps);
   }
 
-  /// The ways in which the texture's own u and v grow on the surface: a normal map turns with its picture, as
-  /// heights do.
+  /// The directions of the texture's u and v on the surface: normal maps rotate with their picture, like
+  /// heights.
   float4 normal_turn(int texture, const MaterialDescription& material) const {
     glm::dvec2 u(1, 0), v(0, 1);
     if (texture >= 0) {
@@ -124,7 +124,7 @@ class TextureCompiler {
     return scene_.images.at(static_cast<std::size_t>(index));
   }
 
-  /// Adds the images whose alpha a texture takes. `depth` ends graphs that add_graph() refuses.
+  /// Adds the images whose alpha a texture uses. `depth` stops at graphs that add_graph() rejects.
   void find_cut_images(int index, const MaterialDescription& material, u32 depth = 0) {
     if (index < 0 || depth > MOST_TEXTURE_STACK) return;
     const TextureDescription& texture = texture_at(index, material);
@@ -132,7 +132,7 @@ class TextureCompiler {
     for (const int of : texture.of) find_cut_images(of, material, depth + 1);
   }
 
-  /// Colours count by their alpha in materials that take their opacity from it.
+  /// Whether colours are weighted by alpha: for materials whose opacity it is.
   bool counts_by_alpha(const ImageDescription& image) const {
     return image.srgb && image.pixels.channels == 4 &&
            std::ranges::any_of(cut_images_,
@@ -147,10 +147,10 @@ class TextureCompiler {
            any_counts_by_alpha(texture.of[1], material, depth + 1);
   }
 
-  /// The first node of a texture, whose own node comes after those that it works on.
+  /// The first node of a texture; its own node follows those of its operands.
   u32 first_node(int texture, const MaterialDescription& material) {
     if (texture < 0) return NO_TEXTURE;
-    // Materials share a texture's nodes, but for those of images that count by alpha in one of them alone.
+    // Materials share a texture's nodes, except images weighted by alpha for only one of them.
     const std::pair key(texture, any_counts_by_alpha(texture, material) ? cut_images_ : CutImages());
     const auto found = nodes_.find(key);
     if (found != nodes_.end()) return found->second;
@@ -161,7 +161,7 @@ class TextureCompiler {
     return first;
   }
 
-  /// Adds the nodes of a texture; `below` values wait on the stack.
+  /// Adds the nodes of a texture; `below` is the stack depth.
   void add_graph(int index, const MaterialDescription& material, u32 below) {
     const TextureDescription& texture = texture_at(index, material);
     if (out_.texture_nodes.size() >= most_nodes)
@@ -210,7 +210,7 @@ class TextureCompiler {
     out_.texture_nodes.push_back(node);
   }
 
-  /// Units of the texture on a unit of its mapping's coordinates: the geometric mean.
+  /// Texture units per unit of the mapping's coordinates (geometric mean).
   static double scale_of(const TextureDescription& texture) {
     const double uv = std::sqrt(std::abs(glm::determinant(glm::dmat2(texture.uv))));
     const double placed = std::cbrt(std::abs(glm::determinant(glm::dmat3(texture.placement))));
@@ -275,10 +275,10 @@ class TextureCompiler {
   const SceneDescription& scene_;
   CompiledScene& out_;
   using CutImages = std::vector<const ImageDescription*>;
-  CutImages cut_images_;                            // whose alpha is the opacity of the material at hand
-  std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture, and the images that count by alpha in it
-  std::map<std::pair<int, SampleUse>, std::pair<u32, u32>> levels_;  // by image: the first one, how many
-  std::vector<float> stops_;  // of ramps and formulas, behind the values of bytes
+  CutImages cut_images_;                            // whose alpha is the current material's opacity
+  std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture and its images weighted by alpha
+  std::map<std::pair<int, SampleUse>, std::pair<u32, u32>> levels_;  // by image: first level and count
+  std::vector<float> stops_;  // of ramps and formulas, after the byte values
   std::vector<PatternFormula> formulas_;
   std::size_t units_ = 0;
 };
@@ -315,11 +315,11 @@ void add_textures(const SceneDescription& scene, CompiledScene& out) {
 
 namespace {
 
-/// Calls put(vertex of the table, vertex of the mesh) for each vertex that vertices.cpp makes.
+/// Calls put(table vertex, mesh vertex) for each vertex that vertices.cpp creates.
 void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
   if (!mesh.normals.empty())
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) put(first_vertex + vertex, vertex);
-  else  // three a triangle
+  else  // three per triangle
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (int corner = 0; corner < 3; ++corner)
         put(first_vertex + 3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);

@@ -17,8 +17,8 @@ void parallel_range(std::size_t count, const auto& body) {
   });
 }
 
-/// Normal of a face, its length twice the area; in double precision and scaled, so that tiny and huge
-/// triangles have one.
+/// Face normal with twice the area as its length; in scaled double precision, so that tiny and huge triangles
+/// have one.
 glm::dvec3 face_normal(const Mesh& mesh, const glm::uvec3& triangle) {
   const glm::dvec3 origin(mesh.positions[triangle.x]);
   return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
@@ -51,7 +51,7 @@ Vertex make_vertex(const Mesh& mesh, std::size_t index) {
   return vertex;
 }
 
-/// Replaces the normals that the mesh has but that have no direction.
+/// Replaces the mesh's normals that have no direction.
 void mend_normals(const Mesh& mesh, std::span<Vertex> vertices) {
   std::atomic<bool> broken{false};
   parallel_range(mesh.normals.size(), [&](std::size_t i) {

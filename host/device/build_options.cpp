@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-// Argument information is asked for always, so that the tests check the very program that renders.
+// Always requests argument information, so that tests check the program that renders.
 constexpr const char* own_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
 
 }  // namespace

@@ -1,5 +1,4 @@
-// What programs are built with beyond their source: options of the user's, and whether the compiler's log is
-// wanted.
+// Options that programs are built with, and bypassing of drivers' caches.
 #pragma once
 #include <string>
 
@@ -7,17 +6,17 @@ namespace sundog {
 
 struct HostEnvironment;
 
-/// How a device builds its programs from now on.
+/// Settings of a device's future builds.
 struct BuildWish {
-  std::string options;       // on top of sundog's own and of the user's (HostEnvironment)
-  bool from_source = false;  // a program from a cache has no log
+  std::string options;       // in addition to sundog's and the user's (HostEnvironment)
+  bool from_source = false;  // do not use caches, which lose the log
 };
 
-/// All options of a build: sundog's own, the user's (such as -cl-nv-maxrregcount=64), the wish's.
+/// All options of a build: sundog's, the user's (such as -cl-nv-maxrregcount=64), and `wish`'s.
 std::string all_build_options(const HostEnvironment& environment, const BuildWish& wish);
 
-/// Asks drivers not to take programs from caches of their own, where the log is lost. Before the first OpenCL
-/// call, or it does nothing. HostEnvironment::build_log does it too.
+/// Disables drivers' own caches, which lose the log. Call before the first OpenCL call.
+/// HostEnvironment::build_log implies it.
 void bypass_driver_caches();
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// How devices are driven and chosen, in words for people.
+// How devices are driven, and why one was chosen.
 #pragma once
 #include <span>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace sundog {
 
-/// Whether a device takes many rays a work-item with explicit vectors (the "wide" tracer), rather than one
-/// ray a lane (the "compact" one).
+/// Whether a device traces many rays per work-item with explicit vectors (the "wide" tracer) instead of one
+/// ray per lane (the "compact" one).
 bool wants_vectors(const DeviceInfo& device);
 
-/// Whether its compiler keeps functions that are called from many places apart. Mesa's writes each call out:
-/// the interpreter of fields (kernels/lib/sdf/interpret.cl) then takes it minutes.
+/// Whether the compiler keeps function calls. Mesa's inlines every call, so that the interpreter of fields
+/// (kernels/lib/sdf/interpret.cl) takes minutes to compile.
 bool calls_functions(const DeviceInfo& device);
 
-/// "0:0 ... (estimate 48000), before 1:0 ... (600)": which device is the default, and by which estimates.
+/// "0:0 ... (estimate 48000), before 1:0 ... (600)": the default device and the estimates that decided.
 std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen);
 
 }  // namespace sundog

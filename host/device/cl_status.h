@@ -1,4 +1,4 @@
-// OpenCL's status codes by name, and the one way a failed call becomes a DeviceError.
+// Names of OpenCL's status codes, and conversion of failed calls to DeviceError.
 #pragma once
 #include <string>
 
@@ -6,13 +6,13 @@ namespace sundog {
 
 struct DeviceInfo;
 
-/// "CL_OUT_OF_RESOURCES"; "OpenCL status -9999" for a code that no header names.
+/// "CL_OUT_OF_RESOURCES"; "OpenCL status -9999" for unknown codes.
 std::string cl_status_name(int status);
 
-/// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY: less at a time may work.
+/// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY: smaller launches may work.
 bool is_out_of_resources(int status);
 
-/// CL_INVALID_WORK_GROUP_SIZE: the kernel takes more registers or stack than a group of that size has.
+/// CL_INVALID_WORK_GROUP_SIZE: a group of that size exceeds the registers or stack for this kernel.
 bool is_work_group_too_large(int status);
 
 /// Throws DeviceError "0:1 platform / device: WHAT: CL_OUT_OF_RESOURCES" unless `status` is CL_SUCCESS.

@@ -1,4 +1,4 @@
-// Source and binary go through files in memory, so that neither process waits for the other to read.
+// Source and binary are passed in memory files, so that neither process blocks on reading.
 #include "device/compile_process.h"
 
 #include <fmt/format.h>
@@ -23,9 +23,9 @@
 namespace sundog {
 namespace {
 
-constexpr double longest_wait = 30;  // seconds: something hangs
+constexpr double longest_wait = 30;  // seconds; longer means that something hangs
 
-/// By name, as it is the habit of one driver that is got round here.
+/// By name, as this works around a particular driver.
 bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
 
 std::string contents(int file) {
@@ -48,7 +48,7 @@ cl::Device device_at(const EnvironmentPtr& environment, const std::string& place
   throw DeviceError(fmt::format("no device {} to compile for", place));
 }
 
-/// The text up to the next end of a line, which is taken off with it.
+/// Removes and returns the first line.
 std::string take_line(std::string& text) {
   const std::size_t end = text.find('\n');
   const std::string line = text.substr(0, end);
@@ -56,7 +56,7 @@ std::string take_line(std::string& text) {
   return line;
 }
 
-/// With machine code for the launch. Throws BuildError, DeviceError.
+/// Builds the program, including machine code for the launch. Throws BuildError, DeviceError.
 void build_for_launch(cl::Program& program, const cl::Context& context, const cl::Device& device,
                       const std::string& options, const EmptyLaunch& launch) {
   if (program.build({device}, options.c_str()) != CL_SUCCESS)

@@ -1,4 +1,4 @@
-// Opening a device, its memory, launches and their times.
+// Opens a device; handles its memory, launches and timing.
 #include "device/device.h"
 
 #include <fmt/format.h>
@@ -26,9 +26,9 @@ std::size_t padded(std::size_t size, std::size_t local) {
   return local ? (size + local - 1) / local * local : size;
 }
 
-/// The part of the device that was asked for; the other parts are released.
+/// The requested part of the device; other parts are released.
 cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
-  // Asked first: a driver that cannot split may crash in clCreateSubDevices (rusticl 22.3.6 does).
+  // Checked first, because clCreateSubDevices may crash in drivers that cannot split (rusticl 22.3.6).
   if (info.max_sub_devices == 0)
     throw DeviceError(fmt::format("{}: cannot be split: drop the /{}", info.label(), info.sub_units));
   const auto units = static_cast<cl_device_partition_property>(info.sub_units);
@@ -50,9 +50,8 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   return parts[index];
 }
 
-/// Waits until the driver's threads have let go of a queue whose work is done: PoCL's may still be at its
-/// last event, which holds the queue, and crash when its sub-device goes under them. A queue that is held for
-/// a second stays until the process ends.
+/// Waits until the driver's threads release a queue whose work is done. PoCL's may still hold it for its last
+/// event, and crash when the sub-device is destroyed. A queue held for longer than a second is leaked.
 void await_release(const cl::Device& device, const cl::CommandQueue& queue) {
   const auto held = [&] {
     cl_uint references = 1;
@@ -69,8 +68,8 @@ void await_release(const cl::Device& device, const cl::CommandQueue& queue) {
   }
 }
 
-/// An event's time on the device; 0 where the driver does not measure. Rusticl on llvmpipe stamps begin and
-/// end at once, some nanoseconds apart: in less than a microsecond no launch ends.
+/// An event's time on the device; 0 if the driver does not measure. Rusticl on llvmpipe stamps begin and end
+/// nanoseconds apart, but no launch takes less than a microsecond.
 double event_ms(const cl::Event& event) {
   constexpr cl_ulong least = 1000;
   cl_int started = CL_SUCCESS, ended = CL_SUCCESS;
@@ -80,8 +79,8 @@ double event_ms(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
-/// A processor's compiler names the instruction itself, and one without it may claim fma() all the same; for
-/// others the driver's word counts.
+/// CPU compilers define a macro for the instruction, and may claim fma() without it; for others, the driver's
+/// report counts.
 bool has_fma_instruction(const cl::Device& device, const DeviceInfo& info) {
   return info.type != "cpu" && (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;
 }
@@ -106,7 +105,7 @@ struct Device::Pending {
   cl::Event event;
   std::string name;
   LaunchSize size;
-  bool first;  // of its program for this size
+  bool first;  // first launch of its program at this size
 };
 
 Device::Device(DeviceInfo info) : info_(std::move(info)), prepared_(std::make_unique<PreparedBuilds>()) {
@@ -160,7 +159,7 @@ bool Device::build_ahead(const std::string& entry, const KernelDefines& defines,
     const std::string source = expanded(entry, defines, generated);
     return !find_built(entry, source) && begin_program(info_, source, wish_, launch, *prepared_);
   } catch (const std::exception&) {
-    return false;  // build() will say what is wrong
+    return false;  // build() will report the error
   }
 }
 
@@ -185,7 +184,7 @@ void Device::save_programs() noexcept {
     try {
       save_program(*program);
     } catch (const std::exception&) {
-      program->cache_file.clear();  // the cache only saves time: without it everything works
+      program->cache_file.clear();  // the cache only saves time
     }
   }
 }
@@ -196,8 +195,7 @@ void Device::check_argument(cl_int status, const std::string& name, cl_uint inde
 
 namespace {
 
-/// PoCL compiles a kernel once for each local size, and once more for grids below 65536 (its "smallgrid"
-/// variant).
+/// PoCL compiles a kernel once per local size, and again for grids below 65536 (its "smallgrid" variant).
 std::string variant(const std::string& kernel, const LaunchSize& grid) {
   const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
   return fmt::format("{} {}x{} {}", kernel, grid.local_x, grid.local_y, extent);
@@ -205,7 +203,7 @@ std::string variant(const std::string& kernel, const LaunchSize& grid) {
 
 std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
-/// The faults that a test may ask for (base/faults.h).
+/// Faults injected by tests (base/faults.h).
 void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
                           std::size_t group) {
   const auto& faults = value_of(info.environment).faults;
@@ -221,7 +219,7 @@ void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::
 }  // namespace
 
 std::optional<NvidiaLimits> Device::nvidia() const {
-  // From cl_nv_device_attribute_query, by number: headers have no names for them.
+  // From cl_nv_device_attribute_query, by value: headers lack the names.
   constexpr cl_device_info major = 0x4000, minor = 0x4001, registers = 0x4002, warp = 0x4003;
   if (info_.extensions.find("cl_nv_device_attribute_query") == std::string::npos) return std::nullopt;
   NvidiaLimits limits;
@@ -239,13 +237,13 @@ std::optional<NvidiaLimits> Device::nvidia() const {
 
 KernelLimits Device::limits_of(const cl::Kernel& kernel) const {
   KernelLimits limits;
-  // What a driver does not tell stays 0.
+  // Values that a driver does not report stay 0.
   kernel.getWorkGroupInfo(device_, CL_KERNEL_WORK_GROUP_SIZE, &limits.work_group);
   kernel.getWorkGroupInfo(device_, CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE, &limits.preferred_multiple);
   kernel.getWorkGroupInfo(device_, CL_KERNEL_PRIVATE_MEM_SIZE, &limits.private_bytes);
   kernel.getWorkGroupInfo(device_, CL_KERNEL_LOCAL_MEM_SIZE, &limits.local_bytes);
-  // Mesa's rusticl gives the size of a sub-group for any kernel, and runs larger groups all the same. Where
-  // such a limit is meant, a launch fails and is made smaller.
+  // Mesa's rusticl reports a sub-group's size for every kernel, but runs larger groups. If the limit is real,
+  // a launch fails and is reduced.
   if (limits.work_group <= limits.preferred_multiple) limits.work_group = info_.max_work_group;
   if (const auto most = fault(value_of(info_.environment).faults, "limit", place(info_)))
     limits.work_group = std::min(limits.work_group, static_cast<std::size_t>(*most));
@@ -287,7 +285,7 @@ void Device::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes,
   check_cl(queue_.enqueueReadBuffer(buffer, waits, offset, bytes, data), info_, "clEnqueueReadBuffer");
 }
 
-// Not clFinish: rusticl's returns early. The queue is in order, so a read comes after all that was asked.
+// Not clFinish, because rusticl's returns early. The queue is in order, so a read completes last.
 void Device::settle() noexcept {
   char ignored[4];
   queue_.enqueueReadBuffer(fence_, CL_TRUE, 0, sizeof ignored, ignored);
@@ -333,7 +331,7 @@ void Device::finish() {
   if (pending_.empty()) return;
   const std::vector<Pending> batch = std::exchange(pending_, {});
   char ignored[4];
-  read_bytes(fence_, ignored, sizeof ignored, 0, CL_TRUE);  // as settle(), with its errors
+  read_bytes(fence_, ignored, sizeof ignored, 0, CL_TRUE);  // settle(), but with errors
   const double host_ms = milliseconds(Clock::now() - batch_start_);
   std::vector<double> device_ms;
   double total_ms = 0;

@@ -1,5 +1,5 @@
 // An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL;
-// the types here are thin, and the kernels' argument types are part of the call.
+// its types are thin, and calls check the kernels' argument types.
 #pragma once
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -22,17 +22,17 @@
 
 namespace sundog {
 
-/// `-D` definitions, sorted by name: part of the kernel cache's key.
+/// `-D` definitions, sorted by name; part of the kernel cache's key.
 using KernelDefines = std::map<std::string, std::string>;
 
-/// Kernel text that the host writes (formulas): path as the kernels include it -> text.
+/// Kernel files that the host generates (formulas): include path -> text.
 using GeneratedFiles = std::map<std::string, std::string>;
 
 struct BuildReport {
-  bool cached = false;  // from the binary cache: nothing was compiled
+  bool cached = false;  // loaded from the binary cache
   double seconds = 0;
-  std::string log;   // the compiler's, its warnings included
-  std::string note;  // why the binary cache could not be used; empty when it could
+  std::string log;   // the compiler's output, including warnings
+  std::string note;  // why the binary cache was not usable; empty if it was
 };
 
 template <class T>
@@ -41,7 +41,7 @@ struct Buffer {
   std::size_t count = 0;  // elements of T
 };
 
-/// A type's name as kernels spell it: "u32", "float4", "Ray"; with a * for a buffer.
+/// A type's name as spelled in kernels: "u32", "float4", "Ray"; with * for a buffer.
 std::string kernel_type_name(const std::type_info& type);
 template <class T>
 struct ArgumentType {
@@ -54,11 +54,10 @@ struct ArgumentType<Buffer<T>> {
   static std::string name() { return kernel_type_name(typeid(T)) + "*"; }
 };
 
-struct ProgramRecord;   // what the binary cache must know of a built program (program.h)
-struct PreparedBuilds;  // what is there for the next build() (program.h)
+struct ProgramRecord;   // what the binary cache needs of a built program (program.h)
+struct PreparedBuilds;  // prepared for the next build() (program.h)
 
-/// A kernel whose arguments have the types Args: Buffer<T> for a __global T*, or a plain value: a scalar, a
-/// vector, a struct.
+/// A kernel with arguments of types Args: Buffer<T> for a __global T*, or a value: scalar, vector or struct.
 template <class... Args>
 struct Kernel {
   cl::Kernel kernel;
@@ -70,11 +69,11 @@ struct Kernel {
   }
 };
 
-/// What a driver tells of a kernel on its device; 0: it does not.
+/// What a driver reports about a kernel on its device; 0: unknown.
 struct KernelLimits {
-  std::size_t work_group = 0;  // the most work-items of a group: the device's, where registers allow as many
+  std::size_t work_group = 0;  // maximum group size: the device's, or less if registers limit it
   std::size_t preferred_multiple = 0;
-  cl_ulong private_bytes = 0, local_bytes = 0;  // of a work-item, of a group
+  cl_ulong private_bytes = 0, local_bytes = 0;  // per work-item, per group
 };
 
 /// A built kernel file.
@@ -83,8 +82,8 @@ class Program {
   Program() = default;
   explicit Program(std::shared_ptr<ProgramRecord> record) : record_(std::move(record)) {}
 
-  /// Throws BuildError for a kernel that is not in the file, or whose parameters are not Args. No Args: they
-  /// are not compared.
+  /// Throws BuildError for a kernel that is not in the file, or whose parameters differ from Args. Without
+  /// Args they are not compared.
   template <class... Args>
   Kernel<Args...> kernel(const std::string& name) const {
     return {make_kernel(name, {ArgumentType<Args>::name()...}), name, record_};
@@ -97,16 +96,16 @@ class Program {
   std::shared_ptr<ProgramRecord> record_;
 };
 
-/// The types of a kernel's parameters as its source spells them: {"Ray*", "u32"}; none where the driver does
-/// not tell.
+/// Types of a kernel's parameters as in its source: {"Ray*", "u32"}; empty if the driver does not report
+/// them.
 std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
-/// The row with an OpenCL context that all Devices opened of it share, unless it has one; not of a
-/// sub-device. Some drivers' compilers begin anew in each context (PoCL 3.1 reads its library for 0.6 s). A
-/// context that one Device's fault ends is lost to all of them. Throws DeviceError.
+/// Adds an OpenCL context to `info` that all its Devices share, unless it has one or is a sub-device. Some
+/// compilers start from scratch in each context (PoCL 3.1 reads its library for 0.6 s). A fault in one Device
+/// may break the context for all. Throws DeviceError.
 DeviceInfo share_context(DeviceInfo info);
 
-/// Not shared between threads: one host thread a device.
+/// Use from one host thread per device; not thread-safe.
 class Device {
  public:
   /// Opens the device (a sub-device when info.sub_units > 0). Throws DeviceError.
@@ -116,30 +115,30 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
 
-  /// Of a device of NVIDIA's; nothing for the others.
+  /// Limits of an NVIDIA device; nothing for others.
   std::optional<NvidiaLimits> nvidia() const;
 
-  /// For every build() from now on.
+  /// Applies to future calls of build().
   void build_with(BuildWish wish) { wish_ = std::move(wish); }
 
-  /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, from the binary cache when it
-  /// holds it; what it has built before it gives again. `generated` are further files (path -> text, such as
-  /// "generated/sdf.cl") that the kernels may include. Throws BuildError with the compiler's log.
+  /// Builds `entry` ("entry/whitted.cl", embedded or generated) with `defines`, or loads it from the binary
+  /// cache; repeated calls return the same program. `generated` are additional files (path -> text, such as
+  /// "generated/sdf.cl") that kernels may include. Throws BuildError with the compiler's log.
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
-  /// Whether build() would compile nothing: it has built this before, or the binary cache holds it.
+  /// Whether build() would not compile: it has built this before, or the binary cache has it.
   bool has(const std::string& entry, const KernelDefines& defines,
            const GeneratedFiles& generated = {}) const;
 
-  /// Begins to build in another process what build() will be asked for, as a whole and with machine code for
-  /// `launch`. build() then waits for that process, and builds in this one if the other fails. Returns
-  /// whether one is at work: not where build() would compile nothing, or where the driver can build beside
-  /// (PoCL on a processor cannot). A new one ends the last. Never throws.
+  /// Starts to build in another process what build() will need, entirely and with machine code for `launch`.
+  /// build() then waits for it, and builds here if it fails. Returns whether a process was started: not if
+  /// build() would not compile, or if the driver can compile concurrently (PoCL on a CPU cannot). Replaces a
+  /// process started before. Never throws.
   bool build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
                    const GeneratedFiles& generated = {}) noexcept;
 
-  /// Has the driver make a kernel's machine code for a local size, as far as it does that at the first launch
+  /// Makes the driver generate a kernel's machine code for a local size, if it does so at the first launch
   /// (EmptyLaunch). Throws DeviceError.
   template <class... Args>
   void make_ready(Kernel<Args...>& kernel, std::size_t local_x, std::size_t local_y = 1) {
@@ -147,15 +146,15 @@ class Device {
               Kernel<Args...>::empty_launch(kernel.name, local_x, local_y));
   }
 
-  /// A device array with a copy of `values` (never zero bytes: an empty span gives one unused element).
+  /// Copies `values` to a device array (an empty span gives one unused element).
   template <class T>
   Buffer<T> upload(std::span<const T> values) {
     return {allocate(values.size_bytes(), values.data()), values.size()};
   }
-  /// Whether the device reads the host's memory: share() copies nothing.
+  /// Whether the device uses the host's memory, so share() copies nothing.
   bool shares_memory() const { return info_.type == "cpu" && info_.host_unified_memory; }
-  /// The same without a copy where shares_memory(): for kernels to read, and never written. `owner` keeps the
-  /// values in place and as they are; it is let go of when the last launch that reads them has ended.
+  /// upload() without a copy if shares_memory(), for kernels that only read. `owner` keeps the values in
+  /// place and unchanged; it is released when the last launch that reads them has ended.
   template <class T>
   Buffer<T> share(std::span<const T> values, std::shared_ptr<const void> owner) {
     return {allocate(values.size_bytes(), values.data(), std::move(owner)), values.size()};
@@ -168,13 +167,13 @@ class Device {
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
     write_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
-  /// Blocking; also the only reliable way to wait on every driver.
+  /// Blocks; the only way to wait that is reliable on every driver.
   template <class T>
   void read(const Buffer<T>& buffer, std::span<T> values, std::size_t first = 0) {
     read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
-  /// The same from the buffer's beginning, without waiting: the values must stay in place until a later
-  /// write() or read() has returned. If that throws, until settle() has returned.
+  /// Starts a write at the buffer's beginning without waiting: the values must stay valid until a later
+  /// write() or read() has returned or, if that throws, settle().
   template <class T>
   void begin_write(Buffer<T>& buffer, std::span<const T> values) {
     write_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
@@ -183,7 +182,7 @@ class Device {
   void begin_read(const Buffer<T>& buffer, std::span<T> values) {
     read_bytes(buffer.memory, values.data(), values.size_bytes(), 0, CL_FALSE);
   }
-  /// Waits until all transfers have ended, and ignores errors.
+  /// Waits for all transfers and ignores errors.
   void settle() noexcept;
 
   /// Enqueues a launch. Throws DeviceError with the OpenCL status.
@@ -199,13 +198,13 @@ class Device {
     return limits_of(kernel.kernel);
   }
 
-  /// Waits for all launches so far and adds their times to `times()`.
+  /// Waits for all launches and adds their times to `times()`.
   void finish();
   const std::map<std::string, KernelTimes>& times() const { return times_; }
   void forget_times() { times_.clear(); }
 
-  /// Stores in the binary cache what has been compiled since the last call (some drivers compile at the first
-  /// launch of each local size). The destructor does it too. Never throws.
+  /// Stores in the binary cache what was compiled since the last call (some drivers compile at the first
+  /// launch of each local size). Also called by the destructor. Never throws.
   void save_programs() noexcept;
 
  private:
@@ -233,7 +232,7 @@ class Device {
   void run_empty(cl::Kernel& kernel, ProgramRecord* program, const EmptyLaunch& launch);
 
   DeviceInfo info_;
-  bool fma_ = false;  // has the instruction (kernels/lib/core/config.h)
+  bool fma_ = false;  // has the fma instruction (kernels/lib/core/config.h)
   BuildWish wish_;
   std::unique_ptr<PreparedBuilds> prepared_;
   cl::Device device_;

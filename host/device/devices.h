@@ -1,4 +1,4 @@
-// Which OpenCL devices there are, what each can do, and which ones a --device SPEC means.
+// Enumerates OpenCL devices and their capabilities, and selects those that a --device SPEC matches.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,11 +11,11 @@ namespace sundog {
 class DriverThreads;
 struct HostEnvironment;
 
-/// How a device wants to be fed (design: by what it reports, never by its name).
-enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray a lane
+/// The kind of kernel that suits a device (by what it reports, never by its name).
+enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray per lane
 
-/// What one device reports. A row exists for every device, and for every platform that has none (device =
-/// -1).
+/// A device as its driver reports it. Every device has a row, and so has every platform without devices
+/// (device = -1).
 struct DeviceInfo {
   int platform = 0, device = -1;  // as `clinfo -l` prints them
   std::string platform_name, platform_version, name, vendor, driver, version, c_version, extensions;
@@ -27,33 +27,33 @@ struct DeviceInfo {
   bool little_endian = true, compiler_available = true, available = true, host_unified_memory = false;
   DeviceClass device_class = DeviceClass::cpu;
   std::string problem;      // empty: usable
-  double estimate = 0;      // relative speed (estimate.cpp): for the default choice
-  unsigned sub_units = 0;   // not 0: a sub-device of that many compute units was asked for (/N)
-  unsigned first_unit = 0;  // of a sub-device, where earlier ones of the same device take the units before
-  std::string identity;  // the same in every process that sees it: its UUID or place on the bus; often empty
-  int rank = 0;          // of the process that has it, in a job of several
-  std::string host;      // that process's machine; empty: there is only this process
+  double estimate = 0;      // relative speed (estimate.cpp), decides the default
+  unsigned sub_units = 0;   // not 0: a sub-device of that many compute units (/N)
+  unsigned first_unit = 0;  // offset of a sub-device, after earlier ones of the same device
+  std::string identity;  // equal in every process that sees the device: its UUID or bus address; often empty
+  int rank = 0;          // of the owning process in a job
+  std::string host;      // of that process; empty: there is only one
   void* handle = nullptr;                                // cl_device_id
-  std::shared_ptr<const HostEnvironment> environment{};  // what enumerate_devices() was given
-  std::weak_ptr<DriverThreads> threads{};                // takes over those that its driver has not let go of
-  std::shared_ptr<void> context{};                       // share_context()'s; null: each Device has its own
+  std::shared_ptr<const HostEnvironment> environment{};  // passed to enumerate_devices()
+  std::weak_ptr<DriverThreads> threads{};                // adopts threads left in its driver
+  std::shared_ptr<void> context{};  // from share_context(); null: each Device has its own
 
   bool usable() const { return problem.empty() && device >= 0; }
-  /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" where
-  /// they begin with unit 4, and behind it "(rank 1 on node7)" in a job of several.
+  /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" if they
+  /// start at unit 4, and "(rank 1 on node7)" in a job of several processes.
   std::string label() const;
 };
 
-/// Every platform and device, each failure a row with its `problem`; never throws for one driver. Drivers'
-/// own settings are those of a process's first call.
+/// Lists every platform and device; failures become a row's `problem`, and no driver makes it throw. Drivers'
+/// settings are taken from the first call in a process.
 std::vector<DeviceInfo> enumerate_devices(const std::shared_ptr<const HostEnvironment>& environment);
 
-/// The devices that `specs` mean, in the order first matched, without doubles. No specs: the usable device
-/// with the greatest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device" (any
-/// case) or a name that people use (pocl, nvidia, intel, amd), each with /N, or !SPEC, or !SPEC? for what may
-/// be missing. A /N takes the next units of each device that has them. Throws DeviceError with the list of
-/// candidates when nothing matches, no match can give a /N or a !SPEC takes nothing away, UsageError for a
-/// malformed SPEC. `warnings` takes what else was likely meant otherwise: a device without the units.
+/// The devices that match `specs`, in the order first matched, without duplicates. Without specs: the usable
+/// device with the highest estimate. Grammar: P:D | cpu | gpu | accelerator | all | part of "platform/device"
+/// (case-insensitive) or a common name (pocl, nvidia, intel, amd), each with /N; or !SPEC, or !SPEC? if it
+/// may be missing. /N takes the next units of each device that has them. Throws DeviceError with the list of
+/// candidates if nothing matches, no match can provide /N, or a !SPEC excludes nothing; UsageError for a
+/// malformed SPEC. `warnings` receives other likely mistakes, such as a device without the units.
 std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,
                                        std::vector<std::string>* warnings = nullptr);
 

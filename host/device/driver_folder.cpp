@@ -1,4 +1,4 @@
-// A folder is in use while its file "lock" is locked: the kernel lets go of the lock when a process ends,
+// A folder is in use while its file "lock" is locked; the kernel releases the lock when a process ends,
 // however it ends.
 #include "device/driver_folder.h"
 
@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A descriptor that holds the folder's lock; negative, with the reason in errno, when another has it
-/// (EWOULDBLOCK), or there is none to hold.
+/// Locks the folder and returns a descriptor; negative, with the reason in errno, if another process holds
+/// the lock (EWOULDBLOCK) or locks do not work.
 int lock_folder(const fs::path& folder, int more_flags) {
   const int file = ::open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC | more_flags, 0600);
   if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
@@ -39,7 +39,7 @@ int lock_folder(const fs::path& folder, int more_flags) {
   return -1;
 }
 
-/// Old enough that its maker would have locked it by now.
+/// Old enough that its creator would have locked it.
 bool is_old(const fs::path& folder) {
   std::error_code error;
   const auto written = fs::last_write_time(folder, error);
@@ -48,7 +48,7 @@ bool is_old(const fs::path& folder) {
 
 constexpr std::string_view temporary_name = "sundog-pocl-";
 
-/// Folders in `root` whose names begin so, of processes that were killed.
+/// Removes folders in `root` with this prefix that killed processes left.
 void remove_left_over(const fs::path& root, std::string_view beginning) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(root, error)) {
@@ -60,11 +60,11 @@ void remove_left_over(const fs::path& root, std::string_view beginning) {
   }
 }
 
-// PoCL was seen to write 2 MiB for a scene's kernels; a folder with less room than the first is not chosen
-// where there is another, and one with less than the second is of no use.
+// PoCL was seen to write 2 MiB for a scene's kernels. A folder with less than ample_room is used only if
+// there is no better one; one with less than least_room is useless.
 constexpr std::uintmax_t ample_room = std::uintmax_t{32} << 20, least_room = std::uintmax_t{3} << 20;
 
-/// Bytes that can be written there; none: nobody knows.
+/// Free bytes in a folder; none: unknown.
 std::optional<std::uintmax_t> room_in(const fs::path& folder, const HostEnvironment& environment) {
   if (const auto kibibytes = fault(environment.faults, "room", "pocl"))
     return std::uintmax_t(*kibibytes) << 10;
@@ -74,20 +74,20 @@ std::optional<std::uintmax_t> room_in(const fs::path& folder, const HostEnvironm
   return space.available;
 }
 
-/// PoCL loads what it has compiled as libraries.
+/// PoCL loads compiled kernels as shared libraries.
 bool forbids_execution(const fs::path& folder) {
   struct statvfs found = {};
   return ::statvfs(folder.c_str(), &found) == 0 && (found.f_flag & ST_NOEXEC) != 0;
 }
 
-/// Bytes that a file may have; none: as many as there is room for.
+/// The limit of file size in bytes; none: unlimited.
 std::optional<std::uintmax_t> file_limit() {
   rlimit limit = {};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
   return limit.rlim_cur;
 }
 
-/// PoCL's compiler calls `ld`, and ends the process where there is none.
+/// PoCL's compiler runs `ld`, and aborts the process without it.
 bool finds_linker(const HostEnvironment& environment) {
   const std::string path = environment.driver("PATH");
   return path.empty() || has_program(path, "ld");
@@ -96,13 +96,12 @@ bool finds_linker(const HostEnvironment& environment) {
 void try_to_make(const fs::path& folder) {
   try {
     make_cache_folder(folder);
-  } catch (const IoError&) {  // then another folder is used
+  } catch (const IoError&) {  // use another folder
   }
 }
 
-/// A new folder below `root`, locked; empty: none can be made. Another process that removes folders left over
-/// may take one before it is locked: then another is made. Where the file system has no locks nobody can take
-/// one: it does as it is.
+/// Creates and locks a folder below `root`; empty on failure. Another process that removes leftovers may take
+/// it before it is locked, so this retries. On a file system without locks nobody can take it.
 std::string make_locked_below(const fs::path& root, std::string_view beginning) {
   for (int attempt = 0; attempt < 10; ++attempt) {
     std::string folder = (root / beginning).string() + "XXXXXX";
@@ -117,8 +116,8 @@ std::string make_locked_below(const fs::path& root, std::string_view beginning) 
   return "";
 }
 
-/// A new locked folder in the cache, or where that cannot be written, is full or mounted noexec, among the
-/// temporary files; empty: neither can.
+/// Creates a locked folder in the cache or, if that is not writable, full or mounted noexec, among the
+/// temporary files; empty on failure.
 std::string make_folder(const HostEnvironment& environment) {
   std::error_code error;
   const fs::path root = cache_folder(environment.cache, "pocl");
@@ -139,16 +138,16 @@ bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portabl
 DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : process_(::getpid()) {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
-    // An empty one ends PoCL's process. Another copy of the library may have set it meanwhile: that stays.
+    // PoCL aborts if it is empty. Another copy of the library may have set it meanwhile: keep that.
     if (environment.drivers.contains("POCL_CACHE_DIR")) ::unsetenv("POCL_CACHE_DIR");
     const std::string folder = make_folder(environment);
     if (folder.empty()) return;
     own_ = folder;
     ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
     const bool temporary = fs::path(folder).filename().string().starts_with(temporary_name);
-    if (temporary) ::setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);  // the user's stays
+    if (temporary) ::setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);  // keep the user's
   } catch (const std::exception&) {
-    // PoCL's own folder does as well, as long as it can be written and nothing damages it.
+    // PoCL's own folder works too, while it is writable and undamaged.
   }
 }
 

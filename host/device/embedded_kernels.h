@@ -1,4 +1,4 @@
-// The kernel files that the build embedded (cmake/EmbedFiles.cmake), by their path under kernels/.
+// Kernel files embedded by the build (cmake/EmbedFiles.cmake), by path under kernels/.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace sundog {
 
-/// A kernel file was asked for that is not there.
+/// A requested kernel file does not exist.
 struct MissingKernelFile : BuildError {
   using BuildError::BuildError;
 };
@@ -18,11 +18,10 @@ struct EmbeddedKernel {
   std::string_view path, text;  // "lib/rng.cl"
 };
 
-/// All of them, sorted by path.
+/// All files, sorted by path.
 std::span<const EmbeddedKernel> embedded_kernels();
 
-/// The file's text, from `folder` instead where there is one, for work on the kernels. Throws
-/// MissingKernelFile.
+/// A file's text, read from `folder` if given, for kernel development. Throws MissingKernelFile.
 std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder = {});
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Launches that do nothing, and how other processes are asked for them. Internal to the device layer.
+// Launches without work, and their text form for other processes. Internal to the device layer.
 #pragma once
 #include <string>
 
@@ -6,11 +6,11 @@
 
 namespace sundog {
 
-/// As one line, and back.
+/// Conversion to one line and back.
 std::string to_line(const EmptyLaunch& launch);
 EmptyLaunch empty_launch_of(const std::string& line);
 
-/// Waits for its end. Returns an OpenCL status.
+/// Launches and waits. Returns an OpenCL status.
 cl_int launch_nothing(const cl::Context& context, const cl::CommandQueue& queue, cl::Kernel& kernel,
                       const EmptyLaunch& launch);
 

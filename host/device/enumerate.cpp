@@ -1,4 +1,4 @@
-// Asks every platform and device what it is. Each failure becomes a row's `problem`; no driver ends the list.
+// Queries every platform and device. Failures become a row's `problem`; no driver ends the enumeration.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <fmt/format.h>
@@ -39,8 +39,7 @@ std::string platform_text(cl_platform_id platform, cl_platform_info what) {
   return trimmed(text);
 }
 
-/// Reads one device's properties; a property without which it cannot be used is noted in `problem` when it
-/// fails.
+/// Reads a device's properties; a missing essential property is noted in `problem`.
 struct Query {
   cl_device_id device;
   std::string problem;
@@ -71,13 +70,13 @@ struct Query {
 };
 
 std::string type_name(cl_device_type type) {
-  // Oclgrind claims every type at once; the first here counts.
+  // Oclgrind claims all types; the first counts.
   if (type & CL_DEVICE_TYPE_CPU) return "cpu";
   if (type & CL_DEVICE_TYPE_GPU) return "gpu";
   return type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "custom";
 }
 
-/// "OpenCL C 1.2 ..." speaks a language of at least 1.2.
+/// "OpenCL C 1.2 ..." means a version of at least 1.2.
 bool speaks_c12(const std::string& c_version) {
   int major = 0, minor = 0;
   if (std::sscanf(c_version.c_str(), "OpenCL C %d.%d", &major, &minor) != 2) return false;
@@ -125,8 +124,7 @@ void read_figures(Query& query, DeviceInfo& info) {
   info.host_unified_memory = query.optional<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY, CL_FALSE) != CL_FALSE;
 }
 
-/// Two processes of one machine that see the same device get the same text. Drivers that cannot tell give
-/// none.
+/// Equal for processes of one machine that see the same device. Empty if the driver cannot identify it.
 std::string identity(cl_device_id device, const std::string& extensions) {
   const auto hex = [&](cl_device_info what, std::size_t size) {
     std::array<unsigned char, 16> bytes{};
@@ -134,7 +132,7 @@ std::string identity(cl_device_id device, const std::string& extensions) {
     return fmt::format("{:02x}",
                        fmt::join(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), ""));
   };
-  // From extensions, by number: older headers have no names for them.
+  // From extensions, by value: older headers lack the names.
   constexpr cl_device_info device_uuid = 0x106A, pci_bus_info = 0x410F, pci_bus_nv = 0x4008,
                            pci_slot_nv = 0x4009;
   const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
@@ -182,8 +180,8 @@ void list_platform(DeviceInfo platform, cl_platform_id id, std::vector<DeviceInf
   }
 }
 
-// A CPU driver that chooses the work-group itself may take thousands of work-items, whose private memory all
-// lies on one thread's stack: it is reserved, and taken only where it is used.
+// A CPU driver that chooses the work-group size may use thousands of work-items, whose private memory lies on
+// one thread's stack. The size is only reserved, not allocated.
 constexpr std::size_t thread_stack = std::size_t{256} << 20;
 
 void enlarge_thread_stacks() {
@@ -196,11 +194,11 @@ void enlarge_thread_stacks() {
   pthread_attr_destroy(&attributes);
 }
 
-/// Drivers' settings that must stand before the first OpenCL call; what the user set stays. They know no
-/// other way than the process's own variables.
+/// Sets drivers' variables before the first OpenCL call, keeping the user's. Drivers offer no other interface
+/// than the process's environment.
 bool prepare_drivers(const HostEnvironment& environment) {
   for (const auto& [name, value] : environment.drivers)
-    setenv(name.c_str(), value.c_str(), name == "PATH" ? 1 : 0);  // folders may have come to it
+    setenv(name.c_str(), value.c_str(), name == "PATH" ? 1 : 0);  // folders may have been appended
   if (!environment.build_log.empty()) bypass_driver_caches();
   (void)driver_folder(environment);
   describe_machine_to_drivers(environment);
@@ -212,11 +210,11 @@ bool prepare_drivers(const HostEnvironment& environment) {
 }  // namespace
 
 std::vector<DeviceInfo> enumerate_devices(const EnvironmentPtr& environment) {
-  // Drivers load at the first call, and PoCL lets a second thread in before it is ready.
+  // Drivers load at the first call, and PoCL admits a second thread before it is ready.
   const ProcessLock lock;
   [[maybe_unused]] static const bool prepared = prepare_drivers(value_of(environment));
   cl_uint count = 0;
-  // No platform at all is an error status too (CL_PLATFORM_NOT_FOUND_KHR): an empty list says the same.
+  // No platform is an error status too (CL_PLATFORM_NOT_FOUND_KHR); an empty list says the same.
   if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
   std::vector<cl_platform_id> platforms(count);
   if (clGetPlatformIDs(count, platforms.data(), nullptr) != CL_SUCCESS) return {};

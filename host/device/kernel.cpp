@@ -1,4 +1,4 @@
-// Kernels of a built program, and whether the host's idea of their parameters is the kernel's own.
+// Creates kernels of a built program, and checks the host's argument types against the kernel's.
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +15,7 @@
 namespace sundog {
 namespace {
 
-/// One spelling for the types that have several.
+/// Normalises types with several spellings.
 std::string plain_type(std::string type) {
   static const std::map<std::string, std::string> spellings = {
       {"unsigned int", "u32"}, {"uint", "u32"}, {"int", "i32"}};

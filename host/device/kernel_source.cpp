@@ -1,6 +1,5 @@
-// Include expansion. A file is not needed again while every #if is open under which it was included; behind
-// them the compiler may not have seen it, so it is expanded anew next time, and a guard of its own keeps it
-// single.
+// Include expansion. Within the #if branches under which a file was included, it is not included again; after
+// them, the compiler may not have seen it, so it is expanded anew, and its own guard keeps it single.
 #include "device/kernel_source.h"
 
 #include <fmt/format.h>
@@ -18,7 +17,7 @@
 namespace sundog {
 namespace {
 
-/// `# word rest` of a preprocessor line; word is empty for any other line.
+/// `# word rest` of a preprocessor line; word is empty for other lines.
 struct Directive {
   std::string word, rest;
 };
@@ -34,7 +33,7 @@ Directive parse_directive(const std::string& line) {
   return directive;
 }
 
-/// The path of `#include "path"`; empty for anything else.
+/// The path of `#include "path"`; empty for other directives.
 std::string included_path(const Directive& directive) {
   if (directive.word != "include" || !directive.rest.starts_with('"')) return {};
   return directive.rest.substr(1, directive.rest.find('"', 1) - 1);
@@ -107,7 +106,8 @@ class Expander {
     }
   }
 
-  /// Opens and closes the branches of an #if. A guard around a file is none: behind it all is seen.
+  /// Enters and leaves branches of an #if. A guard around a file does not count: everything after it has been
+  /// seen.
   void follow_conditional(const std::string& word, int guard_depth, int& depth) {
     const bool begins = word.starts_with("if"), turns = word.starts_with("el"), ends = word == "endif";
     if ((turns || ends) && depth > guard_depth) seen_.pop_back();
@@ -132,8 +132,8 @@ class Expander {
 
   const GeneratedFiles& generated_;
   const std::filesystem::path& folder_;
-  std::vector<std::string> open_;               // the files being expanded, outermost first
-  std::vector<std::set<std::string>> seen_{1};  // the files seen in each branch of an #if that is open
+  std::vector<std::string> open_;               // files being expanded, outermost first
+  std::vector<std::set<std::string>> seen_{1};  // files seen in each open #if branch
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-/// Where hwloc looks for processors: any of these is enough for it.
+/// Whether hwloc can find processors; any of these files is enough.
 bool has_topology() {
   for (const char* folder : {"/sys/bus/cpu/devices", "/sys/devices/system/cpu"})
     for (const char* file : {"package_cpus", "core_cpus", "core_siblings", "thread_siblings"})
@@ -28,7 +28,7 @@ bool user_describes_machine(const HostEnvironment& environment) {
   return false;
 }
 
-/// One memory and its processors, in hwloc's language.
+/// One NUMA node and its processors, in hwloc's syntax.
 std::string synthetic_machine() {
   const auto pages = std::max(0L, ::sysconf(_SC_PHYS_PAGES)), page = std::max(0L, ::sysconf(_SC_PAGESIZE));
   return fmt::format("numa:1(memory={}) pu:{}",

@@ -1,4 +1,4 @@
-// See nvidia.h. The log, a line each (older compilers begin the second with spaces only):
+// See nvidia.h. The log has these lines (older compilers indent the second with spaces only):
 //     ptxas info    : Compiling entry function 'trace_rays' for 'sm_90'
 //     ptxas info    : Function properties for trace_rays
 //     ptxas         .     512 bytes stack frame, 16 bytes spill stores, 24 bytes spill loads
@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-// Allocation of registers, from compute capability 3.0 on.
+// Register allocation since compute capability 3.0.
 constexpr std::uint64_t register_step = 256, schedulers = 4;
 
 /// The number before `words` in the line.
@@ -37,7 +37,7 @@ std::map<std::string, PtxasFigures> read_ptxas_log(const std::string& log) {
     std::smatch match;
     if (std::regex_search(line, match, entry)) {
       kernel = &kernels[match[1]];
-      *kernel = {};  // the last of several devices' counts
+      *kernel = {};  // of several devices, keep the last
     }
     if (!kernel) continue;
     add(kernel->stack, number_before(line, "bytes stack frame"));

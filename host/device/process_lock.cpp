@@ -21,14 +21,14 @@ std::mutex& own_lock() {
 ProcessLock::ProcessLock() noexcept : file_(-1) {
   own_lock().lock();
   file_ = ::open("/proc/self/status", O_RDONLY | O_CLOEXEC);
-  // Each open file has a lock of its own, also two of the same process.
+  // Each open file has its own lock, even within a process.
   while (file_ >= 0 && ::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
   }
 }
 
 ProcessLock::~ProcessLock() {
   if (file_ >= 0) {
-    ::flock(file_, LOCK_UN);  // also where a fork() has copied the descriptor meanwhile
+    ::flock(file_, LOCK_UN);  // even if fork() has copied the descriptor meanwhile
     ::close(file_);
   }
   own_lock().unlock();

@@ -1,11 +1,11 @@
-// One lock for a whole process. Internal to the device layer.
+// A process-wide lock. Internal to the device layer.
 #pragma once
 
 namespace sundog {
 
-/// Held while it lives, by one thread of the process at a time. Copies of this library that are loaded side
-/// by side share it, which a mutex of the library's own would not: it is a file lock on the process's entry
-/// in /proc. Where /proc is not mounted only the threads of one copy take turns.
+/// Held during its lifetime, by one thread of the process at a time. Copies of this library loaded side by
+/// side share it, unlike a mutex: it is a file lock on the process's entry in /proc. Without /proc it only
+/// works within one copy.
 class ProcessLock {
  public:
   ProcessLock() noexcept;
@@ -14,7 +14,7 @@ class ProcessLock {
   ProcessLock& operator=(const ProcessLock&) = delete;
 
  private:
-  int file_;  // negative: there is none
+  int file_;  // negative: none
 };
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Building: from the binary cache where it can be trusted, else by the driver's compiler.
+// Builds programs: from the binary cache if it can be trusted, else with the driver's compiler.
 #include "device/program.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace sundog {
 namespace {
 
-/// Everything that may change what the compiler makes. PoCL and Intel's driver read the named variables.
+/// Everything that may affect the compiler's output. PoCL and Intel's driver read the named variables.
 std::string program_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
   std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n", info.platform_name, info.platform_version,
                                 info.name, info.driver, info.version, options);
@@ -28,7 +28,7 @@ std::string program_key(const DeviceInfo& info, const std::string& options, cons
   return key + source;
 }
 
-/// The folder that a variable names, made.
+/// Creates the folder that a variable names.
 std::filesystem::path made_folder(const char* variable, const std::string& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
@@ -38,7 +38,7 @@ std::filesystem::path made_folder(const char* variable, const std::string& folde
   return folder;
 }
 
-/// HostEnvironment::dump_folder keeps each program's final text there.
+/// Writes a program's final source to HostEnvironment::dump_folder.
 void dump_source(const std::string& folder, const std::string& entry, const std::string& source) {
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(entry).stem().string();
@@ -47,8 +47,8 @@ void dump_source(const std::string& folder, const std::string& entry, const std:
       source);
 }
 
-/// HostEnvironment::build_log keeps what the compiler said of each program there, and of what. One that is
-/// built again with other options has a file for each.
+/// Writes a program's compiler log and options to HostEnvironment::build_log. A program built with several
+/// option sets gets a file for each.
 void keep_log(const ProgramRecord& record, const std::string& options, const std::string& log,
               cl_int status) {
   const std::string& folder = value_of(record.device.environment).build_log;
@@ -70,7 +70,7 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
   return log;
 }
 
-/// The log's first line that speaks of an error, else its first line.
+/// The log's first line about an error, else its first line.
 std::string first_error(const std::string& log) {
   std::istringstream in(log);
   std::string first;
@@ -81,7 +81,7 @@ std::string first_error(const std::string& log) {
   return first.empty() ? "the compiler gave no reason" : first;
 }
 
-/// Whether the driver can make kernels of what its compiler made.
+/// Whether the driver can create kernels of the compiled program.
 bool kernels_work(const cl::Program& program) {
   std::istringstream names(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
   cl_int status = CL_INVALID_PROGRAM_EXECUTABLE;
@@ -92,7 +92,7 @@ bool kernels_work(const cl::Program& program) {
   return status == CL_SUCCESS;
 }
 
-/// The program of a cached binary; null when the driver will not have it.
+/// Creates a program from a cached binary; null if the driver rejects it.
 cl::Program program_from_binary(const cl::Context& context, const cl::Device& device,
                                 const std::string& binary, const std::string& options) {
   const cl::Program::Binaries binaries{{binary.begin(), binary.end()}};
@@ -105,8 +105,8 @@ cl::Program program_from_binary(const cl::Context& context, const cl::Device& de
   return program;
 }
 
-/// Builds a program of nothing: the driver reads what it needs to build any. A name of its own, so that
-/// the driver does not have it in a cache.
+/// Builds a trivial program, so that the driver loads what it needs to build. A unique name keeps it out of
+/// the driver's cache.
 cl_int build_nothing(const cl::Context& context, const cl::Device& device, const std::string& name,
                      const std::string& options) {
   cl_int status = CL_SUCCESS;
@@ -115,7 +115,7 @@ cl_int build_nothing(const cl::Context& context, const cl::Device& device, const
   return status == CL_SUCCESS ? nothing.build({device}, options.c_str()) : status;
 }
 
-/// The program of a binary that another process compiled; null when the driver will not have it.
+/// Creates a program from a binary compiled by another process; null if the driver rejects it.
 cl::Program program_of_parts(const cl::Context& context, const cl::Device& device,
                              const std::string& compiled) {
   std::vector<cl_int> statuses;
@@ -128,7 +128,7 @@ cl::Program program_of_parts(const cl::Context& context, const cl::Device& devic
   return status == CL_SUCCESS && kernels_work(whole) ? whole : cl::Program();
 }
 
-/// Compiles in another process while this one's driver makes itself ready; false: it has to be done here.
+/// Compiles in another process while this one's driver initialises; false: compile it here.
 bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                     const std::string& source) {
   auto process = CompileProcess::start(record.device, source, record.options);
@@ -139,7 +139,7 @@ bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl:
   return record.program() != nullptr;
 }
 
-/// The program of the binary that another process has built of the same; null where there is none.
+/// Creates the program from another process's binary, if it has built the same; else null.
 cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record, const cl::Context& context,
                           const cl::Device& device) {
   if (!prepared.begun || prepared.begun->key != record.key) return {};
@@ -148,7 +148,7 @@ cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record,
   return built.empty() ? cl::Program() : program_from_binary(context, device, built, record.options);
 }
 
-/// The cache's program of the key, which may have been read before.
+/// The cached program of `key`, perhaps already read.
 std::optional<CachedProgram> cached_program(const std::filesystem::path& file, const std::string& key,
                                             PreparedBuilds& prepared) {
   std::optional<PreparedBuilds::Found> found = std::exchange(prepared.found, std::nullopt);
@@ -156,12 +156,12 @@ std::optional<CachedProgram> cached_program(const std::filesystem::path& file, c
   return load_program(file, key);
 }
 
-/// Whether a build is to give the compiler's log, which neither a cache nor another process has.
+/// Whether a build must produce the compiler's log, which neither a cache nor another process has.
 bool wants_log(const HostEnvironment& environment, const BuildWish& wish) {
   return wish.from_source || !environment.build_log.empty();
 }
 
-/// Whether the build failed by the user's options: nothing at all can be built with them.
+/// Whether the user's options broke the build: nothing can be built with them.
 bool options_are_bad(const ProgramRecord& record, const cl::Context& context, const cl::Device& device) {
   return !value_of(record.device.environment).build_options.empty() &&
          build_nothing(context, device, hash128(record.key), record.options) != CL_SUCCESS;
@@ -188,12 +188,12 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
       report.log);
 }
 
-/// The device as faults name it: "P:D".
+/// The device's name in faults: "P:D".
 std::string place_of(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
 
-/// Oclgrind's optimiser leaves calls in the program that its interpreter does not know (llvm.bitreverse,
-/// noalias scopes): such a program builds, but gives no kernels. Without optimisation it runs. That program
-/// is not cached: the failure may pass, and the slow kernels would stay.
+/// Oclgrind's optimiser leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes):
+/// such a program builds, but has no kernels. Without optimisation it works. That program is not cached,
+/// because the failure may be transient and the kernels are slow.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {
   const auto makes_kernels = [&](const std::string& options) {
@@ -275,7 +275,7 @@ bool begin_program(const DeviceInfo& info, const std::string& source, const Buil
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();
   if (is_pocl(info) && !driver_folder(environment).problem(environment).empty()) return false;
-  // A part of a device has no processors for it to spare.
+  // A sub-device's build has no processors to spare.
   if (wants_log(environment, wish) || info.sub_units > 0 || is_program_cached(info, source, wish, prepared))
     return false;
   std::optional<CompileProcess> process = CompileProcess::start(info, source, options, &launch);
@@ -285,7 +285,7 @@ bool begin_program(const DeviceInfo& info, const std::string& source, const Buil
 
 void save_program(ProgramRecord& record) {
   const bool complete = std::ranges::includes(record.stored_variants, record.launched_variants);
-  // What was never launched is not worth it: PoCL would compile it now to give its binary out.
+  // A program that was never launched is not stored: PoCL would have to compile it now.
   if (record.cache_file.empty() || record.launched_variants.empty() || (record.stored && complete)) return;
   cl_int status = CL_SUCCESS;
   const auto binaries = record.program.getInfo<CL_PROGRAM_BINARIES>(&status);

@@ -1,4 +1,4 @@
-// A built program and what its entry in the binary cache holds. Internal to the device layer.
+// A built program and the contents of its entry in the binary cache. Internal to the device layer.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -15,17 +15,17 @@ namespace sundog {
 struct ProgramRecord {
   cl::Program program;
   DeviceInfo device;
-  std::string entry;                 // the kernel file, for messages
+  std::string entry;                 // kernel file, for messages
   std::string source;                // expanded
-  std::string options;               // that it is built with
-  std::string key;                   // all that the binary depends on
-  std::filesystem::path cache_file;  // empty: there is no cache to store it in
-  bool stored = false;               // the cache holds this program, with the machine code of stored_variants
+  std::string options;               // build options
+  std::string key;                   // everything that the binary depends on
+  std::filesystem::path cache_file;  // empty: not cached
+  bool stored = false;               // the cache holds this program, with machine code for stored_variants
   std::set<std::string> stored_variants, launched_variants;
 };
 
-/// What is there for the next build of a Device: the program that the cache was last found to hold, and one
-/// that another process builds.
+/// Prepared for a Device's next build: the program last found in the cache, and one that another process is
+/// building.
 struct PreparedBuilds {
   struct Found {
     std::string key;
@@ -39,23 +39,23 @@ struct PreparedBuilds {
   std::optional<Begun> begun;
 };
 
-/// Loads the program from the cache, takes what another process has built, or compiles it. Throws BuildError,
+/// Loads the program from the cache, takes another process's result, or compiles it. Throws BuildError,
 /// DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
                                              const DeviceInfo& info, const std::string& entry,
                                              const std::string& source, const BuildWish& wish,
                                              PreparedBuilds& prepared, BuildReport& report);
 
-/// Whether build_program() would find it in the cache. The next one need not read it again.
+/// Whether build_program() would find it in the cache. Keeps it for the next build.
 bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
                        PreparedBuilds& prepared);
 
-/// Has another process build it for build_program(), with machine code for `launch`. Returns whether one
-/// does.
+/// Starts building for build_program() in another process, with machine code for `launch`. Returns whether it
+/// started.
 bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared);
 
-/// Stores the program when the cache lacks something that was launched. Throws DeviceError, IoError.
+/// Updates the cache if it lacks a launched variant. Throws DeviceError, IoError.
 void save_program(ProgramRecord& record);
 
 }  // namespace sundog

@@ -1,6 +1,6 @@
-// The file: magic and format version, the checksum of all that follows, three sizes, then key, variants and
-// binary as one zlib stream. The key, which holds the kernel's source, stands in it whole, so that two keys
-// with one hash stay apart; packed, a file is a quarter as large.
+// File format: magic and version, a checksum of the rest, three sizes, then key, variants and binary as one
+// zlib stream. The key, which contains the kernel's source, is stored in full, so that hash collisions are
+// detected; compression reduces the file to a quarter.
 #include "device/program_cache.h"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ std::set<std::string> split(const std::string& text) {
   return lines;
 }
 
-/// Takes fields off the front of a file's bytes; `good` turns false, and stays so, where they end too soon.
+/// Reads fields from the front; `good` becomes false at a premature end.
 struct Reader {
   std::string_view rest;
   bool good = true;
@@ -63,8 +63,8 @@ struct Reader {
   }
 };
 
-/// Deletes the files used longest ago until the folder is within its size. Another process may do the same:
-/// losing is fine.
+/// Deletes the least recently used files until the folder is small enough. Races with other processes are
+/// harmless.
 void prune(const fs::path& folder, std::uintmax_t folder_bytes, const fs::path& keep) {
   struct Entry {
     fs::file_time_type used;
@@ -120,7 +120,7 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
   if (!known || !reader.good || checksum != hash128(reader.rest)) return std::nullopt;
   const std::size_t key_size = reader.take_size(), variants_size = reader.take_size(),
                     binary_size = reader.take_size();
-  constexpr std::size_t most_growth = 1100;  // of zlib
+  constexpr std::size_t most_growth = 1100;  // zlib's maximum
   const std::size_t most_unpacked = std::min<std::size_t>(most_bytes, most_growth * reader.rest.size());
   if (!reader.good || key_size != key.size() || variants_size > most_unpacked || binary_size > most_unpacked)
     return std::nullopt;
@@ -130,7 +130,7 @@ std::optional<CachedProgram> load_program(const fs::path& file, const std::strin
   const std::string_view stored_key = fields.take(key_size);
   const std::string_view variants = fields.take(variants_size), binary = fields.take(binary_size);
   if (!fields.good || !fields.rest.empty() || stored_key != key || binary.empty()) return std::nullopt;
-  std::error_code ignored;  // the time of last use, for prune()
+  std::error_code ignored;  // records the last use, for prune()
   fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   return CachedProgram{std::string(binary), split(std::string(variants))};
 }

@@ -1,4 +1,4 @@
-// Compiled programs on disk: one file a program under HostEnvironment::cache/kernels, so that a warm start
+// Compiled programs on disk, one file each under HostEnvironment::cache/kernels, so that a warm start
 // compiles nothing.
 #pragma once
 #include <filesystem>
@@ -10,8 +10,8 @@ namespace sundog {
 
 struct HostEnvironment;
 
-/// A file's content. `variants` are the launches (kernel and local size) whose machine code the binary holds:
-/// some drivers compile a kernel again for each local size, at its first launch.
+/// A file's content. `variants` are the launches (kernel and local size) with machine code in the binary:
+/// some drivers recompile a kernel for each local size, at its first launch.
 struct CachedProgram {
   std::string binary;
   std::set<std::string> variants;
@@ -20,17 +20,17 @@ struct CachedProgram {
 /// 128-bit FNV-1a as 32 hexadecimal digits.
 std::string hash128(std::string_view bytes);
 
-/// Where the program of `key` is kept; empty without a cache folder, or where kernels are not to be kept.
+/// The file for the program of `key`; empty without a cache folder, or if kernels are not cached.
 std::filesystem::path program_cache_file(const HostEnvironment& environment, const std::string& key);
 
-/// Makes the folder of `file` if need be; why nothing can be stored there, or nothing.
+/// Creates the folder of `file` if needed; returns why nothing can be stored there, or nothing.
 std::optional<std::string> cannot_store(const std::filesystem::path& file);
 
-/// The program stored for exactly this key; nothing when the file is missing, damaged, of another format or
-/// of another key.
+/// The program stored for exactly this key; nothing if the file is missing, damaged, or has another format or
+/// key.
 std::optional<CachedProgram> load_program(const std::filesystem::path& file, const std::string& key);
 
-/// Replaces the file as a whole, and removes the files used longest ago while the folder holds more than
+/// Replaces the file atomically, and removes the least recently used files while the folder exceeds
 /// `folder_bytes`. Throws IoError.
 void store_program(const std::filesystem::path& file, const std::string& key, const CachedProgram& program,
                    std::uintmax_t folder_bytes = 256u << 20);

@@ -1,4 +1,4 @@
-// The --device grammar over rows of devices; knows no OpenCL.
+// Implements the --device grammar on rows of devices, without OpenCL.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,20 +29,20 @@ std::optional<unsigned> whole_number(std::string_view text) {
   return value;
 }
 
-/// Of no device: it stands in the names of many.
+/// Numbers match no device, because they occur in many names.
 bool is_number(std::string_view text) {
   return text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 struct Spec {
   std::string text;     // as given
-  std::string pattern;  // lower case, without ! and /N
+  std::string pattern;  // in lower case, without ! and /N
   bool exclude = false;
-  bool may_miss = false;   // an exclusion's: with a ? at its end
+  bool may_miss = false;   // of an exclusion: has a trailing ?
   unsigned sub_units = 0;  // 0: the whole device
 };
 
-/// A final "/digits" is the sub-device's size; any other slash belongs to the part of "platform/device".
+/// A trailing "/digits" is the sub-device's size; other slashes belong to "platform/device".
 Spec parse_spec(const std::string& text) {
   Spec spec{text, lower(text), text.starts_with('!')};
   if (spec.exclude) spec.pattern.erase(0, 1);
@@ -69,7 +69,7 @@ Spec parse_spec(const std::string& text) {
   return spec;
 }
 
-/// Names that people use, where no platform and no device has them.
+/// Common names that occur in no platform's or device's name.
 bool is_called(const std::string& name, const DeviceInfo& device) {
   if (name == "pocl") return is_pocl(device);
   const std::string vendor = lower(device.vendor);
@@ -107,7 +107,7 @@ bool same_device(const DeviceInfo& a, const DeviceInfo& b) {
   return a.platform == b.platform && a.device == b.device;
 }
 
-/// Why a device cannot give the part that a /N asks for beside what is chosen of it; empty when it can.
+/// Why a device cannot provide the /N part beside those already chosen; empty if it can.
 std::string refusal(const DeviceInfo& device, const Spec& spec, const std::vector<DeviceInfo>& chosen) {
   unsigned taken = 0;
   for (const DeviceInfo& other : chosen) {
@@ -126,7 +126,7 @@ std::string refusal(const DeviceInfo& device, const Spec& spec, const std::vecto
   return {};
 }
 
-/// The next units of the device. All of one that cannot be split, or has one unit, are the device itself.
+/// The next units of the device; the device itself for all units of one that cannot be split.
 DeviceInfo part(DeviceInfo device, unsigned units, const std::vector<DeviceInfo>& chosen) {
   if (units == device.compute_units && device.max_sub_devices < 2) return device;
   for (const DeviceInfo& other : chosen)
@@ -136,7 +136,7 @@ DeviceInfo part(DeviceInfo device, unsigned units, const std::vector<DeviceInfo>
   return device;
 }
 
-/// The usable devices that one SPEC means. Throws DeviceError when there are none.
+/// The usable devices that one SPEC matches. Throws DeviceError if there are none.
 std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& spec) {
   std::vector<DeviceInfo> found;
   for (const DeviceInfo& device : all)
@@ -156,7 +156,7 @@ struct Selection {
   std::vector<std::string> warnings;
 };
 
-/// Adds what one SPEC means of `candidates`. Those that cannot give the part it asks for are warned of while
+/// Adds the matches of one SPEC in `candidates`. Warns of those that cannot provide the requested part, if
 /// another can.
 void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& candidates) {
   std::vector<DeviceInfo>& chosen = selection.devices;
@@ -176,7 +176,7 @@ void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& 
   for (const std::string& why : refused) selection.warnings.push_back(why + "; it is left out");
 }
 
-/// What takes nothing away would leave a render on the device that was not wanted.
+/// An exclusion without effect would leave a render on the unwanted device.
 void check_exclusions(std::span<const DeviceInfo> all, const std::vector<Spec>& specs) {
   for (const Spec& spec : specs)
     if (spec.exclude && !spec.may_miss && std::ranges::none_of(all, [&](const DeviceInfo& device) {

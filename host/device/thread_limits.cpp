@@ -1,4 +1,4 @@
-// What there is room for is tried: a container's limit on threads is nowhere to be read.
+// Tests limits by starting threads, because a container's thread limit cannot be queried.
 #include "device/thread_limits.h"
 
 #include <fmt/format.h>
@@ -13,9 +13,9 @@
 namespace sundog {
 namespace {
 
-// Beside those of a driver, one a processor: a frame's own. A process that compiles beside it has as many.
+// Threads of a frame beside the driver's, one per processor. A concurrent compile process needs as many.
 constexpr unsigned frame_threads = 4;
-// Program, libraries and compiler without stacks, beyond what is there already: with PoCL 3.1 320 MiB in all.
+// Memory of program, libraries and compiler beyond the current use, without stacks (PoCL 3.1: 320 MiB total).
 constexpr std::size_t other_memory = std::size_t{256} << 20;
 
 void* wait_for_all(void* all) {
@@ -23,7 +23,7 @@ void* wait_for_all(void* all) {
   return nullptr;
 }
 
-/// Whether so many more threads can be there at once.
+/// Whether this many additional threads can exist.
 bool can_start(unsigned count) {
   pthread_attr_t attributes;
   if (::pthread_attr_init(&attributes) != 0) return false;

@@ -1,7 +1,7 @@
-// Plain kernels: OpenCL C 1.2 of one path, without goto, switch, recursion and pointers to pointers, with a
-// few words more. From text to a tree with types; what is not understood is refused.
-//   UNIFORM T x               one value for all lanes: of a parameter or a member
-//   EACH_ALIKE(T, x, value) s does s for each different value of `value`, in the lanes that have it
+// Parses plain kernels: OpenCL C 1.2 for one path, without goto, switch, recursion and pointers to pointers,
+// plus a few keywords. In: text. Out: a typed tree; unknown constructs are rejected.
+//   UNIFORM T x               one value for all lanes; for a parameter or a member
+//   EACH_ALIKE(T, x, value) s runs s for each distinct value of `value`, in the lanes that have it
 //   any(c)                    whether c holds in some lane
 //   if (HAS_X && ...)         features are taken out by the preprocessor; HAVING(HAS_X) T m; for members
 // In interfaces, to what is written by hand:
@@ -16,8 +16,8 @@
 
 namespace sundog::spmd {
 
-/// Throws BuildError with the place. Functions of the files that `is_plain` is false of are not read, but
-/// may be called with what is uniform.
+/// Throws BuildError with the place. Skips functions of files for which `is_plain` is false, which may be
+/// called with uniform arguments.
 Program parse(const Source& source, const std::function<bool(const std::string&)>& is_plain);
 
 }  // namespace sundog::spmd

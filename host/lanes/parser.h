@@ -1,4 +1,4 @@
-// The parser: a recursive descent in three files, declarations, statements and expressions.
+// The recursive-descent parser, in three files: declarations, statements and expressions.
 #pragma once
 #include <set>
 
@@ -12,7 +12,7 @@ class Parser {
   Program program();
 
  private:
-  // Words.
+  // Tokens.
   const Token& word(std::size_t ahead = 0) const;
   const Place& place() const { return word().place; }
   bool at(std::string_view text) const { return word().is(text); }
@@ -34,7 +34,7 @@ class Parser {
   void parameters(Function& f);
   bool begins_type(std::size_t ahead = 0) const;
   Type base_type();
-  /// `type *const restrict`, then in declarators `name[3]`.
+  /// Parses `type *const restrict`, then `name[3]` in declarators.
   Type pointed(Type type);
   Type lengthened(Type type);
   const Structure* made_structure(std::string named, Structure&& s);
@@ -84,10 +84,10 @@ class Parser {
   std::map<std::string, Type> types_;
   std::map<std::string, Type> constants_;
   std::vector<std::map<std::string, const Variable*>> scopes_;
-  const Function* function_ = nullptr;  // the one that is being read
+  const Function* function_ = nullptr;  // the function being parsed
 };
 
-/// The strength of a binary operator, 0 for others.
+/// The precedence of a binary operator, 0 for other tokens.
 int strength_of(const std::string& sign);
 
 }  // namespace sundog::spmd

@@ -1,5 +1,5 @@
-// The C preprocessor, as far as plain kernels and the headers of kernels/shared need it: includes (each file
-// once), conditions, macros with and without arguments, ##. No strings.
+// A C preprocessor for plain kernels and the headers of kernels/shared: includes (each file once),
+// conditions, macros with and without arguments, ##. No strings.
 #pragma once
 #include <deque>
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace sundog::spmd {
 
-/// The text of a kernel file by its path; throws where there is none.
+/// Returns a kernel file's text; throws if there is none.
 using ReadFile = std::function<std::string(const std::string& path)>;
 
 struct Source {
@@ -17,8 +17,8 @@ struct Source {
   std::deque<std::string> files;
 };
 
-/// Throws BuildError with the place. A constant of one number keeps its name where a file that `keeps_names`
-/// of a path is true of defines it.
+/// Throws BuildError with the place. Constants that are a single number keep their name if `keeps_names` is
+/// true for the path of the file that defines them.
 Source preprocess(const std::string& path, const ReadFile& read,
                   const std::function<bool(const std::string&)>& keeps_names);
 

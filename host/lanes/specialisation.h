@@ -1,4 +1,4 @@
-// What varies from lane to lane in a function, for one kind of call, and where masks are needed.
+// Infers, for one kind of call of a function, what varies between lanes and where masks are needed.
 #pragma once
 #include <set>
 
@@ -6,14 +6,14 @@
 
 namespace sundog::spmd {
 
-/// Control about a place: lanes part in a divergent one.
+/// Control flow around a place; lanes diverge in a divergent one.
 struct Frame {
   enum class Kind { branch, loop, round, alike };
   Kind kind = Kind::branch;
   const Statement* node = nullptr;
   int part = 0;  // of a branch: 0 then, 1 else
   bool divergent = false;
-  std::string only;  // of a branch that no lane leaves: the condition that its lanes have met
+  std::string only;  // of a branch that no lane leaves: the condition of its lanes
 };
 using Frames = std::vector<Frame>;
 
@@ -21,36 +21,36 @@ class Specialisations;
 
 class Specialisation {
  public:
-  /// `varying`: of each parameter.
+  /// `varying`: one per parameter.
   Specialisation(Specialisations& all, const Function& function, std::vector<bool> varying);
 
-  /// Repeats until nothing changes.
+  /// Iterates to a fixed point.
   void analyse();
 
-  /// Whether the value of `e` varies. Adds to `cost`; notes what is assigned.
+  /// Whether `e` varies. Adds to `cost`; records assignments.
   bool varies(const Expression& e, const Frames& frames);
   bool varies(const Variable* v) const { return varying_.contains(v); }
-  /// The variable that an lvalue is part of, and whether it lies behind a pointer.
+  /// The variable that an lvalue is part of, and whether it is reached through a pointer.
   struct Root {
     const Variable* variable;
     bool through;
   };
   Root root_of(const Expression& e) const;
-  /// The divergent control between a variable's declaration and `frames`. A loop whose leavers never read the
-  /// variable again does not count.
+  /// The divergent control flow between a variable's declaration and `frames`. Excludes loops whose leaving
+  /// lanes never read the variable again.
   std::vector<const Frame*> between(const Variable* v, const Frames& frames) const;
   void declare(const Variable* v, const Frames& frames);
-  /// Which parameters vary in a call.
+  /// Which arguments vary in a call.
   std::vector<bool> arguments_of(const Expression& call, const Frames& frames);
 
   const Function& function;
-  std::string name;         // of what is made
+  std::string name;         // of the generated function
   std::vector<bool> given;  // which parameters vary
   bool result_varies = false, masked = false, writes_uniform = false;
   double cost = 0;
   bool divergent_return = false;
   std::set<const Statement*> divergent_break, divergent_continue;
-  const Variable* only_result = nullptr;  // every return gives it
+  const Variable* only_result = nullptr;  // every return returns it
   std::map<const Variable*, std::string> why;
 
  private:
@@ -79,11 +79,11 @@ class Specialisation {
   Uses uses_;
 };
 
-/// The specialisations of a program, made as they are asked for.
+/// A program's specialisations, created on demand.
 class Specialisations {
  public:
   Specialisation& of(const Function& f, const std::vector<bool>& varying);
-  /// In the order in which they can be written: what is called stands first.
+  /// In definition order: callees first.
   const std::vector<Specialisation*>& done() const { return done_; }
 
  private:
@@ -91,7 +91,7 @@ class Specialisations {
   std::vector<Specialisation*> done_;
 };
 
-/// The operations of an expression that is no call of the program.
+/// The cost of an expression that is not a call of the program.
 double cost_of(const Expression& e);
 
 }  // namespace sundog::spmd

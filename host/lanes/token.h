@@ -1,4 +1,4 @@
-// Words of a plain kernel, and where they stand.
+// Tokens of a plain kernel and their places.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,7 +6,7 @@
 
 namespace sundog::spmd {
 
-/// Line and column count from 1. `file` lives as long as the Source.
+/// Line and column start at 1. `file` lives as long as the Source.
 struct Place {
   const std::string* file = nullptr;
   int line = 0, column = 0;
@@ -20,7 +20,7 @@ struct Token {
   Kind kind = Kind::end;
   std::string text;
   Place place;
-  std::string macro;  // the constant of a header that stood for this number
+  std::string macro;  // the header constant that this number replaces
   bool is(std::string_view word) const { return text == word; }
 };
 

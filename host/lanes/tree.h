@@ -1,4 +1,4 @@
-// A plain kernel as a tree, with the type of every expression.
+// The typed syntax tree of a plain kernel.
 #pragma once
 #include <deque>
 #include <map>
@@ -24,13 +24,13 @@ enum class Space { own, global, constant, local };
 struct Type {
   enum class Kind { nothing, boolean, integer, natural, real, other, vector, structure, pointer, array };
   Kind kind = Kind::nothing;
-  std::string name;                  // as a device's compiler knows it, one path's
+  std::string name;                  // in the device's compiler, for one path
   const VectorForm* form = nullptr;  // of a vector
   Kind part = Kind::real;            // of a vector
   const Structure* structure = nullptr;
-  std::shared_ptr<const Type> of;  // of a pointer or an array
+  std::shared_ptr<const Type> of;  // of a pointer or array
   int length = 0;                  // of an array
-  Space space = Space::own;        // of what a pointer points to
+  Space space = Space::own;        // address space of a pointer's target
   bool constant = false;
 
   bool is_number() const { return kind >= Kind::boolean && kind <= Kind::other; }
@@ -44,14 +44,14 @@ struct Member {
   std::string name;
   Type type;
   bool uniform = false;
-  std::string feature;  // the member is there only with it; empty: always
+  std::string feature;  // the feature that the member needs; empty: none
 };
 
 struct Structure {
-  std::string name, lanes;  // one path's; the lane form, which is made unless it is written by hand
-  std::string join;  // by hand: join(&mine, &other, lanes) takes lanes of another; empty: there is none
+  std::string name, lanes;  // for one path; the lane form, generated unless hand-written
+  std::string join;         // hand-written: join(&mine, &other, lanes) takes lanes of another; empty: none
   bool by_hand = false;
-  bool shared = false;  // of a header that devices and host share: only in tables, or uniform
+  bool shared = false;  // of a header shared with the host: only in tables, or uniform
   std::vector<Member> members;
   Place place;
   const Member* member(const std::string& wanted) const;
@@ -60,7 +60,7 @@ struct Structure {
 struct Variable {
   std::string name;
   Type type;
-  bool uniform = false, here = false;  // here: stands for the mask among the parameters of a hand-written one
+  bool uniform = false, here = false;  // here: the place of the mask in a hand-written function's parameters
   Place place;
 };
 
@@ -69,16 +69,16 @@ struct Function;
 struct Expression {
   enum class Kind {
     number,     // text
-    constant,   // text: a name that the device's compiler knows
+    constant,   // text: a name known to the device's compiler
     variable,   // variable
     member,     // of[0].text; arrow: of[0] is a pointer
     component,  // of[0].text, one letter or more
     index,      // of[0][of[1]]
-    unary,      // text of[0]; postfix: the other way round
+    unary,      // text of[0]; postfix: reversed
     binary,     // of[0] text of[1]
-    assign,     // of[0] = of[1]; what += does is written out
+    assign,     // of[0] = of[1]; += and others are expanded
     choose,     // of[0] ? of[1] : of[2]
-    cast,       // (type)of[0]; implicit: not written
+    cast,       // (type)of[0]; implicit: omitted
     vector,     // (type)(of...)
     list,       // {of...}
     call,       // function or text
@@ -97,7 +97,7 @@ using ExpressionPtr = std::unique_ptr<Expression>;
 
 ExpressionPtr copy_of(const Expression& e);
 
-/// Of an operator's sign.
+/// Kinds of operators.
 bool compares(const std::string& sign);
 bool joins(const std::string& sign);  // && and ||
 
@@ -107,11 +107,11 @@ using StatementPtr = std::unique_ptr<Statement>;
 struct Statement {
   enum class Kind {
     block,       // body...
-    declare,     // variables with the expressions, which may be null
+    declare,     // variables with initialisers, which may be null
     branch,      // if (expressions[0]) body[0] else body[1]; feature: by the preprocessor
     loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; each may be null
     do_loop,     // do body[1] while (expressions[0])
-    each_alike,  // variables[0] takes the values of expressions[0] one after the other: body[0]
+    each_alike,  // variables[0] takes each distinct value of expressions[0]: body[0]
     leave_loop,  // break
     next_round,  // continue
     give,        // return expressions[0], which may be null
@@ -126,12 +126,12 @@ struct Statement {
 };
 
 struct Function {
-  std::string name, lanes;  // `lanes`: what the hand-written one is called
+  std::string name, lanes;  // `lanes`: name of the hand-written one
   Type result;
   std::vector<const Variable*> parameters;
-  std::string feature;  // it is there only with it; empty: always
-  StatementPtr body;    // none: written by hand
-  bool is_inline = false, is_entry = false, takes_mask = false, uniform = false;  // uniform: gives one value
+  std::string feature;  // the feature that it needs; empty: none
+  StatementPtr body;    // none: hand-written
+  bool is_inline = false, is_entry = false, takes_mask = false, uniform = false;  // uniform: its result
   Place place;
 };
 
@@ -143,19 +143,19 @@ struct Program {
   std::map<std::string, const Function*> function_of;
 };
 
-/// A parameter that is written through, or read, behind a pointer to what lanes have.
+/// A parameter used as a pointer to a lane's own value.
 bool is_own_pointer(const Variable* v);
-/// Whether its lane form is written by hand.
+/// Whether its lane form is hand-written.
 bool is_by_hand(const Type& type);
-/// The parameters that a call gives.
+/// The parameters that a call passes.
 std::vector<const Variable*> taken(const Function& f);
 
-/// Bytes of a value in a table, as OpenCL lays it out, and what they are aligned to.
+/// Size and alignment of a value in a table, in bytes, by OpenCL's rules.
 int size_of(const Type& type);
 int alignment_of(const Type& type);
 int offset_of(const Structure& structure, const std::string& name);
 
-/// "a float3", "a pointer", for messages.
+/// "a float3", "a pointer"; for messages.
 std::string name_of(const Type& type);
 
 }  // namespace sundog::spmd

@@ -1,7 +1,7 @@
-// Writes one specialisation in the words of kernels/lib/core/lanes.h: masks follow what lanes do. Branches
-// that cost little are computed in all lanes, the others skipped where no lane takes them.
-//   m_, m_2, ...   lanes that are there: of the function, of a branch
-//   in_3, go_4     lanes that are still in a loop; in its round
+// Emits one specialisation in the vocabulary of kernels/lib/core/lanes.h; masks follow control flow. Cheap
+// branches are computed in all lanes, others skipped if no lane takes them.
+//   m_, m_2, ...   active lanes of the function, of a branch
+//   in_3, go_4     lanes still in a loop; in its current round
 #pragma once
 #include <functional>
 
@@ -20,11 +20,11 @@ class Writer {
   Writer(Specialisations& all, Specialisation& made);
 
   std::vector<Line> function();
-  /// The structures that are used, of one path (false) and in lanes.
+  /// The structures in use, for one path (false) and in lanes.
   using Structures = std::set<std::pair<const Structure*, bool>>;
   const Structures& structures() const { return structures_; }
 
-  /// The text of a structure, and of what it needs in lanes.
+  /// The text of a structure and its helpers for lanes.
   std::vector<std::string> structure(const Structure& s, bool in_lanes);
   std::vector<std::string> spread_structure(const Structure& s);
   std::string type_text(const Type& type, bool varying);
@@ -43,9 +43,9 @@ class Writer {
   bool varies(const Expression& e);
 
   // Expressions (write_expressions.cpp).
-  std::string value(const Expression& e);  // as it is: of one or of all lanes
-  std::string lanes(const Expression& e);  // a value a lane, whatever it is
-  std::string plain(const Expression& e);  // of what is uniform
+  std::string value(const Expression& e);  // unchanged: for one lane or all
+  std::string lanes(const Expression& e);  // one value per lane
+  std::string plain(const Expression& e);  // of a uniform expression
   std::string varying(const Expression& e);
   std::string varying_cast(const Expression& e);
   std::string varying_unary(const Expression& e);
@@ -57,7 +57,7 @@ class Writer {
   std::string mask_of(const Expression& e);  // a condition
   std::string place_of(const Expression& e);
   std::string spread(const std::string& text, const Expression& e);
-  std::string simple(const Expression& e);  // may be written several times
+  std::string simple(const Expression& e);  // may be repeated
   std::string under(const std::string& mask, const Write& write);
   bool is_guarded(const Expression& e);
   bool writes(const Expression& e) const;
@@ -108,18 +108,18 @@ class Writer {
   int depth_ = 1, count_ = 0;
   std::string mask_;
   Frames frames_;
-  std::vector<Loop> loops_;      // those that lanes leave apart
-  std::vector<Loop> all_loops_;  // and the others
+  std::vector<Loop> loops_;      // left by lanes at different times
+  std::vector<Loop> all_loops_;  // all, including the others
   bool returned_ = false;
-  std::map<const Variable*, std::string> tables_;  // of pointers that are kept as an index
-  std::set<std::string> checked_;                  // masks of loops whose body asks them first
+  std::map<const Variable*, std::string> tables_;  // for pointers kept as an index
+  std::set<std::string> checked_;                  // of loops whose body tests them first
   Place place_;
 };
 
-/// The statements of a block, or the one that is none.
+/// The statements of a block, or the single statement.
 std::vector<const Statement*> parts_of_block(const Statement& s);
 
-/// Which ways out of the statement's surroundings it has.
+/// The ways in which a statement leaves its surroundings.
 struct Exits {
   bool leaves = false, next = false, gives = false;
   bool any() const { return leaves || next || gives; }

@@ -1,5 +1,5 @@
-// One frame: a session (render/session/render_session.h) that renders it and ends. Who renders several keeps
-// a session.
+// Renders one frame in a temporary session (render/session/render_session.h). Callers that render several
+// keep a session.
 #pragma once
 #include <memory>
 #include <vector>
@@ -9,21 +9,21 @@
 
 namespace sundog {
 
-/// A device of this process.
+/// Plans a device of this process.
 ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
 
-/// Renders on all `devices` at once and waits for each of them to let go. Throws DeviceError when every
-/// device failed, BuildError when the kernels build on none, SceneError for a damaged checkpoint, UsageError
-/// for a checkpoint of another scene, unknown AOVs, or shares that do not fit the devices.
+/// Renders on all `devices` together and waits for each to finish. Throws DeviceError when every device
+/// failed, BuildError when the kernels build on none, SceneError for a damaged checkpoint, UsageError for a
+/// checkpoint of another scene, unknown AOVs, or shares that do not fit the devices.
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
 
-/// The same, but does not wait for a driver that compiles, or is in a launch, when the frame is finished: its
-/// thread, which holds the scene, goes to DeviceInfo::threads.
+/// Does not wait for a driver that compiles or is in a launch when the frame is finished: its thread, which
+/// holds the scene, goes to DeviceInfo::threads.
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
 
-/// The same on devices that may be other processes'.
+/// Renders on servers, which may be devices of other processes.
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<ServerPlan>& servers,
                     const RenderOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Boxes around objects, and the camera that sees all of a box.
+// Bounding boxes of objects, and a camera that frames a box.
 #pragma once
 #include <limits>
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// An axis-parallel box; lower > upper when it is empty.
+/// An axis-aligned box; empty if lower > upper.
 struct SceneBounds {
   dvec3 lower{std::numeric_limits<double>::infinity()}, upper{-std::numeric_limits<double>::infinity()};
 
@@ -15,13 +15,13 @@ struct SceneBounds {
   void add(const dvec3& point) { lower = glm::min(lower, point), upper = glm::max(upper, point); }
 };
 
-/// Around all objects with an end: planes do not count. Exact for meshes, the box of a box for the turned
-/// solids and of the fields' intervals.
+/// Bounds of all finite objects (planes are skipped). Exact for meshes; a box around the transformed bounding
+/// box for solids and fields.
 SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
                       std::span<const SdfDescription> fields = {});
 
-/// `camera` moved so that the box all but fills an image of width / height `aspect`, seen from the front,
-/// right and above (y is up). An empty box leaves it where it is.
+/// Moves `camera` so that the box nearly fills an image of width / height `aspect`, seen from the front,
+/// right and above (y is up). Unchanged for an empty box.
 Camera frame(const SceneBounds& bounds, double aspect, Camera camera);
 
 }  // namespace sundog

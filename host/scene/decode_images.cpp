@@ -15,7 +15,7 @@
 namespace sundog {
 namespace {
 
-/// Images of the same bytes and use become one.
+/// Merges images of equal bytes and use.
 void merge_images(SceneDescription& scene) {
   std::map<std::tuple<std::string_view, bool, bool>, int> first;
   std::vector<int> index_of;
@@ -35,7 +35,7 @@ void merge_images(SceneDescription& scene) {
 }
 
 void decode(ImageDescription& image) {
-  if (image.encoded.empty() && image.pixels.width > 0) return;  // made, not read
+  if (image.encoded.empty() && image.pixels.width > 0) return;  // generated, not read
   try {
     image.pixels = decode_stored(image.encoded);
     if (image.plain) image.pixels.exponent.reset();
@@ -68,7 +68,7 @@ void decode_or_white(ImageDescription& image, std::string& failure) {
   }
 }
 
-/// White is a factor of one, but neither a normal nor a height.
+/// White is a factor of one, but not a normal or a height.
 void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
                   const SceneDescription& scene) {
   const auto drop = [&](int& texture) {
@@ -85,12 +85,12 @@ void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
   material.by_paths = std::move(other);
 }
 
-/// With its smaller levels.
+/// Including mip levels.
 std::size_t device_bytes(const ImageDescription& image) {
   return image.pixels.pixel_count() * image.pixels.pixel_bytes() * 4 / 3;
 }
 
-/// Colours count by their alpha where some texture takes that.
+/// Colours are weighted by alpha if some texture uses it.
 SampleUse use_of(const ImageDescription& image, const SceneDescription& scene) {
   if (!image.srgb) return SampleUse::data;
   const bool cut = std::ranges::any_of(scene.textures, [&](const TextureDescription& texture) {

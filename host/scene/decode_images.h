@@ -1,4 +1,4 @@
-// The images of a scene, decoded once all are known.
+// Decodes a scene's images once all are known.
 #pragma once
 #include "scene/description.h"
 

@@ -15,7 +15,7 @@
 namespace sundog {
 namespace {
 
-/// Edges that turn by more stay sharp.
+/// Edges with a larger angle stay sharp.
 constexpr double crease_degrees = 75;
 
 double length2(const Mesh& mesh, u32 a, u32 b) {
@@ -23,7 +23,7 @@ double length2(const Mesh& mesh, u32 a, u32 b) {
   return glm::dot(way, way);
 }
 
-/// The vertices in the middles of edges, each made once.
+/// Vertices at the midpoints of edges, each created once.
 class Middles {
  public:
   explicit Middles(Mesh& mesh) : mesh_(mesh) {}
@@ -53,12 +53,12 @@ class Middles {
   std::unordered_map<std::uint64_t, u32> made_;
 };
 
-/// The triangles that one becomes when its edges i to i + 1 are cut where `cut` says so.
+/// Splits a triangle whose edges i to i + 1 are cut where `cut` is true.
 void split(const Mesh& mesh, const glm::uvec3& triangle, const bool (&cut)[3], Middles& middles,
            std::vector<glm::uvec3>& out) {
   const int count = cut[0] + cut[1] + cut[2];
   if (count == 0) return out.push_back(triangle);
-  // Turned so that one cut edge is the first, or of two the corner between them is the middle one.
+  // Rotate so that the single cut edge comes first, or the corner between two cut edges is the middle one.
   int first = cut[0] ? 0 : cut[1] ? 1 : 2;
   if (count == 2 && !cut[(first + 1) % 3]) first = (first + 2) % 3;
   const u32 a = triangle[first], b = triangle[(first + 1) % 3], c = triangle[(first + 2) % 3];
@@ -89,7 +89,7 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-/// A mesh as one object shows it.
+/// Displaces a mesh as one object shows it.
 class Displacer {
  public:
   Displacer(const SceneDescription& scene, const Object& object, const Mesh& mesh)
@@ -102,7 +102,7 @@ class Displacer {
     Mesh mesh = mesh_;
     if (mesh.materials.empty()) mesh.materials.assign(mesh.triangles.size(), object_.material);
     const double edge = wanted_edge();
-    // A triangle of such edges has at most the area of an equilateral one.
+    // Such a triangle has at most the area of an equilateral one.
     const bool few = area_of(mesh) / (0.434 * edge * edge) < double{most_displaced_triangles};
     if (few) mesh = refine(std::move(mesh), edge, most_displaced_triangles);
     if (!few || mesh.triangles.size() > most_displaced_triangles)
@@ -127,7 +127,7 @@ class Displacer {
     return index < 0 ? nullptr : &scene_.materials[static_cast<std::size_t>(index)];
   }
 
-  /// The shortest edge that materials ask for; of those that ask for none a texel's, or longer.
+  /// The shortest edge that materials request; a texel or longer for those that request none.
   double wanted_edge() const {
     double area = 0, texels = 0, asked = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -148,12 +148,12 @@ class Displacer {
                 double(image.width) * image.height;
     }
     if (!(area > 0)) return asked;
-    // Triangles of this edge at the most, most of them shorter, are about 2.5 times as many as squares of it.
+    // Triangles with edges of at most this length are about 2.5 times as many as squares.
     const double usual = std::sqrt(area * 2.5 / double{usual_displaced_triangles});
     return std::min(asked, texels > 0 ? std::max(std::sqrt(area / texels), usual) : usual);
   }
 
-  /// Moves each place by the mean of the heights of its corners, along the mean of their normals.
+  /// Moves each point by the mean height of its corners along their mean normal.
   void move(Mesh& mesh) const {
     const std::vector<u32> place = models::weld_positions(mesh);
     std::vector<dvec3> normals(mesh.positions.size(), dvec3(0));
@@ -191,7 +191,7 @@ class Displacer {
   const Mesh& mesh_;
 };
 
-/// Whether a material moves what it is on; its heights must come from an image.
+/// Whether a material displaces its meshes; heights must come from an image.
 bool displaces(const SceneDescription& scene, int index) {
   if (index < 0) return false;
   const MaterialDescription& material = scene.materials[static_cast<std::size_t>(index)];
@@ -208,7 +208,7 @@ bool displaces(const SceneDescription& scene, int index) {
 }  // namespace
 
 Mesh refine(Mesh mesh, double edge, std::size_t most) {
-  mesh.tangents.clear();  // compile() makes those of the new surface
+  mesh.tangents.clear();  // compile() computes them for the new surface
   if (!(edge > 0)) return mesh;
   for (bool any = true; any && mesh.triangles.size() <= most;) {
     any = false;

@@ -1,4 +1,4 @@
-// See document.h. The parts that a viewer changes most, often sixty times a second, are read by themselves.
+// See document.h. Parts that a viewer changes often, up to sixty times a second, are read separately.
 #include "scene/document.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ bool same_section(const json& before, const json& after, std::string_view key) {
   return a == before.end() ? b == after.end() : b != after.end() && *a == *b;
 }
 
-/// Lights that rays meet are objects too, of a material each, the last ones of a scene (lamps.h).
+/// Removes the objects of visible lights, one with its own material each, at the end of the scene (lamps.h).
 void drop_lamps(SceneDescription& scene) {
   while (!scene.objects.empty() && scene.objects.back().light >= 0) {
     scene.objects.pop_back();
@@ -125,7 +125,7 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   changed->camera = read_camera(section("camera"), placed);
   changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
-  // Images were made smaller to fit what they may take.
+  // Images have been reduced to fit the old limit.
   if (changed->render.texture_memory != scene.render.texture_memory && !scene.images.empty()) return nullptr;
   const bool same_surfaces = std::ranges::all_of(
       surface_sections(), [&](std::string_view key) { return same_section(before, after, key); });

@@ -1,4 +1,4 @@
-// Ice crystals in a sky, and the map of the light that they send. Plain values.
+// Ice crystals in a sky, and the map of the light that they scatter. Plain values.
 #pragma once
 #include <vector>
 
@@ -6,29 +6,29 @@
 
 namespace sundog {
 
-/// One kind of hexagonal prisms.
+/// One kind of hexagonal prism.
 struct HaloCrystals {
   u32 shape = HALO_PLATE;  // a HALO_* constant
-  double ratio = 1;        // length along the axis over the width from corner to corner
-  double tilt = 1;         // degrees: standard deviation of the axis from its way to lie
-  double roll = 1;         // parry; degrees: of the level faces
-  double share = 1;        // of the cloud, over the sum of all kinds' shares
+  double ratio = 1;        // length along the axis over width between corners
+  double tilt = 1;         // degrees: standard deviation of the axis from its preferred orientation
+  double roll = 1;         // parry; degrees: standard deviation of the level faces
+  double share = 1;        // weight among the cloud's kinds
 };
 
 struct HaloDescription {
   std::vector<HaloCrystals> crystals;
-  double optical_depth = 0.05;  // of the cloud, upwards, for light that it turns
-  double index = 0;             // of refraction for all colours; 0: that of ice
-  int rays = 10'000'000;        // that meet crystals
-  int size = 1024;              // cells a side of the map
+  double optical_depth = 0.05;  // of the cloud, vertically, for scattered light
+  double index = 0;             // refractive index for all colours; 0: that of ice
+  int rays = 10'000'000;        // rays that hit crystals
+  int size = 1024;              // cells per side of the map
 };
 
-/// Where light goes that crystals turn: the sphere as kernels/lib/halo/sky_map.cl lays it on a square.
+/// Light scattered by crystals, by direction: the sphere as kernels/lib/halo/sky_map.cl maps it to a square.
 struct HaloMap {
   int side = 0;
-  std::vector<float> cells;  // 3 each, row by row: red, green, blue a steradian; 1 in all over the sphere
-  double passed = 0, turned = 0, kept = 0;  // parts of the light that met crystals: passed straight through,
-                                            // turned, and given up inside
+  std::vector<float> cells;  // 3 each, row by row: red, green, blue per steradian; their integral is 1
+  double passed = 0, turned = 0,
+         kept = 0;  // fractions of the light at crystals: unscattered, scattered, lost
 };
 
 }  // namespace sundog

@@ -1,10 +1,10 @@
-// Numbers of textures at points, computed by the host: what kernels sample, without smaller levels.
+// Samples texture values on the host, as kernels do but without mip levels.
 #pragma once
 #include "scene/description.h"
 
 namespace sundog {
 
-/// The number that an image texture gives at (u, v), v up: bilinear, or the nearest texel.
+/// The value of an image texture at (u, v), v up: bilinear or nearest.
 double texture_number(const SceneDescription& scene, const TextureDescription& texture, glm::dvec2 uv);
 
 }  // namespace sundog

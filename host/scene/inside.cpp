@@ -10,7 +10,7 @@ bool leads_outside(const fs::path& file, const fs::path& named) {
   std::error_code failed;
   const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), failed);
   if (failed) return true;
-  // Of a file that is not there, weakly_canonical() leaves a relative path as it is.
+  // weakly_canonical() does not make the relative path of a missing file absolute.
   const fs::path whole = fs::weakly_canonical(fs::absolute(named, failed), failed);
   if (failed) return true;
   return std::mismatch(folder.begin(), folder.end(), whole.begin(), whole.end()).first != folder.end();

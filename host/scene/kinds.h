@@ -1,4 +1,4 @@
-// The kinds of shapes, lights, samplers and filters by name, from the lists of kernels/shared.
+// Names and properties of shapes, lights, samplers and filters, from the lists in kernels/shared.
 #pragma once
 #include <array>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// By the index of Shape: the names in scene files and figures.
+/// Names in scene files and figures, by Shape index.
 inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh",
 #define SUNDOG_SHAPE_NAME(constant, type, name) #name,
                                                                           SOLIDS(SUNDOG_SHAPE_NAME)
@@ -17,7 +17,7 @@ inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh"
 static_assert(shape_names[SHAPE_SDF] == "field");
 
 #define SUNDOG_NAMED_CONSTANT(constant, name) NamedValue<u32>{#name, constant},
-/// SAMPLER_*, HALO_* and STRATEGY_* constants.
+/// SAMPLER_*, HALO_* and STRATEGY_* constants by name.
 inline constexpr std::array samplers = {SAMPLERS(SUNDOG_NAMED_CONSTANT)};
 inline constexpr std::array halo_shapes = {HALO_SHAPES(SUNDOG_NAMED_CONSTANT)};
 inline constexpr std::array light_strategies = {LIGHT_STRATEGIES(SUNDOG_NAMED_CONSTANT)};
@@ -26,7 +26,7 @@ inline constexpr std::array light_strategies = {LIGHT_STRATEGIES(SUNDOG_NAMED_CO
 struct FilterFacts {
   std::string_view name;
   Filter value;
-  double radius;  // in pixels, unless the scene says another
+  double radius;  // default, in pixels
 };
 
 inline constexpr std::array filters = {FilterFacts{"box", Filter::box, 0.5},
@@ -36,11 +36,11 @@ inline constexpr std::array filters = {FilterFacts{"box", Filter::box, 0.5},
                                        FilterFacts{"mitchell", Filter::mitchell, 2}};
 inline constexpr auto filter_names = names_of(filters);
 
-/// How far a light reaches in space.
+/// Spatial extent of a light.
 enum class LightExtent {
-  none,     // one point or direction
-  sampled,  // places on it are chosen; rays do not meet it
-  met       // sampled, and rays meet it unless the scene says `"hidden": true`
+  none,     // a point or direction
+  sampled,  // an area that is sampled but invisible to rays
+  met       // sampled and visible to rays, unless the scene says `"hidden": true`
 };
 
 struct LightTypeFacts {
@@ -54,7 +54,7 @@ struct LightTypeFacts {
   constexpr bool can_be_met() const { return extent == LightExtent::met; }
 };
 
-/// By LightType.
+/// Indexed by LightType.
 inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .value = LightType::ambient},
 #define SUNDOG_LIGHT_FACTS(constant, name, placed, aimed, extent) \
   LightTypeFacts{#name, LightType::name, placed, aimed, LightExtent::extent},
@@ -72,7 +72,7 @@ constexpr const LightTypeFacts& facts_of(LightType type) {
   return light_types.at(static_cast<std::size_t>(type));
 }
 
-/// Of a LIGHT_* constant of the list.
+/// The row of a LIGHT_* constant.
 constexpr const LightTypeFacts& facts_of_kind(u32 kind) { return light_types.at(kind + 1); }
 
 }  // namespace sundog

@@ -15,12 +15,12 @@
 namespace sundog {
 namespace {
 
-// Their keys in scene files.
+// Keys in scene files.
 
-/// Products of two such lengths are floats.
+/// Products of two such lengths are finite floats.
 constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
 
-/// The way it shines, given as such or by a point that it shines at.
+/// Reads the direction of emission, given directly or by a target point.
 void read_aim(JsonObject& object, LightDescription& light) {
   static constexpr std::string_view aims[] = {"direction", "target"};
   const std::string aim = object.one_of(aims);
@@ -61,11 +61,11 @@ void read_spot(JsonObject& object, LightDescription& light) {
                                     light.outer_angle, light.inner_angle));
 }
 
-// The things that rays meet.
+// Visible objects.
 
 bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && !light.hidden; }
 
-/// The rotation and place of something whose axis is +y and whose middle is its origin.
+/// The transform of an object with axis +y and its centre at the origin.
 dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
   return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
           glm::dvec4(-glm::normalize(axes.v), 0), glm::dvec4(middle, 1)};
@@ -88,7 +88,7 @@ Shape lamp_shape(const LightDescription& light) {
   throw std::logic_error("a light without a shape that rays meet");
 }
 
-// Their rows.
+// Table rows.
 
 dvec3 unit_direction(const NamedLight& named) {
   const dvec3& direction = named.light.direction;
@@ -120,8 +120,8 @@ void pack_disk(const NamedLight& named, Light& packed) {
   pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)) * std::numbers::pi, packed);
 }
 
-/// A sun of the given angle across, with the irradiance of the directional light: sin^2 of half the angle
-/// times pi is what a surface that faces it sees of it.
+/// A sun of the given angular diameter with the directional light's irradiance: a surface that faces it sees
+/// a projected solid angle of pi sin^2 of half the angle.
 void pack_sun(const LightDescription& light, Light& packed) {
   const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
   const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
@@ -135,8 +135,7 @@ void pack_range(const LightDescription& light, Light& packed) {
   if (light.range > 0) packed.edge_v.x = static_cast<float>(1 / light.range);
 }
 
-/// Whether the list of lights ends with those of an extent, from LIGHT_RECTANGLE on: kernels tell them by
-/// that.
+/// Whether area lights come last in the list of lights, from LIGHT_RECTANGLE on: kernels rely on this.
 constexpr bool extents_come_last() {
   for (u32 kind = 0; kind < LIGHT_KINDS; ++kind)
     if (facts_of_kind(kind).has_extent() != (kind >= LIGHT_RECTANGLE)) return false;
@@ -152,7 +151,7 @@ LampAxes lamp_axes(const LightDescription& light) {
   LampAxes axes;
   axes.normal = glm::normalize(light.direction);
   dvec3 side = glm::cross(light.up, axes.normal);
-  // An "up" along the light's direction says nothing: then z, and for a light along that x.
+  // An "up" parallel to the light's direction is no help: use z, or x for a light along z.
   if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
   if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
   side = glm::normalize(side);

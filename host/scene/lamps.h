@@ -1,5 +1,5 @@
-// Lights: all that only one kind of them knows. Its keys in scene files, its row in the table of lights, and
-// the box around it and the thing that rays meet where it has an extent.
+// Per-kind code of lights: keys in scene files, the row in the lights table, and, for area lights, bounds and
+// the visible object.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
@@ -10,13 +10,13 @@ namespace sundog {
 
 class JsonObject;
 
-/// The keys of a light beside its type, color, intensity and position.
+/// Reads a light's keys other than type, color, intensity and position.
 void read_light_kind(JsonObject& object, LightDescription& light);
 
-/// The shadow rays to light that comes from many directions.
+/// Reads the number of shadow rays for area lights and environments.
 void read_light_sampling(JsonObject& object, int& samples);
 
-/// Whether rays meet it.
+/// Reads whether rays hit the light.
 void read_light_visible(JsonObject& object, bool& visible, bool& hidden);
 
 /// A light and its place in the scene file, for messages.
@@ -26,17 +26,17 @@ struct NamedLight {
   const std::string& place;
 };
 
-/// The sides of a rectangle and the radii of a disk, at right angles to `normal`, the way the light travels:
-/// cross(u, v) has the normal's direction. A rectangle's `v` lies as near to the light's `up` as it can.
+/// The sides of a rectangle or radii of a disk, perpendicular to `normal`, the direction of emission:
+/// cross(u, v) is parallel to the normal. A rectangle's `v` is as close to the light's `up` as possible.
 struct LampAxes {
   dvec3 u{1, 0, 0}, v{0, 0, 1}, normal{0, -1, 0};  // u and v in world units
 };
 LampAxes lamp_axes(const LightDescription& light);
 
-/// The light's row, whose position counts from `origin`. Throws SceneError for a direction of length zero.
+/// The light's table row, with positions relative to `origin`. Throws SceneError for a zero direction.
 Light pack_light(const NamedLight& named, const dvec3& origin);
 
-/// The box around a light with an extent, the area that shines, and its luminance times that area.
+/// Bounds of an area light, its area, and luminance times area.
 struct LampBounds {
   glm::vec3 lower, upper;
   double area;
@@ -44,7 +44,7 @@ struct LampBounds {
 };
 LampBounds lamp_bounds(const Light& light);
 
-/// Adds an object for each visible light with an extent, of a material that shines as the light does.
+/// Adds an object with an emissive material for each visible area light.
 void add_lamps(SceneDescription& scene);
 
 }  // namespace sundog

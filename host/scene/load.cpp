@@ -24,7 +24,7 @@ void apply_overrides(json& document, const fs::path& file, const std::vector<std
   for (const std::string& setting : overrides) apply_override(document, setting, file);
 }
 
-/// Width over height of a document's image; 0 where it gives none (reading it says what is wrong).
+/// Width over height of a document's image; 0 if missing or invalid (reading reports the error).
 double aspect_of(const json& document) {
   const auto size = [&](const char* pointer) {
     const json::json_pointer place(pointer);
@@ -34,8 +34,8 @@ double aspect_of(const json& document) {
   return height > 0 ? std::max(size("/image/width"), 0.0) / height : 0;
 }
 
-/// The document made up around a model. Its camera fits the image that the overrides ask for, and its ground
-/// the camera that they ask for.
+/// The document generated around a model. Its camera fits the overridden image size, and its ground the
+/// overridden camera.
 json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides) {
   json document = make_model_scene(file, model);
   json changed = document;

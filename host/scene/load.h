@@ -1,4 +1,4 @@
-// The one door into the scene layer: a file of any supported format becomes a SceneDescription.
+// The entry point of the scene layer: reads any supported file to a SceneDescription.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -15,18 +15,18 @@ namespace sundog {
 class Faults;
 
 struct LoadOptions {
-  std::optional<double> frame = std::nullopt;  // of the animation; without it the scene is as it is written
-  bool native_code = false;    // OpenCL C in the scene is taken: only for scenes that the user trusts
-  bool outside_files = false;  // the scene, and the models in it, may name files outside their own folders
-  std::array<int, 2> size{};   // of the picture, for read_scene_document(); 0: as the file says
-  std::function<const std::string&()> standard_input{};  // a scene's text for "-"; empty: that is a file
-  std::shared_ptr<Faults> faults{};                      // of reading a scene file
+  std::optional<double> frame = std::nullopt;  // animation frame; none: the scene as written
+  bool native_code = false;                    // allow OpenCL C in the scene: only if the user trusts it
+  bool outside_files = false;                  // scene and models may name files outside their folders
+  std::array<int, 2> size{};                   // image size for read_scene_document(); 0: as in the file
+  std::function<const std::string&()> standard_input{};  // text of the scene "-"; empty: "-" is a file
+  std::shared_ptr<Faults> faults{};                      // when reading scene files
 };
 
-/// Whether the path means the standard input: "-", or /dev/stdin.
+/// Whether the path is "-" or /dev/stdin.
 bool is_standard_input(const std::filesystem::path& path);
 
-/// The name that errors give a scene's file: "standard input", or the path.
+/// The scene's name in errors: "standard input", or the path.
 std::string scene_file_name(const std::filesystem::path& path);
 
 /// Loads sundog's .json ("-": from the standard input, files that it names beside the current folder), or

@@ -1,4 +1,4 @@
-// A mesh's vertices or triangles: values of its own, or somebody else's that are held, not copied.
+// An array of a mesh's vertices or triangles that owns its values or shares external memory.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace sundog {
 
-/// A std::vector that may stand for held memory. Reading copies nothing; whoever changes held values gets a
-/// copy of them first. Copies of held values hold the same memory.
+/// A std::vector that may refer to external memory. Reading copies nothing; modification copies external
+/// values first. Copies share external memory.
 template <class T>
 class MeshArray {
  public:
@@ -21,7 +21,7 @@ class MeshArray {
   MeshArray() = default;
   MeshArray(std::vector<T> values) : own_(std::move(values)) {}
   MeshArray(std::initializer_list<T> values) : own_(values) {}
-  /// `values` stay as they are while `owner` is held.
+  /// `values` must not change while `owner` is held.
   static MeshArray held(std::span<const T> values, std::shared_ptr<const void> owner) {
     MeshArray array;
     array.held_ = values;
@@ -43,7 +43,7 @@ class MeshArray {
     return size() == other.size() && std::equal(begin(), end(), other.begin());
   }
 
-  /// The values, to be changed.
+  /// The values, for modification.
   std::vector<T>& values() {
     if (owner_) own_.assign(held_.begin(), held_.end());
     owner_ = nullptr;
@@ -73,7 +73,7 @@ class MeshArray {
  private:
   std::vector<T> own_;
   std::span<const T> held_;
-  std::shared_ptr<const void> owner_;  // null: the values are own_
+  std::shared_ptr<const void> owner_;  // null: own_ holds the values
 };
 
 }  // namespace sundog

@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-/// For each vertex the first one at the same position.
+/// For each vertex, the first one at the same position.
 std::vector<std::uint32_t> weld(std::span<const glm::vec3> positions) {
   std::vector<std::uint32_t> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> weld(std::span<const glm::vec3> positions) {
 
 struct Edge {
   std::uint32_t low, high;
-  int way;  // 1 from low to high, else -1
+  int way;  // 1: from low to high, else -1
 };
 
 void count_edges(std::vector<Edge>& edges, MeshFaults& faults) {
@@ -84,7 +84,7 @@ std::vector<Part> parts_of(const Mesh& mesh, std::span<const glm::uvec3> triangl
   return parts;
 }
 
-/// Hollows are looked for in the largest parts only: there may be very many.
+/// Only the largest parts are tested for hollows: there may be very many.
 std::size_t count_inside_out(std::vector<Part>& parts) {
   constexpr std::ptrdiff_t most = 100;
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.volume > b.volume; });

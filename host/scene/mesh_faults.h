@@ -1,4 +1,4 @@
-// Whether a mesh is the surface of a solid: closed, and facing outwards.
+// Checks whether a mesh bounds a solid: closed and facing outwards.
 #pragma once
 #include <cstddef>
 
@@ -6,12 +6,12 @@
 
 namespace sundog {
 
-/// Corners at one position count as one; triangles without area are left aside.
+/// Coincident corners count as one; triangles without area are ignored.
 struct MeshFaults {
-  std::size_t open_edges = 0;    // of an odd number of triangles: the mesh is not closed there
-  std::size_t turned_edges = 0;  // whose triangles face different ways
-  std::size_t parts = 0;         // that hang together; counted, as the next one, where no edge is at fault
-  std::size_t inside_out = 0;    // parts that face inwards and are no hollow of another (by their boxes)
+  std::size_t open_edges = 0;    // with an odd number of triangles: the mesh is not closed
+  std::size_t turned_edges = 0;  // between triangles of opposite orientation
+  std::size_t parts = 0;         // connected components; counted, like inside_out, only without edge faults
+  std::size_t inside_out = 0;    // parts that face inwards and are not a hollow of another (by bounding box)
 };
 
 MeshFaults find_faults(const Mesh& mesh);

@@ -36,7 +36,7 @@ json to_json(const LightDescription& light) {
     if (light.range > 0) result["range"] = light.range;
   }
   if (light.type == LightType::spot) {
-    // glTF lets a cone open to a full half space.
+    // glTF allows cones of a full hemisphere.
     result["outer_angle"] = std::min(light.outer_angle, 89.99);
     result["inner_angle"] = std::min(light.inner_angle, 89.99);
     result["square_edge"] = light.square_edge;
@@ -46,7 +46,7 @@ json to_json(const LightDescription& light) {
 
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-/// How much of each light the model's brightest material sends back when it faces the light.
+/// Reflectance of the model's brightest material when it faces each light.
 struct Brightness {
   double of_ambient = 0, of_key = 0;
 };
@@ -63,7 +63,7 @@ Brightness brightness_of(const Model& model) {
     brightest.of_key = std::max(brightest.of_key, color * greatest(m.diffuse) + broad * greatest(m.specular));
   };
   std::ranges::for_each(model.materials, add);
-  const auto is_grey = [&](const Object& object) {  // it gets a material that is made up
+  const auto is_grey = [&](const Object& object) {  // it gets a generated material
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     return object.material < 0 &&
            (!shape || model.meshes[static_cast<std::size_t>(shape->mesh)].materials.empty());
@@ -72,14 +72,14 @@ Brightness brightness_of(const Model& model) {
   return brightest;
 }
 
-/// A key light from above the camera's left shoulder, and an ambient one.
+/// A key light above the camera's left shoulder, and an ambient one.
 struct MadeUpLights {
   dvec3 direction;
   double ambient = 0, key = 0;  // intensities
 };
 
-/// The model's brightest material, where it faces the key light, is 0.18 + 0.66: all but white. Dark models
-/// get no more than half as much light again as grey ones.
+/// The model's brightest material, facing the key light, gets 0.18 + 0.66: almost white. Dark models get at
+/// most half as much light again as grey ones.
 MadeUpLights expose(const Model& model, const Camera& camera) {
   const dvec3 forward = glm::normalize(camera.target - camera.position);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -94,8 +94,8 @@ json to_json(const MadeUpLights& lights) {
           {{"type", "directional"}, {"direction", to_json(lights.direction)}, {"intensity", lights.key}}};
 }
 
-/// A matte plane just below the model, which takes its shadow. Lit, it has the background's colour at the
-/// horizon, and so no edge. Not for a camera from below.
+/// Adds a matte plane just below the model for its shadow. Lit, it matches the background at the horizon, so
+/// no edge shows. Not for a camera from below.
 void add_ground(json& document, const SceneBounds& bounds, const Camera& camera, const ImageSettings& image,
                 const MadeUpLights& lights) {
   constexpr double ambient = 0.2, diffuse = 0.8;

@@ -1,4 +1,4 @@
-// A vector as the tables hold it: three floats and a fourth for the owner.
+// Packs a vector for tables: three floats and a fourth value.
 #pragma once
 #include <glm/glm.hpp>
 

@@ -1,4 +1,4 @@
-// Devices that stay open and draw one scene after the other: for editors and viewers.
+// Devices that stay open and draw one scene after another, for editors and viewers.
 #pragma once
 #include <sundog/render.h>
 
@@ -11,82 +11,82 @@
 namespace sundog {
 inline namespace v0 {
 
-/// What a session is at.
+/// The activity of a session.
 enum class SessionState {
-  idle,       ///< nothing was started
-  compiling,  ///< the scene's tables are being made
-  preparing,  ///< kernels are being built, or tables uploaded
-  drawing,    ///< pixels are being made
+  idle,       ///< nothing has been started
+  compiling,  ///< compiling the scene's tables
+  preparing,  ///< building kernels or uploading tables
+  drawing,    ///< rendering pixels
   settled,    ///< the picture is complete
   stopped,    ///< Session::cancel() ended it
-  failed      ///< Snapshot::error says why
+  failed      ///< Snapshot::error gives the reason
 };
 
-/// None of it changes a bit of the settled picture.
+/// Options of Session::start(). None changes a bit of the settled picture.
 struct SessionOptions {
-  bool coarse = true;      ///< coarse pixels come first while the picture would take longer
-  double patience = 0.15;  ///< seconds that a scene gets for its first picture when a newer one comes
-  WorkGroup work_group{};  ///< of the kernels
+  bool coarse = true;      ///< show coarse pixels first if the picture takes longer
+  double patience = 0.15;  ///< seconds granted to a scene's first picture before a newer scene replaces it
+  WorkGroup work_group{};  ///< work-group size of the kernels
   int tile = 0;            ///< edge in pixels; 0: chosen by measured speed
 };
 
-/// The session at one moment.
+/// The state of a session at one moment.
 struct Snapshot {
   std::uint64_t generation = 0;             ///< the newest Session::start()
-  std::uint64_t shown = 0;                  ///< whose picture this is; 0: none yet
-  std::uint64_t revision = 0;               ///< grows with each change of anything here
+  std::uint64_t shown = 0;                  ///< the generation that `picture` shows; 0: none yet
+  std::uint64_t revision = 0;               ///< grows with each change of any member
   SessionState state = SessionState::idle;  ///< of the newest start()
-  std::string error{};                      ///< of a failed one; else empty
-  double fraction = 0;                      ///< of the samples, 0..1
-  unsigned samples = 0;                     ///< that each pixel has at least; 0 while the picture is coarse
-  unsigned block = 1;                       ///< edge in pixels of the blocks that the picture is made of
-  double seconds = 0;                       ///< since the start() of `shown`, or the time that it took
-  Image picture{};                          ///< linear RGBA of the scene's size; without pixels at first
+  std::string error{};                      ///< of a failed start(); else empty
+  double fraction = 0;                      ///< of the samples done, 0..1
+  unsigned samples = 0;                     ///< minimum over the pixels; 0 while the picture is coarse
+  unsigned block = 1;  ///< edge in pixels of the blocks in a coarse picture; 1: full resolution
+  double seconds = 0;  ///< since the start() of `shown`; once settled, its duration
+  Image picture{};     ///< linear RGBA at the scene's size; empty at first
 };
 
-/// What a pixel's centre shows.
+/// The surface seen at a pixel's centre.
 struct Pick {
-  std::string object{};    ///< its name; empty: nothing, or without a name
-  std::string material{};  ///< its name; empty: nothing, or without a name
-  Vec3 position{};         ///< in the world
-  Vec3 normal{};           ///< of unit length, in the world
-  double depth = 0;        ///< along the view; infinite where nothing is
+  std::string object{};    ///< its name; empty: nothing hit, or unnamed
+  std::string material{};  ///< its name; empty: nothing hit, or unnamed
+  Vec3 position{};         ///< in world space
+  Vec3 normal{};           ///< unit length, in world space
+  double depth = 0;        ///< along the view; infinite if nothing is hit
 };
 
-/// Used by any number of threads. It has threads of its own, one a device and one that compiles scenes.
+/// Draws the newest scene in the background, in a thread per device and one that compiles. Thread-safe.
 class SUNDOG_API Session {
  public:
-  /// Without devices: the one estimated fastest. Throws Error (device).
+  /// Opens `devices`; none: the one estimated fastest. Throws Error (device).
   explicit Session(const std::vector<Device>& devices = {});
-  /// Ends what is in hand: waits for launches (about 50 ms). A driver that hangs or compiles keeps its
-  /// thread, which belongs to the devices; to the process where the session chose them.
+  /// Stops drawing and waits for running launches (about 50 ms). A driver that hangs or compiles keeps its
+  /// thread, which belongs to the devices, or to the process if the session chose them.
   ~Session();
-  Session(Session&&) noexcept;             ///< `other` can only be destroyed or assigned to afterwards
-  Session& operator=(Session&&) noexcept;  ///< ends what was in hand here
+  Session(Session&&) noexcept;             ///< afterwards `other` can only be destroyed or assigned to
+  Session& operator=(Session&&) noexcept;  ///< stops what this session draws
 
-  /// Draws this scene, as it is now, from now on: the newest one wins. Returns its generation once the scene
-  /// is read; what is drawn then comes by snapshot(). Only the parts that differ from the scene before are
-  /// made anew. Throws Error (scene; internal for a frame that takes more memory than there is), and keeps
-  /// the scene before.
+  /// Draws the scene as it is now, replacing the one before. Returns its generation once the scene is read;
+  /// snapshot() then gives the picture. Only parts that differ from the previous scene are compiled again.
+  /// Throws Error (scene; internal for a frame that exceeds the memory) and then keeps the previous scene.
   std::uint64_t start(const Scene& scene, const SessionOptions& options = {});
-  /// Stops drawing; the picture so far stays.
+  /// Stops drawing; the picture so far remains.
   void cancel();
-  /// From the next start() on. Throws Error (device).
+  /// Takes effect at the next start(). Throws Error (device).
   void use_devices(const std::vector<Device>& devices);
 
-  /// Without the picture it takes microseconds.
+  /// Returns the current state; microseconds without the picture.
   Snapshot snapshot(bool with_picture = true) const;
   /// Waits until the newest generation is settled, stopped or failed.
   void wait() const;
-  /// The same for at most so many seconds; whether it is.
+  /// Waits likewise, for at most `seconds`; returns false on timeout.
   bool wait_for(double seconds) const;
-  /// Waits until Snapshot::revision differs from `revision`, at most so many seconds; whether it does.
+  /// Waits until Snapshot::revision differs from `revision`, for at most `seconds`; returns false on timeout.
   bool wait_for_change(std::uint64_t revision, double seconds) const;
-  /// wait(), then the picture, which has the bits of render(). Throws Error (device) when drawing failed.
+  /// Waits, then returns the picture, equal to render()'s to the bit. Throws Error (device) when drawing
+  /// failed.
   Image finish() const;
 
-  /// What a pixel shows, by one ray. Nothing outside of the frame, without a scene, or when a newer one
-  /// comes. The first call may build a kernel (seconds). Throws Error: device, build.
+  /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene, or
+  /// when a newer scene arrives. The first call may build a kernel (seconds). Throws Error: device, build.
   std::optional<Pick> pick(int x, int y);
 
  private:

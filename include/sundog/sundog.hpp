@@ -1,4 +1,4 @@
-// All of sundog's C++ interface. docs/library.md introduces it; <sundog/sundog.h> is the one for C.
+// The whole C++ interface of sundog (docs/library.md introduces it); <sundog/sundog.h> is the C interface.
 #pragma once
 #include <sundog/devices.h>
 #include <sundog/error.h>

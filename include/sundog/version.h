@@ -1,4 +1,4 @@
-// The library's version, and what its names are made visible with.
+// The library's version, and the macro that exports its symbols.
 #pragma once
 #if __cplusplus < 201709L  // C++20, as GCC 10 numbers it
 #error "sundog's C++ headers need C++20: compile with -std=c++20, or use the C interface, <sundog/sundog.h>"
@@ -14,10 +14,10 @@
 #define SUNDOG_API __attribute__((visibility("default")))
 
 namespace sundog {
-/// The version of the interface is part of the symbols' names; programs write sundog::Scene and the like.
+/// Part of the symbols' names; programs write sundog::Scene and the like.
 inline namespace v0 {
 
-/// "0.1.0": the version of the library that runs, which may be newer than the headers. Any thread.
+/// The version of the running library ("0.1.0"), which may be newer than the headers. Thread-safe.
 SUNDOG_API std::string version();
 
 }  // namespace v0

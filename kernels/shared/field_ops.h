@@ -1,6 +1,6 @@
-// The operations that the code of distance fields is made of. The host prints each as OpenCL C
-// (host/compile/fields/field_code.cpp), or packs it into the program that lib/sdf/interpret.cl runs: this
-// list gives both its meaning, so both give the same bits.
+// Operations in the code of distance fields. The host prints each as OpenCL C
+// (host/compile/fields/field_code.cpp) or encodes it for the interpreter lib/sdf/interpret.cl. This list
+// defines both, so both give the same bits.
 //   OP(name, expression of the operands)
 // Operands: A, B, C, D numbers; MA, MB, MC masks; PA, PB, PC, PD points; SA, SB samples; T a number of the
 // table, Q the table from there; N a whole number; I the iteration; K the cell of a repetition.
@@ -79,30 +79,29 @@ SUNDOG_SHARED_BEGIN
 #define SUNDOG_FIELD_OP(name, expression) FIELD_##name,
 enum FieldOp SUNDOG_ENUM_OF_U32 {
   FIELD_OPS(SUNDOG_FIELD_OP, SUNDOG_FIELD_OP, SUNDOG_FIELD_OP, SUNDOG_FIELD_OP)
-  // What a program alone needs. `x` is the instruction's second word.
-  FIELD_LITERAL,  // result: the float whose bits x is
-  FIELD_NUMBER,   // result: number x of the table
-  FIELD_START,    // counter d: 0
-  FIELD_MODULO,   // counter d: counter of the result's byte, modulo x
-  FIELD_NEXT,     // counter d: one more; continues at x
-  FIELD_JUMP,     // continues at x
-  FIELD_WHILE,    // continues at the low half of x where counter d has reached the table's number at its high
-                  // half
-  FIELD_BELOW,    // the same where it has reached the high half itself
-  FIELD_SKIP,     // the same where it has one of the bits of the high half
-  FIELD_LEAVE,    // continues at x where no lane of mask A is set
-  FIELD_END       // A is what the function returns
+  // Operations of programs only. `x` is the instruction's second word.
+  FIELD_LITERAL,  // result: x as the bits of a float
+  FIELD_NUMBER,   // result: entry x of the table
+  FIELD_START,    // counter d = 0
+  FIELD_MODULO,   // counter d = counter named by the result's byte, modulo x
+  FIELD_NEXT,     // increments counter d; jumps to x
+  FIELD_JUMP,     // jumps to x
+  FIELD_WHILE,    // jumps to the low half of x if counter d has reached the table entry at the high half
+  FIELD_BELOW,    // likewise, if it has reached the high half itself
+  FIELD_SKIP,     // likewise, if it has one of the bits of the high half
+  FIELD_LEAVE,    // jumps to x if no lane of mask A is set
+  FIELD_END       // returns A
 };
 #undef SUNDOG_FIELD_OP
 
-// An instruction is two words: op, result, A, B, a byte each from the lowest; then C, D or a counter, and in
-// the high half T, Q or N; or x. Registers hold a number or a mask, a point three of them, a sample eight.
-// The field's point and the active lanes come in the first four.
+// An instruction is two words: op, result, A, B, one byte each from the lowest; then C, D or a counter, and
+// in the high half T, Q or N; or x. Numbers and masks use one register, points three, samples eight. The
+// field's point and the active lanes are passed in the first four.
 #define FIELD_REGISTERS 128u
 #define FIELD_COUNTERS 20u
 #define FIELD_ACTIVE 3u
-// The table's first word is where the programs stand in it, 0 where there are none. There four words a field
-// say where each of its functions begins: distance, depth too, sample, and near, 0 where the field has none.
+// The table's first word is the offset of the programs in it, 0 without any. There, four words per field give
+// the start of each function: distance, signed distance, sample, and near (0 if the field has none).
 #define FIELD_FUNCTIONS 4u
 
 SUNDOG_SHARED_END

@@ -1,10 +1,10 @@
-// The table by which camera samples are placed: of one axis, by the cumulative density of the filter's
+// The table that places camera samples along one axis: the inverse of the cumulative density of the filter's
 // absolute value.
 #ifndef SUNDOG_SHARED_FILTER_H
 #define SUNDOG_SHARED_FILTER_H
 
-// Floats: the share of the lobes below zero; the distances from the centre that FILTER_STEPS equal shares of
-// the part above zero reach to, with 0 before them; the same of the lobes below zero.
+// Floats: the share of the negative lobes; 0 and the distances from the centre at FILTER_STEPS equal
+// quantiles of the positive part; likewise for the negative lobes.
 #define FILTER_STEPS 256
 #define FILTER_ABOVE 1
 #define FILTER_BELOW (FILTER_ABOVE + FILTER_STEPS + 1)

@@ -1,24 +1,23 @@
-// What one launch of an integrator makes: items [first_item, last_item) of a rectangle of pixels, row by row,
-// and samples [first_sample, first_sample + sample_count) of each of their pixels. A work-item takes `run`
-// items that follow each other.
+// One launch of an integrator: items [first_item, last_item) of a pixel rectangle, row by row, and samples
+// [first_sample, first_sample + sample_count) of each pixel. A work-item processes `run` consecutive items.
 #ifndef SUNDOG_SHARED_LAUNCH_H
 #define SUNDOG_SHARED_LAUNCH_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// A list's pixel of the image (x, y) is x | y << 16; NO_PIXEL is none.
+// A listed pixel (x, y) of the image is x | y << 16, or NO_PIXEL.
 #define NO_PIXEL 0xffffffffu
 
 // 52 bytes.
 typedef struct Launch {
-  u32 x0, y0, width, height;  // the rectangle, in pixels of the image
+  u32 x0, y0, width, height;  // the rectangle, in image pixels
   u32 first_item, last_item;
-  u32 row_items;  // work-items in a row of the launch
-  u32 blocks;     // 1: items of one pixel go through blocks of 8x4; 0: row by row
+  u32 row_items;  // work-items per row of the launch
+  u32 blocks;     // 1: single-pixel items are ordered in blocks of 8x4; 0: row by row
   u32 first_sample, sample_count;
-  u32 listed;       // 1: each pixel of the rectangle stands for one of the image, by a list
-  u32 counts_rays;  // 1: ray_counts has room for the pixels of the rectangle
-  u32 run;          // of render_whitted 1
+  u32 listed;       // 1: pixels of the rectangle stand for listed pixels of the image
+  u32 counts_rays;  // 1: ray_counts has room for the rectangle's pixels
+  u32 run;          // 1 for render_whitted
 } Launch;
 SUNDOG_SHARED_SIZE(Launch, 52)
 

@@ -1,9 +1,9 @@
-// The lights that have a place or a direction, in one list: from it come LIGHT_*, the description's
-// LightType, and the names in scene files and figures. Ambient lights are no part of it: they are summed into
+// The list of lights that have a position or a direction, which generates LIGHT_*, the description's
+// LightType, and names in scene files and figures. Ambient lights are not included: they are summed in
 // SceneInfo.ambient.
 //   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, LightExtent)
-// LightExtent (host/scene/kinds.h): `none`: light from one point or direction, with a falloff where it has a
-// position; `sampled`: places on it are chosen, rays do not meet it; `met`: sampled, and rays meet it too.
+// LightExtent (host/scene/kinds.h): `none`: light from a point or direction, with a falloff if it has a
+// position; `sampled`: an area that is sampled but invisible to rays; `met`: sampled and visible to rays.
 #ifndef SUNDOG_SHARED_LIGHTS_H
 #define SUNDOG_SHARED_LIGHTS_H
 #include "shared/types.h"
@@ -17,7 +17,7 @@ SUNDOG_SHARED_BEGIN
   LIGHT(DISK, disk, 1, 1, met)                \
   LIGHT(SPHERE, sphere, 1, 0, met)
 
-// What scene files say about them: the members of the host's LightDescription, with their defaults.
+// Keys in scene files: the members of the host's LightDescription, with defaults.
 //   KEY(type, name, default)
 #define LIGHT_KEYS(KEY)                                                                 \
   KEY(dvec3, color, {1, 1, 1})                                                          \
@@ -42,36 +42,36 @@ SUNDOG_SHARED_BEGIN
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
   LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS,
   LIGHT_SUN = LIGHT_KINDS,  // a directional light from a disk in the sky
-  LIGHT_ENVIRONMENT,        // from all around (shared/environment.h)
-  LIGHT_TRIANGLE            // of a mesh that shines: a corner and two edges
+  LIGHT_ENVIRONMENT,        // the environment (shared/environment.h)
+  LIGHT_TRIANGLE            // of an emissive mesh: a corner and two edges
 } LightKind;
 #undef LIGHT_CONSTANT
 
-// 96 bytes. A light with an extent shines from its front, the side that `direction` points to; a sphere from
-// its outside. direction.w: of a spot the cosine of the cone's outer half angle; of an extent its area; of a
-// sun 1 minus the cosine of its half angle, below 0 where no ray sees it.
+// 96 bytes. An area light emits from its front, the side that `direction` points to; a sphere, from its
+// outside. direction.w: spot: cosine of the outer half angle of the cone; area light: its area; sun: 1 -
+// cosine of its half angle, negative if invisible.
 typedef struct Light {
-  float4 position;   // world; of a rectangle the corner, else the centre; w = 1: an extent that rays do not
-                     // meet, of a sun: that those of the camera do not see
-  float4 direction;  // unit, the way the light travels; w: see above
-  float4 color;  // times intensity (the radiance, of an extent); w = cosine of the cone's inner half angle
+  float4 position;   // world; corner of a rectangle, else the centre; w = 1: an area light invisible to rays,
+                     // a sun invisible to the camera
+  float4 direction;  // unit, direction of emission; w: see above
+  float4 color;      // times intensity (radiance of an area light); w = cosine of a spot's inner half angle
   float falloff_constant, falloff_linear,
       falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
   u32 kind;               // LIGHT_*
-  float4 edge_u, edge_v;  // sides of a rectangle, from the centre to the rim of a disk; w = their lengths (of
-                          // a sphere edge_u.w is the radius). A spot's edge is s^2 (edge_u.x - edge_u.y s); a
-                          // point's and a spot's edge_v.x is 1 over the range, 0 without one
+  float4 edge_u, edge_v;  // sides of a rectangle, or from the centre to the rim of a disk; w = their lengths
+                          // (edge_u.w is a sphere's radius). A spot's edge is s^2 (edge_u.x - edge_u.y s); a
+                          // point's and a spot's edge_v.x is 1 / range, or 0
 } Light;
 SUNDOG_SHARED_SIZE(Light, 96)
 
-// Which rays see what is infinitely far away.
+// Rays that see infinitely distant light.
 #define SEEN_BY_NONE 0u
 #define SEEN_BY_ALL 1u
-#define SEEN_OFF_CAMERA 2u  // all but the camera's
+#define SEEN_OFF_CAMERA 2u  // all except camera rays
 
-#define LIGHT_CHOSEN 0xFFFFFFFFu  // LightRay.light: one of the lights of the tree, chosen for each surface
+#define LIGHT_CHOSEN 0xFFFFFFFFu  // LightRay.light: a light of the tree, chosen per surface
 
-// 16 bytes: a shadow ray that surfaces send, the number `ray` of the `rays` that share one light's weight.
+// 16 bytes: a shadow ray of every surface, number `ray` of `rays` that share one light's weight.
 typedef struct LightRay {
   u32 light;  // index
   u32 ray, rays;
@@ -79,12 +79,12 @@ typedef struct LightRay {
 } LightRay;
 SUNDOG_SHARED_SIZE(LightRay, 16)
 
-// 32 bytes: a node of the tree over the lights with an extent. Its left child follows it.
+// 32 bytes: a node of the tree over area lights. Its left child follows it.
 typedef struct LightNode {
   float lower[3];
   float power;  // of all its lights
   float upper[3];
-  u32 next;  // the right child, or LIGHT_LEAF | index of its light
+  u32 next;  // right child, or LIGHT_LEAF | index of its light
 } LightNode;
 SUNDOG_SHARED_SIZE(LightNode, 32)
 #define LIGHT_LEAF 0x80000000u

@@ -1,13 +1,12 @@
-// Metalness and roughness (glTF 2.0, appendix B) in the terms of the present model, in one place for both
-// sides. For a base colour b, metalness m, roughness r and the reflectance f of a dielectric seen straight
-// on:
+// Metalness and roughness (glTF 2.0, appendix B) in terms of the phong model, for host and device. For base
+// colour b, metalness m, roughness r and a dielectric's normal reflectance f:
 //   mirror share  k = m (1 - r)^2: only a smooth metal is a mirror
 //   reflection    b k
-//   highlight     s = f (1 - m) + b m, by Blinn with the exponent 2 / r^4 - 2 (Karis 2013: alpha = r^2). It
-//                 returns s h of the light that comes from everywhere, with an h of at most (1 - k) / 2: a
-//                 rough one is weaker
-//   diffuse       b (1 - k - h (m + f (1 - m))), which the highlight leaves, and a tenth of it ambient
-// The device has metalness and roughness from textures, the host has them as numbers.
+//   highlight     s = f (1 - m) + b m, Blinn with exponent 2 / r^4 - 2 (Karis 2013: alpha = r^2). It
+//                 returns s h of uniform light, where h is at most (1 - k) / 2: a rough one is
+//                 weaker
+//   diffuse       b (1 - k - h (m + f (1 - m))), the rest, and a tenth of it ambient
+// Devices take metalness and roughness from textures, the host from numbers.
 #ifndef SUNDOG_SHARED_METAL_ROUGH_H
 #define SUNDOG_SHARED_METAL_ROUGH_H
 #include "shared/types.h"
@@ -37,12 +36,12 @@ SUNDOG_METAL_INLINE SUNDOG_METAL_REAL rough_exponent(SUNDOG_METAL_REAL roughness
   return SUNDOG_METAL_CLAMP(2.0f / SUNDOG_METAL_CLAMP(square * square, 1e-9f, 1.0f) - 2.0f, 1.0f, 1e5f);
 }
 
-/// The light of a white surrounding that max(n.h, 0)^e returns, seen along n: from elsewhere it is less.
+/// The fraction of uniform white light that max(n.h, 0)^e reflects along n, its maximum.
 SUNDOG_METAL_INLINE SUNDOG_METAL_REAL highlight_energy(SUNDOG_METAL_REAL e) {
   return 8.0f * (1.0f - SUNDOG_METAL_EXP(-0.34657359f * (e + 2.0f))) / (e + 2.0f);
 }
 
-/// h of the above. A mirror keeps the small highlight that it has.
+/// h in the comment above. A mirror keeps its small highlight.
 SUNDOG_METAL_INLINE SUNDOG_METAL_REAL metal_highlight(SUNDOG_METAL_REAL energy, SUNDOG_METAL_REAL mirror) {
   return SUNDOG_METAL_CLAMP(0.5f * (1.002f - mirror), 0.0f, energy);
 }

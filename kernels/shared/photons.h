@@ -1,17 +1,16 @@
-// Photons: light on its way from the lamps through glass and off mirrors, and the maps that keep where it
-// lands (Jensen 1996, "Global Illumination using Photon Maps"; Hachisuka and Jensen 2009, "Stochastic
-// Progressive Photon Mapping"). A sample of a pixel looks at one map, samples one after another at many: each
-// has photons of its own and a smaller radius than those before, and is independent of them (Knaus and
-// Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach").
+// Photon maps of light that lamps send through glass and off mirrors (Jensen 1996, "Global Illumination using
+// Photon Maps"; Hachisuka and Jensen 2009, "Stochastic Progressive Photon Mapping"). A pixel sample uses one
+// map, successive samples use many: each map has its own photons and a smaller radius than those before, and
+// is independent of them (Knaus and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach").
 #ifndef SUNDOG_SHARED_PHOTONS_H
 #define SUNDOG_SHARED_PHOTONS_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define PHOTON_MAP_SAMPLES 4u  // of each pixel look at one map, among the first PHOTON_SAMPLES
-#define PHOTON_SAMPLES 1024u   // each time that samples double from here on, those on a map double
+#define PHOTON_MAP_SAMPLES 4u  // samples of each pixel that use one map, among the first PHOTON_SAMPLES
+#define PHOTON_SAMPLES 1024u   // from here on, samples per map double whenever samples double
 
-// The number of the map that a pixel's sample looks at.
+// The number of the map that a pixel's sample uses.
 static inline u32 photon_map_of(u32 sample) {
   u32 number = 0, first = 0, share = PHOTON_MAP_SAMPLES, end = PHOTON_SAMPLES;
   while (sample >= end) {
@@ -23,35 +22,35 @@ static inline u32 photon_map_of(u32 sample) {
   return number + (sample - first) / share;
 }
 
-// 32 bytes: a ball about things that mirror or bend light, which photons are sent to. Row 0 of the table is a
-// ball about everything.
+// 32 bytes: a target of photons: a ball around reflecting or refracting objects. Row 0 of the table is a ball
+// around everything.
 typedef struct PhotonTarget {
   float4 ball;   // w = radius
-  float weight;  // the part of the photons that is sent there
-  float before;  // the sum of the weights of the rows before
+  float weight;  // fraction of photons sent to it
+  float before;  // sum of the weights of earlier rows
   u32 pad0, pad1;
 } PhotonTarget;
 SUNDOG_SHARED_SIZE(PhotonTarget, 32)
 
-// 32 bytes: one map. Its photons lie in cubes of two radii along each axis; those of a cube stand together in
-// the table `photons`, in the order of their numbers, and other cubes' may stand among them. photon_cells
-// has where each cell's photons begin, a cell more than there are.
+// 32 bytes: one map. Its photons are hashed by cubes with edges of two radii; those of a cube are contiguous
+// in the table `photons`, in order of their numbers, perhaps mixed with those of colliding cubes.
+// photon_cells holds the start of each cell's photons, and the end.
 typedef struct PhotonMap {
   u32 number;
   u32 first_cell;      // in photon_cells
-  u32 cell_mask;       // the number of cells, a power of two, less 1
-  float radius;        // within which photons count
-  float inverse_edge;  // 1 over a cube's edge
+  u32 cell_mask;       // number of cells, a power of two, minus 1
+  float radius;        // photons within it count
+  float inverse_edge;  // 1 / a cube's edge
   u32 pad0, pad1, pad2;
 } PhotonMap;
 SUNDOG_SHARED_SIZE(PhotonMap, 32)
 
-#define NO_PHOTON 0xffffffffu  // the cell of a photon that has not landed
+#define NO_PHOTON 0xffffffffu  // the cell of a photon that did not land
 
-// 32 bytes: what one launch makes: photons [first, last) of the map `map`, which sends out `count`.
+// 32 bytes: one launch: photons [first, last) of the map `map`, which emits `count`.
 typedef struct PhotonLaunch {
   u32 map, first, last, count;
-  u32 targets;  // rows of photon_targets, row 0 among them
+  u32 targets;  // rows of photon_targets, including row 0
   float inverse_edge;
   u32 pad0, pad1;
 } PhotonLaunch;

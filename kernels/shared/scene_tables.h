@@ -1,10 +1,9 @@
-// The tables of a compiled scene, each once: from this list come the compiled scene's members, their upload,
-// bytes and hash, the kernels' parameters and the struct Scene that kernels hand on. A new table is one line
-// here.
-// The three tables of maps of photons are empty in a compiled scene: each device fills its own.
+// The tables of a compiled scene. This list generates the compiled scene's members, their upload, size and
+// hash, the kernels' parameters and the struct Scene. A new table is one line here. The three tables of
+// photon maps are empty in a compiled scene: each device fills its own.
 //   TABLE(element on the device, element on the host, name, name in messages)
-// Only `nodes` differ: Bvh8Nodes are uploaded as they are, or as CompactNodes for devices that run a lane a
-// ray.
+// Only `nodes` has two element types: Bvh8Nodes are uploaded unchanged, or as CompactNodes for devices with
+// one ray per lane.
 #ifndef SUNDOG_SHARED_SCENE_TABLES_H
 #define SUNDOG_SHARED_SCENE_TABLES_H
 #include "shared/bvh.h"

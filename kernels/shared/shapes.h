@@ -1,8 +1,8 @@
-// What an instance places: a mesh, one of the exact solids, or a distance field. The solids in one list: from
-// it come SHAPE_*, HAS_*, HAS_SOLID, the description's Shape, and the names in scene files and figures.
+// Shapes of instances: meshes, exact solids, distance fields. The list of solids generates SHAPE_*, HAS_*,
+// HAS_SOLID, the description's Shape, and names in scene files and figures.
 //   SOLID(constant after SHAPE_ and HAS_, description's struct before Shape, name)
-// Exact solids are unit shapes; their transform scales them, `parameters` holds what a transform cannot (all
-// in object space, y is the axis).
+// Exact solids are unit shapes scaled by their transform; `parameters` holds what a transform cannot express
+// (in object space, y is the axis).
 #ifndef SUNDOG_SHARED_SHAPES_H
 #define SUNDOG_SHARED_SHAPES_H
 #include "shared/types.h"
@@ -22,13 +22,13 @@ SUNDOG_SHARED_BEGIN
   SOLID(ROUNDBOX, RoundBox, round_box) /* half sizes parameters.xyz, edges rounded with radius parameters.w  \
                                           (<= the smallest half size) */
 
-// Instance.shape, and the index of the description's Shape.
+// Instance.shape, and the alternatives' indices in the description's Shape.
 #define SHAPE_CONSTANT(constant, type, name) SHAPE_##constant,
 typedef enum ShapeKind SUNDOG_ENUM_OF_U32 { SHAPE_MESH, SOLIDS(SHAPE_CONSTANT) SHAPE_SDF } ShapeKind;
 #undef SHAPE_CONSTANT
 #define SHAPE_COUNT (SHAPE_SDF + 1u)
 
-// Whether the scene has any exact solid.
+// Whether the scene contains exact solids.
 #define HAS_SOLID_OR(constant, type, name) HAS_##constant ||
 #define HAS_SOLID (SOLIDS(HAS_SOLID_OR) 0)
 

@@ -1,14 +1,14 @@
-// Textures: what a material may have in place of a colour or a number. A texture is a small graph, kept as a
-// row of nodes: each takes what it needs from a stack of values and leaves its own there; the node with
-// TEXTURE_LAST is the texture's. Images lie in levels (Williams 1983, "Pyramidal Parametrics") of tiles of
-// 4x4 texels, so that the four texels of one sample mostly lie in one line of the cache.
+// Textures, which replace a material's colour or number. A texture is a small graph, stored as a row of nodes
+// in postfix order: each pops its operands from a stack and pushes its value; the node with TEXTURE_LAST
+// gives the result. Images are mip levels (Williams 1983, "Pyramidal Parametrics") in tiles of 4x4 texels, so
+// that a sample's four texels usually share a cache line.
 #ifndef SUNDOG_SHARED_TEXTURES_H
 #define SUNDOG_SHARED_TEXTURES_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-// The kinds of nodes in one list: from it come TEXTURE_* and the description's TextureKind. Bit i of the
-// feature TEXTURE_KINDS is set where a scene has kind i. Patterns give a number t, which mixes two colours.
+// The list of node kinds, which generates TEXTURE_* and the description's TextureKind. Bit i of the feature
+// TEXTURE_KINDS is set if a scene has kind i. Patterns give a number t, which mixes two colours.
 //   TEXTURE(constant after TEXTURE_, name in scene files)
 // A table:
 // clang-format off
@@ -33,22 +33,22 @@ SUNDOG_SHARED_BEGIN
 typedef enum TextureKind SUNDOG_ENUM_OF_U32 { TEXTURES(TEXTURE_CONSTANT) TEXTURE_COUNT } TextureKind;
 #undef TEXTURE_CONSTANT
 
-#define TEXTURE_LAST 1u          // the texture ends here
-#define TEXTURE_SRGB 2u          // an image's bytes become linear by the table at the start of texture_values
-#define TEXTURE_NEAREST 4u       // the nearest texel of the nearest level
-#define TEXTURE_BILINEAR 8u      // four texels of the nearest level; without both flags eight texels of two
+#define TEXTURE_LAST 1u          // last node of the texture
+#define TEXTURE_SRGB 2u          // decode image bytes with the table at the start of texture_values
+#define TEXTURE_NEAREST 4u       // nearest texel of the nearest level
+#define TEXTURE_BILINEAR 8u      // four texels of the nearest level; without both flags trilinear
 #define TEXTURE_WRAP_U_SHIFT 4u  // WRAP_*
 #define TEXTURE_WRAP_V_SHIFT 6u
 #define TEXTURE_FORMAT_SHIFT 8u    // TEXEL_*
-#define TEXTURE_CHANNEL_SHIFT 12u  // a channel's number, for numbers: all four are then that one
+#define TEXTURE_CHANNEL_SHIFT 12u  // replicates this channel, for numbers
 #define TEXTURE_ONE_CHANNEL 0x4000u
-#define TEXTURE_MIXES 0x8000u  // t mixes the two values on the stack; else factor and offset hold the colours
+#define TEXTURE_MIXES 0x8000u  // t mixes two values on the stack; else factor and offset hold the colours
 
 #define WRAP_REPEAT 0u
 #define WRAP_MIRROR 1u
 #define WRAP_CLAMP 2u
 
-// How texels are kept: the two low bits are the logarithm of a texel's bytes, the others its samples.
+// Texel formats: the two low bits are log2 of a texel's bytes, the others its samples.
 #define TEXEL_SIZE_MASK 3u
 #define TEXEL_WORDS 4u
 #define TEXEL_HALVES 8u
@@ -59,35 +59,34 @@ typedef enum TextureKind SUNDOG_ENUM_OF_U32 { TEXTURES(TEXTURE_CONSTANT) TEXTURE
 #define TEXEL_GREY_HALF (TEXEL_HALVES | 1u)
 #define TEXEL_RGBA_HALF (TEXEL_HALVES | 3u)
 
-// What a texture's coordinates are made from. Bit i of the feature TEXTURE_MAPPINGS is set where a scene has
-// i.
+// Sources of texture coordinates. Bit i of the feature TEXTURE_MAPPINGS is set if a scene has mapping i.
 #define MAPPING_UV 0u  // the surface's u and v (lib/shade/parametrize.cl); the set is above MAPPING_SET_SHIFT
-#define MAPPING_OBJECT 1u       // the point in the object's own units; x and y are u and v
-#define MAPPING_SPHERICAL 2u    // longitude about y from +x to -z, and latitude, both over [0, 1]
+#define MAPPING_OBJECT 1u       // the point in object units; u and v are x and y
+#define MAPPING_SPHERICAL 2u    // longitude about y from +x to -z, and latitude, both in [0, 1]
 #define MAPPING_CYLINDRICAL 3u  // longitude and y
-#define MAPPING_BOX 4u          // along the three axes, mixed by the normal
+#define MAPPING_BOX 4u          // along the three axes, blended by the normal
 #define MAPPING_KIND 0xFFu
 #define MAPPING_SET_SHIFT 8u
 
 // 160 bytes.
 typedef struct TextureNode {
-  float4 rows[3];         // from the object's units to the mapping's
-  float4 uv_rows[2];      // xyz: from the mapping's u and v (and 1) to the texture's
-  float4 factor, offset;  // the node's value is what its kind gives, times factor, plus offset
+  float4 rows[3];         // from object units to the mapping's
+  float4 uv_rows[2];      // xyz: from the mapping's (u, v, 1) to the texture's
+  float4 factor, offset;  // value = kind's value * factor + offset
   u32 kind;               // TEXTURE_*
   u32 flags;
   u32 mapping;       // MAPPING_*
-  u32 first, count;  // levels of an image; stops of a ramp: place, red, green, blue each
-  float scale;       // texels (of an image) or units (of a pattern) on a unit of the mapping
+  u32 first, count;  // levels of an image; stops of a ramp: position, red, green, blue each
+  float scale;       // texels (image) or units (pattern) per unit of the mapping
   float parameter[6];
 } TextureNode;
 SUNDOG_SHARED_SIZE(TextureNode, 160)
 
 #define MOST_TEXTURE_STACK 16u
 
-// 16 bytes: a level of an image.
+// 16 bytes: a mip level of an image.
 typedef struct TexelLevel {
-  u32 first;  // of the texels, in units of TEXEL_UNIT bytes
+  u32 first;  // offset in units of TEXEL_UNIT bytes
   u32 width, height;
   u32 row_tiles;
 } TexelLevel;
@@ -95,11 +94,11 @@ SUNDOG_SHARED_SIZE(TexelLevel, 16)
 
 #define TEXEL_TILE 4u                // texels along a tile's edge
 #define TEXEL_UNIT 16u               // bytes
-#define TEXEL_ALIGNMENT 8u           // units: the greatest tile, which no page's end cuts
-#define TEXEL_PAGE_BYTES 0x8000000u  // of texels0 to texels3, at least: every device has 128 MiB in a piece
-#define TEXEL_PAGES 4u               // and a quarter of its memory
+#define TEXEL_ALIGNMENT 8u           // units: the largest tile; pages never split one
+#define TEXEL_PAGE_BYTES 0x8000000u  // minimum of texels0 to texels3: every device can allocate 128 MiB
+#define TEXEL_PAGES 4u               // and a quarter of its memory at once
 
-// What a material takes from textures, each a factor on the material's own value.
+// Textures of a material, each a factor on the material's own value.
 //   SLOT(constant after MAP_, member of the description's MaterialTextures)
 #define MAP_SLOTS(SLOT)                                                          \
   SLOT(AMBIENT, ambient)                                                         \
@@ -127,23 +126,23 @@ typedef enum MapSlot SUNDOG_ENUM_OF_U32 { MAP_SLOTS(MAP_CONSTANT) MAP_COUNT } Ma
 #define NO_TEXTURE 0xFFFFFFFFu
 #define NO_MAPS 0u
 
-// 160 bytes: what a material has beside Material, which counts these from 1. Entry 0 is not used.
+// 160 bytes: texture data of a material, indexed from 1 by Material. Entry 0 is unused.
 typedef struct MaterialMaps {
-  u32 slot[20];  // by MAP_*: the first node of a texture, or NO_TEXTURE
-  float4 base;   // of a material by metalness and roughness: its colour; w = metalness
+  u32 slot[20];  // by MAP_*: first node of a texture, or NO_TEXTURE
+  float4 base;   // base colour of a metal-rough material; w = metalness
   float opacity;
   float roughness;
-  float reflectance;    // of a dielectric seen straight on
-  float cutoff;         // of the opacity: below it nothing is there, else all; 0: in between as well
+  float reflectance;    // normal reflectance of the dielectric
+  float cutoff;         // alpha test: opacity becomes 0 below it and 1 from there on; 0: no test
   float normal_scale;   // factor on a normal map's x and y
-  float bump;           // height of a 1 in the height map, in the object's own units
-  float height_texels;  // of the height's image on a unit of u and v; 0: no image
-  float occlusion;      // how much of the occlusion counts
-  float parallax;       // depth of a 0 of the heights below a 1, which is the surface; 0: no parallax
-  float bump_uv;        // the same height in units of u and v
-  float coat;           // a clear layer's mirror above all else
+  float bump;           // height of 1 in the height map, in object units
+  float height_texels;  // texels of the height image per unit of u and v; 0: no image
+  float occlusion;      // strength of occlusion
+  float parallax;       // depth of height 0 below height 1, which is the surface; 0: no parallax
+  float bump_uv;        // likewise in units of u and v
+  float coat;           // reflectance of a clear layer on top
   u32 pad;
-  float4 normal_turn;  // of a normal map's picture: the ways in u and v, of length 1, that its x and y go
+  float4 normal_turn;  // of a normal map: the unit directions in (u, v) of its x and y
 } MaterialMaps;
 SUNDOG_SHARED_SIZE(MaterialMaps, 160)
 

@@ -1,5 +1,5 @@
-// The scalar and vector types that host and kernels share: 4-byte scalars and 16-byte vectors only, so that
-// every OpenCL compiler lays the structs of this folder out as the host does (a probe kernel checks it).
+// Scalar and vector types shared by host and kernels: only 4-byte scalars and 16-byte vectors, so that OpenCL
+// compilers lay out these structs like the host (a probe kernel checks it).
 #ifndef SUNDOG_SHARED_TYPES_H
 #define SUNDOG_SHARED_TYPES_H
 

@@ -8,16 +8,16 @@
 namespace sundog {
 namespace {
 
-/// In (0, 1), spread so evenly over neighbours that no pattern is seen: the additive recurrence of the
-/// plastic number in two dimensions, folded (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
-/// Sequences"). It keeps away from 0 and 1, so that rounding of what 8 bits hold moves nothing.
+/// A threshold in (0, 1), spread evenly over neighbours so that no pattern shows: the additive recurrence of
+/// the plastic number in two dimensions, folded (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+/// Sequences"). It stays away from 0 and 1, so that rounding does not move exact 8-bit values.
 double dither_threshold(std::size_t x, std::size_t y, std::size_t channel) {
   const auto turn = static_cast<std::uint32_t>(x * 3242174889u + y * 2447445413u + channel * 1431655765u);
   const std::uint32_t folded = turn < 0x80000000u ? turn * 2 : ~turn * 2;
   return (double(folded >> 24) + 0.5) / 256;
 }
 
-/// The linear values of the levels that 8 bits hold.
+/// Linear values of the 256 sRGB levels.
 std::array<float, 256> make_levels() {
   std::array<float, 256> levels{};
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = linear_from_srgb(static_cast<float>(i) / 255);

@@ -1,13 +1,13 @@
-// Colours on their way to 8 bits: gradients show no steps.
+// Dithers images to 8 bits, so that gradients show no bands.
 #pragma once
 
 #include "base/image.h"
 
 namespace sundog {
 
-/// Sets the first three channels, linear, to values that 8 bits in sRGB hold: rounded up or down by chance,
-/// in proportion to where a colour lies between two levels, so that means stay. Chance is a function of the
-/// pixel's place and the channel; what 8 bits hold already, 0, 1 and what is beyond them stays.
+/// Rounds the first three channels, linear, to values that 8-bit sRGB represents exactly. Rounds up or down
+/// with a probability that preserves the mean; the random number depends only on the pixel and the channel.
+/// Values that 8 bits represent exactly, and those outside 0..1, are unchanged.
 void dither_to_8_bits(Image& image);
 
 }  // namespace sundog

@@ -1,6 +1,6 @@
-// The header of an EXR file before OpenEXR reads it, which takes the memory that a header asks for, however
-// short the file is. By the file layout of OpenEXR's documentation: attributes of a name, a type, a size of 4
-// bytes, and so many bytes.
+// Validates an EXR header before OpenEXR reads it, because OpenEXR allocates the memory that a header
+// requests, however short the file. Layout (OpenEXR's documentation): attributes of a name, a type, a size of
+// 4 bytes, and the value.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace sundog {
 namespace {
 
-// No compression of EXR packs more pixels into a byte.
+// Upper bound over EXR's compression methods.
 constexpr std::uint64_t pixels_a_byte = 2000;
 
-// What every file may make the library take for a block of lines or a tile.
+// Memory that any file may request for a block of lines or a tile.
 constexpr std::uint64_t block_bytes = std::uint64_t{256} << 20, tile_pixels = std::uint64_t{1} << 22;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error("the EXR file " + what); }
 
-/// Goes through bytes; throws where they end too soon.
+/// A bounds-checked byte reader; throws at the end of input.
 class Walk {
  public:
   explicit Walk(std::string_view bytes) : rest_(bytes) {}
@@ -56,13 +56,13 @@ class Walk {
 
 struct Shape {
   std::int64_t width = 0, height = 0;
-  std::uint64_t pixel_bytes = 0;  // of all channels
+  std::uint64_t pixel_bytes = 0;  // over all channels
   bool alpha = false;
-  std::uint64_t lines = 1;  // that are compressed together
+  std::uint64_t lines = 1;  // compressed together
   std::uint64_t tile_pixels = 0;
 };
 
-/// A small picture for lists of files: its size must be that of its pixels.
+/// A thumbnail; its size must match its pixels.
 void check_preview(Walk value) {
   const std::uint64_t width = value.number<std::uint32_t>(), height = value.number<std::uint32_t>();
   if (4 * width * height != value.left())
@@ -73,9 +73,9 @@ void check_strings(Walk value) {
   while (value.left() > 0) value.take(value.number<std::uint32_t>());
 }
 
-/// Names of objects, packed by zlib behind their size.
+/// An idmanifest attribute: object names, zlib-packed after their size.
 void check_manifest(Walk value) {
-  constexpr std::uint64_t most_ratio = 1100;  // of zlib
+  constexpr std::uint64_t most_ratio = 1100;  // zlib's maximum
   const auto unpacked = value.number<std::uint64_t>();
   if (unpacked / most_ratio > value.left())
     refuse(fmt::format("says an idmanifest of {} bytes in {}", unpacked, value.left()));
@@ -86,7 +86,7 @@ void read_channels(Walk value, Shape& shape) {
   for (std::string_view name = value.text(); !name.empty(); name = value.text()) {
     shape.alpha |= name == "A";
     shape.pixel_bytes += value.number<std::int32_t>() == 1 ? 2 : 4;  // half, or float and unsigned
-    value.take(12);                                                  // whether it is linear, its sampling
+    value.take(12);                                                  // linearity flag, sampling
   }
 }
 

@@ -1,4 +1,4 @@
-// Which files have alpha, by their headers (PNG: ISO 15948, chunks IHDR and tRNS).
+// Detects alpha in image files by their headers (PNG: ISO 15948, chunks IHDR and tRNS).
 #include <webp/decode.h>
 
 #include "base/image_codecs.h"

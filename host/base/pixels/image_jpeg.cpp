@@ -1,4 +1,4 @@
-// JPEG through libjpeg-turbo. Grey stays grey.
+// Decodes JPEG with libjpeg-turbo. Grey stays grey.
 #include <fmt/format.h>
 #include <turbojpeg.h>
 
@@ -15,10 +15,10 @@ struct DestroyJpeg {
   void operator()(void* handle) const { tjDestroy(handle); }
 };
 
-/// A block of 64 pixels takes a bit at least where it is Huffman-coded; twice that for arithmetic coding.
+/// A Huffman-coded block of 64 pixels takes at least a bit; doubled for arithmetic coding.
 constexpr std::int64_t jpeg_pixels_a_byte = 1024;
 
-/// libjpeg makes up pixels that are missing and warns of it; some warnings are of no consequence.
+/// libjpeg invents missing pixels with a warning; other warnings are harmless.
 void check_jpeg(void* handle, int result) {
   if (result == 0) return;
   const std::string_view reason = tjGetErrorStr2(handle);
@@ -27,7 +27,7 @@ void check_jpeg(void* handle, int result) {
       fmt::format("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found a bad JPEG: {}", reason));
 }
 
-/// Adobe's inks are stored inverted: 255 is no ink.
+/// Adobe stores inks inverted: 255 is no ink.
 void colors_from_inks(std::vector<std::uint8_t>& data) {
   for (std::size_t i = 0; i + 3 < data.size(); i += 4) {
     const unsigned black = data[i + 3];

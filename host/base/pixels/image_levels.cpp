@@ -17,7 +17,7 @@ namespace {
 
 using Sample = StoredImage::Sample;
 
-/// A level in linear floats; colours times alpha where they count by it.
+/// A level as linear floats; colours premultiplied if weighted by alpha.
 struct LinearLevel {
   int width = 0, height = 0;
   std::size_t channels = 4;
@@ -33,7 +33,7 @@ const std::array<float, 256>& linear_bytes() {
   return table;
 }
 
-/// Bytes by linear values, at steps so fine that the nearest one is right to a quarter of a byte.
+/// Linear value to sRGB byte, in steps fine enough that the result is within a quarter of a level.
 constexpr std::size_t srgb_steps = std::size_t{1} << 14;
 const std::vector<std::uint8_t>& srgb_bytes() {
   static const auto table = [] {
@@ -52,7 +52,7 @@ std::uint16_t word_at(const StoredImage& image, std::size_t sample) {
   return word;
 }
 
-/// One pixel's channels, linear; colours times alpha where they count by it.
+/// A pixel's linear channels; colours premultiplied if weighted by alpha.
 template <std::size_t channels>
 using Pixel = std::array<float, channels>;
 
@@ -64,7 +64,7 @@ Pixel<channels> mean_of_pixels(const Pixel<channels>& a, const Pixel<channels>& 
   return mean;
 }
 
-/// Pixels of a level.
+/// Reads pixels of a LinearLevel.
 template <std::size_t channels>
 class LevelReader {
  public:
@@ -74,19 +74,19 @@ class LevelReader {
     std::copy_n(data_ + at * channels, channels, pixel.begin());
     return pixel;
   }
-  /// The mean of 2x2 pixels from `at` on.
+  /// Mean of the 2x2 pixels starting at `at`.
   Pixel<channels> mean_of_four(std::size_t at, std::size_t width) const {
     const LevelReader& read = *this;
     return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
   }
-  /// Rows that are passed on already.
+  /// A level's rows have been passed on already.
   void pass_rows(int, int, const TakeRow&) const {}
 
  private:
   const float* data_;
 };
 
-/// Samples of an image as linear floats.
+/// Reads pixels of a StoredImage as linear floats.
 template <std::size_t channels>
 class SampleReader {
  public:
@@ -113,7 +113,7 @@ class SampleReader {
       for (std::size_t c = 0; c + 1 < channels; ++c) pixel[c] *= pixel[channels - 1];
     return pixel;
   }
-  /// The mean of 2x2 pixels from `at` on.
+  /// Mean of the 2x2 pixels starting at `at`.
   Pixel<channels> mean_of_four(std::size_t at, std::size_t width) const {
     const SampleReader& read = *this;
     if (channels == 4 && image_.sample == Sample::byte) {
@@ -128,7 +128,7 @@ class SampleReader {
   }
 
  private:
-  /// The same, to the bit, without the work for alpha.
+  /// mean_of_four() for opaque pixels: equal to the bit, cheaper.
   Pixel<channels> mean_of_opaque(const std::uint8_t* up, const std::uint8_t* down) const {
     Pixel<channels> mean;
     for (std::size_t c = 0; c < channels; ++c)
@@ -142,7 +142,7 @@ class SampleReader {
   std::array<float, 256> table_{}, plain_{};
 };
 
-/// Which pixels of an edge make pixel `i` of the half edge, from 2 i on, and their weights.
+/// Weights of the source pixels from 2 i on that make pixel `i` of the halved edge.
 std::array<float, 3> weights_of(int edge, int i) {
   if (edge == 1) return {1, 0, 0};
   if (edge % 2 == 0) return {0.5f, 0.5f, 0};
@@ -151,7 +151,7 @@ std::array<float, 3> weights_of(int edge, int i) {
   return {static_cast<float>(half - i) / n, static_cast<float>(half) / n, static_cast<float>(i + 1) / n};
 }
 
-/// The weighted mean of up to 3x3 pixels from `at` on, of an edge that is odd.
+/// Weighted mean of up to 3x3 pixels starting at `at`, for odd edges.
 template <std::size_t channels, class Read>
 Pixel<channels> weighted_mean(const Read& read, std::size_t at, std::size_t width,
                               const std::array<float, 3>& across, const std::array<float, 3>& down) {
@@ -166,7 +166,7 @@ Pixel<channels> weighted_mean(const Read& read, std::size_t at, std::size_t widt
   return sum;
 }
 
-/// Rounds what is not negative.
+/// Rounds a non-negative value.
 std::size_t rounded(float value) {
   return static_cast<std::size_t>(value + 0.5f);  // NOLINT(bugprone-incorrect-roundings): faster than lround
 }
@@ -178,8 +178,8 @@ std::uint16_t word_of(float value, Sample kind) {
                               : static_cast<std::uint16_t>(rounded(unit_clamped(value) * 65535));
 }
 
-/// Writes `count` pixels of linear floats as samples. `table` is that of sRGB bytes, or none where they are
-/// linear; colours that count by their alpha are divided by it.
+/// Converts `count` linear pixels to samples. `table` maps to sRGB bytes; empty for linear samples. Colours
+/// weighted by alpha are divided by it.
 template <std::size_t channels>
 void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse use, std::uint8_t* to) {
   const bool by_alpha = use == SampleUse::color_by_alpha && channels == 4;
@@ -201,19 +201,19 @@ void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse u
   }
 }
 
-/// Levels that one pass makes at most: each task then needs few rows of each, which stay in the cache.
+/// Levels per pass; few enough that a task's rows stay in the cache.
 constexpr int most_steps = 6;
 
-/// Makes the levels after one, without storing more of them in floats than two rows each.
+/// Computes the levels after one, holding at most two float rows per level.
 template <std::size_t channels, class Read>
 class LevelMaker {
  public:
-  /// `read` reads level number `level`.
+  /// `read` reads level `level`.
   LevelMaker(const Read& read, int width, int height, std::size_t level, Sample kind, SampleUse use,
              const TakeRow& take)
       : read_(read), width_(width), height_(height), level_(level), kind_(kind), use_(use), take_(take) {}
 
-  /// As many levels as halve evenly, up to `most`, and one if none does. Returns the last one, and adds their
+  /// Makes up to `most` levels while edges are even, at least one. Returns the last one, and adds their
   /// number to `made`.
   LinearLevel make(int most, std::size_t& made) {
     const auto evenly = [](int edge) { return std::countr_zero(static_cast<unsigned>(edge)); };
@@ -234,7 +234,7 @@ class LevelMaker {
   }
 
  private:
-  /// Two rows of floats of each level but the last, and a row of samples.
+  /// Two float rows of each level but the last, and a row of samples.
   struct Scratch {
     std::array<std::vector<float>, most_steps> pairs;
     std::vector<std::uint8_t> samples;
@@ -251,7 +251,7 @@ class LevelMaker {
     return scratch;
   }
 
-  /// Row `y` of the level `step` after the source, and before it all rows that it is made of.
+  /// Makes row `y` of the level `step` after the source, and first the rows that it averages.
   void make_row(int step, int y, float* to, Scratch& scratch) const {
     const auto columns = static_cast<std::size_t>(width_of(step));
     if (step == 1) {

@@ -1,5 +1,4 @@
-// PNG through libspng, which is given the image's limits before it decodes a pixel; the pixels of the most
-// common files by png_pixels.h.
+// Decodes PNG with libspng, under limits set before decoding; the most common files with png_pixels.h.
 #include <fmt/format.h>
 #include <spng.h>
 
@@ -18,9 +17,9 @@ namespace {
 
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
-/// Deflate packs at most 1032 bytes into one, and eight pixels fit into a byte.
+/// Deflate packs at most 1032 bytes into one, and a byte holds at most eight pixels.
 constexpr std::int64_t png_pixels_a_byte = std::int64_t{1032} * 8;
-/// Texts, profiles: nothing of them is used.
+/// Texts and profiles are ignored.
 constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
 
 void check_png(int error) {
@@ -35,7 +34,7 @@ std::uint32_t big_endian(std::string_view four) {
   return value;
 }
 
-/// How the samples are wanted: grey stays grey where nothing is transparent.
+/// The output format; grey stays grey unless something is transparent.
 spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& stored) {
   const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && !transparent;
   stored.channels = grey ? 1 : 4;
@@ -44,7 +43,7 @@ spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& st
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
 }
 
-/// Channels of a file whose pixels need nothing from libspng; 0 for others.
+/// Channels of a file that png_pixels.h can decode; 0 for others.
 std::size_t plain_channels(const spng_ihdr& header, bool transparent) {
   if (header.bit_depth != 8 || header.interlace_method != SPNG_INTERLACE_NONE || transparent) return 0;
   switch (header.color_type) {
@@ -71,7 +70,7 @@ std::optional<float> png_decoding_exponent(std::string_view bytes) {
     const std::size_t length = big_endian(bytes.substr(at, 4));
     if (type == "gAMA" && length == 4) {
       const std::uint32_t gamma = big_endian(bytes.substr(at + 8, 4));  // 100000 times the encoding exponent
-      // 0.45455 is what writers say who mean sRGB.
+      // Writers of sRGB files state 0.45455.
       if (gamma > 0 && (gamma < 45000 || gamma > 46000)) exponent = 1e5f / static_cast<float>(gamma);
     }
     at += 12 + length;

@@ -12,9 +12,9 @@
 namespace sundog {
 namespace {
 
-/// Images beyond this are left to libspng, which needs no more than a row besides the pixels.
+/// Larger images are left to libspng, which buffers only a row besides the pixels.
 constexpr std::size_t most_filtered_bytes = std::size_t{1} << 28;
-/// Behind the filtered rows, because pixels are read four bytes at a time.
+/// Padding after the filtered rows, because pixels are read four bytes at a time.
 constexpr std::size_t slack = 4;
 
 std::uint32_t chunk_word(std::string_view bytes, std::size_t at) {
@@ -23,8 +23,8 @@ std::uint32_t chunk_word(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// The content of all IDAT chunks, in `joined` if there are several; nothing where a chunk is broken, a
-/// checksum wrong or the end missing.
+/// The content of all IDAT chunks, in `joined` if there are several; empty if a chunk is broken, a checksum
+/// wrong or the end missing.
 std::string_view packed_pixels(std::string_view bytes, std::string& joined) {
   std::string_view first;
   std::size_t count = 0;
@@ -50,18 +50,18 @@ std::string_view packed_pixels(std::string_view bytes, std::string& joined) {
   return {};
 }
 
-// Pixels are taken as integers whose lowest byte is the first.
+// Pixels are integers whose lowest byte comes first.
 using ByteLanes = std::uint8_t __attribute__((vector_size(16)));
 using WordLanes = std::int16_t __attribute__((vector_size(16)));
 using WideLanes = std::uint32_t __attribute__((vector_size(16)));
 
-/// Four bytes as words.
+/// Widens four bytes to words.
 WordLanes widened(std::uint32_t pixel) {
   const ByteLanes bytes = reinterpret_cast<ByteLanes>(WideLanes{pixel, 0, 0, 0});
   return reinterpret_cast<WordLanes>(
       __builtin_shufflevector(bytes, ByteLanes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
 }
-/// The lower bytes of four words.
+/// Narrows four words to their low bytes.
 std::uint32_t narrowed(WordLanes words) {
   const ByteLanes bytes = reinterpret_cast<ByteLanes>(words);
   return reinterpret_cast<WideLanes>(
@@ -70,21 +70,21 @@ std::uint32_t narrowed(WordLanes words) {
 WordLanes greater_lanes(WordLanes a, WordLanes b) { return a > b ? a : b; }
 WordLanes lesser_lanes(WordLanes a, WordLanes b) { return a < b ? a : b; }
 
-/// Sums and means of four bytes each, without carries from one to the next.
+/// Adds four bytes each, without carries between bytes.
 std::uint32_t byte_sums(std::uint32_t a, std::uint32_t b) {
   return ((a & 0x7F7F7F7Fu) + (b & 0x7F7F7F7Fu)) ^ ((a ^ b) & 0x80808080u);
 }
 std::uint32_t byte_means(std::uint32_t a, std::uint32_t b) { return (a & b) + ((a ^ b) >> 1 & 0x7F7F7F7Fu); }
 
-/// A row's pixels: `in` bytes each as filtered, `out` bytes each as wanted. `to` may overlap `row` where it
-/// stays behind what is read.
+/// Unfilters a row of pixels of `in` bytes into pixels of `out` bytes. `to` may overlap `row` if it stays
+/// behind the read position.
 template <std::size_t in, std::size_t out>
 class FilteredRow {
  public:
   FilteredRow(const std::uint8_t* row, const std::uint8_t* above, std::uint8_t* to, std::size_t width)
       : row_(row), above_(above), to_(to), width_(width) {}
 
-  /// Returns whether there is such a filter.
+  /// Returns false for an unknown filter.
   bool decode(std::uint8_t filter) {
     switch (filter) {
       case 0:
@@ -136,7 +136,7 @@ class FilteredRow {
     }
   }
 
-  /// What is nearest to left + above - corner, in this order where two are as near.
+  /// Predicts the one of left, above, corner nearest to left + above - corner; ties go in this order.
   void paeth() {
     WordLanes left{}, corner{};
     for (std::size_t i = 0; i < width_; ++i) {
@@ -179,12 +179,12 @@ bool decode_png_pixels(std::string_view bytes, std::size_t file_channels, Stored
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
   if (packed.empty() || !decompressor) return false;
-  // The filtered rows lie at the end of the memory that the pixels take from its beginning: a pixel is never
-  // written before it is read, as a row takes at least as many bytes as it did but for its filter's.
+  // The filtered rows lie at the end of the memory that the pixels fill from its start. No pixel is written
+  // before it is read, since an output row is at least as long as its filtered row without the filter byte.
   const std::size_t size = image.pixel_count() * image.pixel_bytes();
   fill_large(image.data, size + height + slack);
   std::uint8_t* rows = image.data.data() + size + height - filtered;
-  // No size to return means that the stream must have exactly this one.
+  // With no size returned, the stream must have exactly this one.
   bool whole = libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), rows, filtered,
                                           nullptr) == LIBDEFLATE_SUCCESS;
   if (whole)

@@ -1,4 +1,4 @@
-// Texts in PNG files: iTXt chunks, which hold UTF-8 (PNG, third edition, 11.3.3.4).
+// Reads and writes texts in PNG files as iTXt chunks, in UTF-8 (PNG, third edition, 11.3.3.4).
 #include <zlib.h>
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-// The signature, and the header's chunk, which is the first.
+// The signature and the header chunk, which comes first.
 constexpr std::size_t png_header_end = 8 + 12 + 13;
 constexpr std::size_t most_keyword = 79;
 
@@ -25,7 +25,7 @@ std::size_t length_at(std::string_view bytes, std::size_t at) {
 
 std::string text_chunk(const std::string& keyword, const std::string& text) {
   std::string data = "iTXt" + keyword.substr(0, most_keyword);
-  data += std::string(5, '\0');  // the keyword's end; not compressed, in no language, not translated
+  data += std::string(5, '\0');  // end of keyword; uncompressed; no language; no translation
   data += text;
   const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
   return four_bytes(static_cast<std::uint32_t>(data.size() - 4)) + data +

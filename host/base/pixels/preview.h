@@ -1,4 +1,4 @@
-// A picture on its way to a screen, where speed counts more than the last bit.
+// Fast JPEG encoding for previews.
 #pragma once
 #include <string>
 
@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// A JPEG of `quality` 1..100, colours clipped to [0, 1] as sRGB, alpha left out. Throws std::runtime_error.
+/// A JPEG of `quality` 1..100 in sRGB, clipped to [0, 1], without alpha. Throws std::runtime_error.
 std::string encode_preview(const Image& image, int quality);
 
 }  // namespace sundog

@@ -1,6 +1,6 @@
-// See quick_png.h. Each row is stored as its difference to the one above (filter 2), which keeps smooth
-// pictures small and needs no trial, and deflated. Portable Network Graphics (PNG) Specification, third
-// edition, sections 5, 9 and 10.
+// See quick_png.h. Each row is stored as its difference to the row above (filter 2), which compresses smooth
+// pictures well without trials, then deflated. Portable Network Graphics (PNG) Specification, third edition,
+// sections 5, 9 and 10.
 #include "base/pixels/quick_png.h"
 
 #include <libdeflate.h>
@@ -21,13 +21,13 @@ namespace {
 constexpr std::size_t most_quick_bytes = std::size_t{1} << 30;
 constexpr char filter_up = 2;
 
-/// Floats from 2^-13 to 1 by their exponent and the first bits of their fraction.
+/// Cells of floats from 2^-13 to 1, by exponent and leading fraction bits.
 constexpr unsigned cell_shift = 16;
 constexpr std::uint32_t first_bits = std::uint32_t{127 - 13} << 23, end_bits = std::uint32_t{127} << 23;
 
 struct ByteSteps {
-  std::array<float, 257> least{};  // the least float of each byte; the last is above all
-  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1> at{};  // at the beginning of a cell
+  std::array<float, 257> least{};  // the smallest float of each byte; the last is above all
+  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1> at{};  // at the start of a cell
 };
 
 std::uint8_t slow_byte(float value) {
@@ -38,7 +38,7 @@ ByteSteps find_steps() {
   ByteSteps table;
   table.least[256] = 2;
   for (unsigned byte = 1; byte < 256; ++byte) {
-    std::uint32_t below = 0, from = end_bits;  // neighbours in the end
+    std::uint32_t below = 0, from = end_bits;  // converge to neighbours
     while (from - below > 1) {
       const std::uint32_t middle = below + (from - below) / 2;
       (slow_byte(std::bit_cast<float>(middle)) >= byte ? from : below) = middle;
@@ -64,7 +64,7 @@ const ByteSteps& byte_steps() {
   return table;
 }
 
-/// The rows, each behind the number of its filter.
+/// The rows, each after its filter byte.
 std::string filtered_rows(const Image& image) {
   const ByteSteps& table = byte_steps();
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);

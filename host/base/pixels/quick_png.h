@@ -1,4 +1,4 @@
-// A PNG on its way to a screen: the pixels of encode_png(), several times as fast, in a somewhat larger file.
+// Fast PNG encoding for previews: pixels as in encode_png(), several times as fast, in somewhat larger files.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace sundog {
 
-/// 8 bits a channel as sRGB, alpha left out. Throws std::runtime_error for an image beyond 2^30 bytes.
+/// 8-bit sRGB without alpha. Throws std::runtime_error for an image beyond 2^30 bytes.
 std::string encode_quick_png(const Image& image);
 
-/// lround(255 * srgb_from_linear(value)), from 0 to 255, and 0 for what is no number: by comparisons alone.
+/// lround(255 * srgb_from_linear(value)), clamped to 0..255, 0 for NaN; uses comparisons only.
 std::uint8_t srgb_byte(float value);
 
 }  // namespace sundog

@@ -28,7 +28,7 @@ StoredImage stored_halves(const Image& image) {
   return stored;
 }
 
-/// The linear value of each of `count` sample values.
+/// Linear values of all `count` sample values.
 std::vector<float> decoding_table(std::size_t count, std::optional<float> exponent) {
   std::vector<float> table(count);
   for (std::size_t i = 0; i < count; ++i) {

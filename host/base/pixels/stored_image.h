@@ -1,5 +1,5 @@
-// StoredImage: the pixels of an image file with the precision that the file has, for textures. Each format is
-// decoded by its own library, which is given limits before it decodes a pixel.
+// StoredImage: an image file's pixels at the file's precision, for textures. Each format is decoded by its
+// own library, under limits set before decoding.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace sundog {
 
-/// Rows from the top, samples interleaved, words and halves in the machine's order. Colours are sRGB, unless
-/// `exponent` makes them linear; halves are linear, alpha always.
+/// Rows from the top, interleaved samples, words and halves in native byte order. Colours are sRGB unless
+/// `exponent` makes them linear; halves and alpha are linear.
 struct StoredImage {
   enum class Sample { byte, word, half };
   int width = 0, height = 0;
@@ -32,24 +32,24 @@ struct StoredImage {
 /// Throws std::runtime_error with the reason alone.
 StoredImage decode_stored(std::string_view bytes);
 
-/// As PNG, grey or RGB of 8 or 16 bits; alpha is left out. Throws std::runtime_error.
+/// Encodes as grey or RGB PNG of 8 or 16 bits, without alpha. Throws std::runtime_error.
 std::string encode_png(const StoredImage& image);
 
-/// One format each. A PNG's gAMA chunk becomes the exponent where it has no sRGB or iCCP chunk and does not
-/// mean sRGB. Animated WebP is refused.
+/// One format each. A PNG's gAMA chunk sets the exponent unless it has an sRGB or iCCP chunk or gAMA means
+/// sRGB. Animated WebP is refused.
 StoredImage decode_png(std::string_view bytes);
 StoredImage decode_jpeg(std::string_view bytes);
 StoredImage decode_webp(std::string_view bytes);
 
-/// Refuses sizes beyond those of a frame, pixels that `most_pixels_a_byte` of the format cannot hold, and
-/// what does not fit into the memory that is there.
+/// Throws for sizes beyond a frame's, for more pixels than `file_bytes` can encode, and for images that do
+/// not fit into the available memory.
 void check_image_size(std::int64_t width, std::int64_t height, std::size_t pixel_bytes,
                       std::size_t file_bytes, std::int64_t most_pixels_a_byte);
 
-/// As linear RGBA.
+/// Converts to linear RGBA.
 Image linear_image(const StoredImage& stored);
 
-/// The nearest half of a float, clamped to +-65504 (NaN becomes 0), and back.
+/// The nearest half of a float, clamped to +-65504 (NaN becomes 0), and the inverse.
 std::uint16_t half_from_float(float value);
 float float_from_half(std::uint16_t bits);
 

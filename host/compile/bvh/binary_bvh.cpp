@@ -1,4 +1,4 @@
-// The recursive build, a task a subtree, and the dynamic programme of the collapse on the way back up.
+// The recursive build, one task per subtree, and the dynamic program of the collapse on the way back up.
 #include "compile/bvh/binary_bvh.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -11,10 +11,10 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t task_size = 1u << 12;  // subtrees of fewer members are one task
-constexpr int depth_limit = 64;              // below it, sets are halved: recursion stays shallow
+constexpr std::size_t task_size = 1u << 12;  // smaller subtrees are one task
+constexpr int depth_limit = 64;              // deeper sets are halved, which bounds the recursion
 
-/// Hands out nodes from chunks; one a thread.
+/// Allocates nodes from chunks; one pool per thread.
 class NodePool {
  public:
   BinaryNode* make() {

@@ -1,4 +1,4 @@
-// Binning, the choice of a plane, and the partition; see split.h.
+// Binning, the choice of a plane, and partitioning; see split.h.
 #include "compile/bvh/split.h"
 
 #include <tbb/blocked_range.h>
@@ -14,9 +14,9 @@ namespace sundog {
 namespace {
 
 constexpr int max_bins = 32;
-constexpr std::size_t parallel_size = 1u << 16;  // sets from this size on are worked on by several threads
+constexpr std::size_t parallel_size = 1u << 16;  // larger sets use several threads
 
-/// Bin number of a doubled centre, by axis.
+/// Maps a doubled centre to its bin along each axis.
 struct BinMap {
   Lanes base, scale;
   int count;
@@ -39,8 +39,7 @@ struct BinMap {
 };
 
 struct Bins {
-  std::array<std::array<Bounds, max_bins>, 3>
-      box;  // not initialised beyond the bins in use: most sets are small
+  std::array<std::array<Bounds, max_bins>, 3> box;  // unused bins are not initialised: most sets are small
   std::array<std::array<u32, max_bins>, 3> members;
 
   explicit Bins(int count) {
@@ -91,7 +90,7 @@ struct Plane {
   Bounds left, right;
 };
 
-/// The planes of one axis; keeps the best in `plane`. Of equal costs, the more even split.
+/// Evaluates the planes of one axis and keeps the best in `plane`; ties go to the more even split.
 void search_axis(const Bins& bins, int axis, int count, const SplitSettings& settings, Plane& plane) {
   const auto& box = bins.box[static_cast<std::size_t>(axis)];
   const auto& members = bins.members[static_cast<std::size_t>(axis)];
@@ -128,13 +127,13 @@ Plane find_plane(const RefSet& set, const BinMap& map, const SplitSettings& sett
   return plane;
 }
 
-/// A partition's outcome: how many went left, and the bounds of the centres, [0] left and [1] right.
+/// A partition's result: the number of left members, and bounds of the centres, [0] left and [1] right.
 struct Parts {
   std::size_t left_count = 0;
   std::array<Bounds, 2> centers{Bounds::none(), Bounds::none()};
 };
 
-/// Part of the boxes' overlap in the whole tree's box from which on a cut through triangles is worth a try.
+/// Minimum overlap of the boxes, relative to the tree's box, for trying to split triangles.
 constexpr float least_overlap = 1e-4f;
 
 bool overlaps(const Plane& plane, const SplitSettings& settings) {
@@ -145,15 +144,15 @@ bool overlaps(const Plane& plane, const SplitSettings& settings) {
   return half_area(common, settings.area_scale) > least_overlap * settings.root_area;
 }
 
-/// Which side of a plane a centre is on: 0 left, 1 right.
+/// The side of a centre: 0 left, 1 right.
 struct Side {
   const BinMap& map;
   const Plane& plane;
   std::size_t operator()(Lanes center2) const { return map(center2)[plane.axis] >= plane.bin; }
 };
 
-/// Moves the members left of the plane to the front and the others to `scratch`. Each ref is written to both
-/// and one of them advances: no branch to mispredict.
+/// Moves left members to the front and the others to `scratch`. Writes each ref to both and advances one of
+/// them, which avoids mispredicted branches.
 Parts partition_serial(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
   Parts parts;
   std::size_t right_count = 0;
@@ -175,7 +174,7 @@ void copy_parallel(const Ref* from, std::size_t count, Ref* to) {
   });
 }
 
-/// The same for large sets, by several threads: chunks are counted, then scattered to `scratch`, the left
+/// partition_serial() in parallel for large sets: counts chunks, then scatters them to `scratch`, the left
 /// ones last.
 Parts partition_parallel(std::span<Ref> refs, Ref* scratch, const Side& side_of) {
   std::vector<Parts> chunks((refs.size() + split_chunk - 1) / split_chunk);

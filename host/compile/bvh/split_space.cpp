@@ -1,5 +1,5 @@
-// Planes that cut triangles: each box is chopped at the bins' borders, and a triangle that straddles the
-// chosen plane goes to both sides, or whole to one of them where that is cheaper. See split.h.
+// Planes that split triangles: boxes are clipped at bin borders, and a triangle that straddles the chosen
+// plane goes to both sides, or whole to one if that is cheaper. See split.h.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -27,7 +27,7 @@ bool is_empty(const Bounds& box) {
   return !(box.lower[0] <= box.upper[0] && box.lower[1] <= box.upper[1] && box.lower[2] <= box.upper[2]);
 }
 
-/// The planes between equal slices of a box.
+/// Planes between equal slices of a box.
 struct Slices {
   Lanes base, scale, width;
 
@@ -40,7 +40,7 @@ struct Slices {
   int slice(float x, int axis) const {
     return std::clamp(static_cast<int>((x - base[axis]) * scale[axis]), 0, space_bins - 1);
   }
-  /// Where slice `i` begins.
+  /// Position of the lower plane of slice `i`.
   float begin(int i, int axis) const { return base[axis] + static_cast<float>(i) * width[axis]; }
 };
 
@@ -48,7 +48,7 @@ struct Halves {
   Bounds left = Bounds::none(), right = Bounds::none();
 };
 
-/// Adds the point where an edge crosses the plane, rounded outwards.
+/// Adds the intersection of an edge with the plane, rounded outwards.
 void add_crossing(Halves& halves, const glm::vec3& a, const glm::vec3& b, int axis, float position) {
   const double t = (double(position) - double(a[axis])) / (double(b[axis]) - double(a[axis]));
   Bounds point{lanes(0), lanes(0)};
@@ -61,7 +61,7 @@ void add_crossing(Halves& halves, const glm::vec3& a, const glm::vec3& b, int ax
   halves.right.extend(point);
 }
 
-/// The parts of `box` that hold the triangle's parts on both sides of a plane; a part may be empty.
+/// Boxes around the triangle's parts on both sides of a plane; may be empty.
 Halves cut(const Mesh& mesh, u32 prim, const Bounds& box, int axis, float position) {
   const glm::uvec3& triangle = mesh.triangles[prim];
   Halves halves;
@@ -78,7 +78,7 @@ Halves cut(const Mesh& mesh, u32 prim, const Bounds& box, int axis, float positi
 
 struct SpaceBins {
   std::array<std::array<Bounds, space_bins>, 3> box;
-  std::array<std::array<u32, space_bins>, 3> begins{}, ends{};  // refs whose first, whose last slice it is
+  std::array<std::array<u32, space_bins>, 3> begins{}, ends{};  // refs by first and by last slice
 
   SpaceBins() {
     for (auto& axis : box) axis.fill(Bounds::none());
@@ -127,7 +127,7 @@ SpaceBins fill_bins(const RefSet& set, const Slices& slices, const SplitSettings
       });
 }
 
-/// A plane before slice `slice`, and what then is on both sides.
+/// A plane before slice `slice`, and the resulting parts.
 struct SpacePlane {
   int axis = -1, slice = 0;
   float cost = 0;
@@ -135,7 +135,7 @@ struct SpacePlane {
   std::size_t left_count = 0, right_count = 0;
 };
 
-/// The cheapest plane of one axis, if it is below `plane.cost` and its parts have room.
+/// Finds the cheapest plane of one axis that is below `plane.cost` and whose parts have room.
 void search_axis(const SpaceBins& bins, int axis, const RefSet& set, const SplitSettings& settings,
                  SpacePlane& plane) {
   const auto a = static_cast<std::size_t>(axis);
@@ -165,7 +165,7 @@ void search_axis(const SpaceBins& bins, int axis, const RefSet& set, const Split
 
 enum class Way { left, right, both };
 
-/// Where a straddling ref costs least (section 4.4 of the paper), counted by members, since blocks hide one.
+/// The cheapest side for a straddling ref (section 4.4 of the paper), by members, since blocks hide one.
 Way cheapest_way(const SpacePlane& plane, const Ref& ref, float scale) {
   const float left = half_area(plane.left, scale), right = half_area(plane.right, scale);
   const auto n = static_cast<float>(plane.left_count), m = static_cast<float>(plane.right_count);
@@ -184,7 +184,7 @@ class Partition {
         position_(slices.begin(plane.slice, plane.axis)),
         left_to_(set.refs.data()),
         right_to_(settings.scratch + (set.refs.data() - settings.all.data())) {
-    // The left ones overwrite the set from its front: never more of them than have been read.
+    // Left refs overwrite the set from its front; there are never more than have been read.
     const Ref* const right_begin = right_to_;
     for (const Ref ref : set.refs) add(ref, slices);
     const auto left_count = static_cast<std::size_t>(left_to_ - set.refs.data());

@@ -1,4 +1,4 @@
-// Lays the collapsed tree out as Bvh8Nodes and leaf blocks; see wide_bvh.h.
+// Converts the collapsed tree to Bvh8Nodes and leaf blocks; see wide_bvh.h.
 #include "compile/bvh/wide_bvh.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void set_bounds(Bvh8Node& node, u32 slot, const Bounds& box) {
   node.upper_z[slot] = box.upper[2];
 }
 
-/// The members of a wide node: up to eight binary nodes.
+/// The children of a wide node: up to eight binary nodes.
 struct Children {
   std::array<const BinaryNode*, BVH_WIDTH> node;
   std::size_t count = 0;
@@ -74,7 +74,7 @@ class Layout {
     const auto first = static_cast<u32>(tree_.blocks.size());
     const auto begin = static_cast<u32>(tree_.members.size());
     take_members(binary);
-    if (binary.left) {  // several leaves merged: both halves of a cut triangle may be here
+    if (binary.left) {  // merged leaves may contain both parts of a split triangle
       const auto from = tree_.members.begin() + begin;
       std::sort(from, tree_.members.end());
       tree_.members.erase(std::unique(from, tree_.members.end()), tree_.members.end());

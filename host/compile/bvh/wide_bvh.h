@@ -1,6 +1,6 @@
-// From boxes to an 8-wide tree: a binary tree by surface area (split.h), collapsed by cost to nodes of eight
-// children (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
-// Wide BVHs", section 3.2).
+// Builds an 8-wide BVH: a binary tree by surface area (split.h), collapsed by cost to nodes of eight children
+// (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+// section 3.2).
 #pragma once
 #include <functional>
 #include <span>
@@ -12,20 +12,19 @@
 
 namespace sundog {
 
-/// A tree whose traversal could need a deeper stack than this is built again, balanced.
+/// A tree that may need a deeper traversal stack is rebuilt as a balanced one.
 constexpr u32 stack_limit = 96;
 
 struct WideBvhSettings {
   u32 block_width = 8;       // members of a leaf block (triangles: 8; instances: 1)
-  u32 max_leaf_blocks = 16;  // blocks of a leaf
+  u32 max_leaf_blocks = 16;  // maximum blocks per leaf
   float node_cost = 1, block_cost = 1;
-  const Mesh* cut =
-      nullptr;         // the refs' triangles, when they may be cut: a primitive may then be in several leaves
-  float spare = 0.3f;  // the further refs that cuts may make, as a part of the first ones
+  const Mesh* cut = nullptr;  // triangles that may be split, which puts a primitive into several leaves
+  float spare = 0.3f;         // extra refs that splits may add, relative to the initial number
 };
 
-/// The tree's shape. Child words count from node 0 and block 0 of this tree. The inner children of a node are
-/// consecutive, and so are the blocks of its leaves.
+/// The tree's topology. Child words count from node 0 and block 0 of this tree. A node's inner children are
+/// consecutive, and so are its leaves' blocks.
 struct WideBvh {
   struct Block {
     u32 first, count;  // members[first, first + count)
@@ -33,16 +32,16 @@ struct WideBvh {
   std::vector<Bvh8Node> nodes;  // [0] is the root; never empty
   std::vector<Block> blocks;
   std::vector<u32> members;     // primitive numbers in leaf order
-  Bounds box = Bounds::none();  // empty when there are no members
+  Bounds box = Bounds::none();  // empty without members
 };
 
-/// Builds the tree over `count` members, whose refs `fill` writes (numbers below 2^27; it may be called
-/// twice). Deterministic at any number of threads.
+/// Builds the tree over `count` members, whose refs `fill` writes (indices below 2^27; it may be called
+/// twice). Deterministic for any number of threads.
 WideBvh build_wide_bvh(std::size_t count, const std::function<void(std::span<Ref>)>& fill,
                        const WideBvhSettings& settings);
 
-/// Expected cost of a ray that crosses the root's box: 1 a node visited, and `leaf_cost` of the first and the
-/// count that a leaf word holds.
+/// Expected cost of a ray that crosses the root's box: 1 per visited node, and `leaf_cost` of the first block
+/// and count in a leaf word.
 double expected_cost(std::span<const Bvh8Node> nodes, u32 root,
                      const std::function<double(u32 first, u32 count)>& leaf_cost);
 
@@ -51,8 +50,7 @@ Bounds child_bounds(const Bvh8Node& node, u32 slot);
 /// Bounds of all children.
 Bounds node_bounds(const Bvh8Node& node);
 
-/// Entries that a traversal stack needs in the worst case, when each visited node pushes all but one of its
-/// children.
+/// Worst-case size of a traversal stack, if each visited node pushes all children but one.
 u32 stack_need(std::span<const Bvh8Node> nodes, u32 root);
 
 }  // namespace sundog

@@ -42,7 +42,7 @@ std::string replace_words(const std::string& expression, const Value& value) {
   return out;
 }
 
-/// The operand that a word of an expression stands for, or -1.
+/// The operand that a word in an expression denotes, or -1.
 int operand_of(const std::string& word) {
   const bool prefixed = word.size() == 2 && (word[0] == 'M' || word[0] == 'P' || word[0] == 'S');
   if (word.size() != 1 && !prefixed) return -1;

@@ -1,5 +1,5 @@
-// The code of a distance field as a list of statements over named values: printed as OpenCL C, or packed into
-// a program for the kernels' interpreter (field_program.h).
+// A distance field's code as statements over named values, printed as OpenCL C or packed into a program for
+// the kernels' interpreter (field_program.h).
 #pragma once
 #include <map>
 #include <memory>
@@ -14,13 +14,13 @@ enum class FieldType { real, mask, point, sample };
 
 /// The type of an operation's result.
 FieldType type_of(FieldOp op);
-/// In the kernels: REAL, MASK, REAL3 or SdfSample.
+/// The kernels' name: REAL, MASK, REAL3 or SdfSample.
 const char* type_name(FieldType type);
 
-/// A variable or a coordinate of one, a number of the table, or a number.
+/// A variable or a component of one, an entry of the table, or a literal.
 struct Operand {
   enum class Kind { none, variable, table, literal } kind = Kind::none;
-  std::size_t index = 0;  // of the variable, or in the table
+  std::size_t index = 0;  // of the variable, or into the table
   int part = -1;          // of a point: 0, 1, 2
   double value = 0;
 
@@ -35,13 +35,13 @@ class FieldCode;
 struct FieldStatement {
   enum class Kind {
     compute,    // result = op(operands)
-    assemble,   // result = a point or a sample of numbers
+    assemble,   // result = a point or sample from numbers
     call,       // result = callee(point, active, table from `number`)
-    iterate,    // until end: as often as the table's number says
-    leave,      // ends the iterations where no lane of the mask is set
-    take_turn,  // until next_turn or end: where the iteration modulo `number` is below `end`
-    next_turn,  // else the same, `end` 0: in all other iterations
-    cells,      // until end: for each neighbour, with one of the axes whose bits `number` holds
+    iterate,    // until end: repeats as often as the table entry says
+    leave,      // breaks if no lane of the mask is set
+    take_turn,  // until next_turn or end: runs if the iteration modulo `number` is below `end`
+    next_turn,  // the next alternative; `end` 0: all other iterations
+    cells,      // until end: for each neighbouring cell along the axes whose bits are in `number`
     end
   } kind = Kind::compute;
   FieldOp op = FIELD_COPY;
@@ -49,25 +49,25 @@ struct FieldStatement {
   bool declares = false, constant = false;
   Operands operands;
   std::size_t number = 0, end = 0;          // number: T, Q or N of a computation
-  std::string function;                     // of a call, in the kernels
-  std::shared_ptr<const FieldCode> callee;  // none: a program cannot call it
+  std::string function;                     // of a call, in kernels
+  std::shared_ptr<const FieldCode> callee;  // none: programs cannot call it
 };
 
-/// One function of (p, active, q). Its first two variables are the point and the mask of active lanes.
+/// A function of (p, active, q). Its first two variables are the point and the mask of active lanes.
 class FieldCode {
  public:
   FieldCode();
   static Operand point() { return {Operand::Kind::variable, 0, -1, 0}; }
   static Operand active() { return {Operand::Kind::variable, 1, -1, 0}; }
 
-  /// A further parameter of the function.
+  /// Adds a parameter.
   Operand argument(const std::string& name, FieldType type);
-  /// A value that does not change; `name` is a wish.
+  /// Defines a constant value; `name` is a suggestion.
   Operand define(const std::string& name, FieldOp op, Operands operands, std::size_t number = 0);
-  /// A variable with its first value.
+  /// Declares a variable with its initial value.
   Operand declare(const std::string& name, FieldOp op, Operands operands, std::size_t number = 0);
   void assign(const Operand& variable, FieldOp op, Operands operands, std::size_t number = 0);
-  /// A point of three numbers, or a sample of eight.
+  /// A point from three numbers, or a sample from eight.
   Operand assemble(const std::string& name, FieldType type, Operands numbers);
   Operand call(const std::string& function, FieldType type, const Operand& point, std::size_t table,
                std::shared_ptr<const FieldCode> callee);
@@ -80,7 +80,7 @@ class FieldCode {
   void end();
   void set_result(const Operand& result) { result_ = result; }
 
-  /// Statements and `return`, as the body of an OpenCL C function.
+  /// The statements and `return`, as the body of an OpenCL C function.
   std::string text() const;
   std::string statements_text() const;
   std::string text(const Operand& operand) const;
@@ -104,7 +104,7 @@ class FieldCode {
   Operand result_;
 };
 
-/// A number as an OpenCL C literal, by LITERAL() where a float does not hold it.
+/// An OpenCL C literal, using LITERAL() if a float cannot hold the number.
 std::string literal(double value);
 
 }  // namespace sundog

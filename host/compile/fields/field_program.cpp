@@ -1,5 +1,5 @@
-// First the statements become instructions over values without end, calls written in place; then each value
-// gets registers from its first use to its last, and the instructions their words.
+// First flattens statements to instructions over unlimited values, with calls inlined; then assigns registers
+// from first to last use, and encodes the instructions.
 #include "compile/fields/field_program.h"
 
 #include <algorithm>
@@ -12,16 +12,16 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t max_table = 0xFFFF;  // a half word
+constexpr std::size_t max_table = 0xFFFF;  // half a word
 
-/// Code that no program can be made of.
+/// Thrown for code that programs cannot express.
 struct NoProgram {};
 
 std::size_t registers_of(FieldType type) {
   return type == FieldType::sample ? 8 : type == FieldType::point ? 3 : 1;
 }
 
-/// A value, or the part of one from a register of it on.
+/// A value, or its part from a register on.
 struct ValuePlace {
   std::size_t value = 0, part = 0;
 };
@@ -30,10 +30,10 @@ struct Instruction {
   u32 op = FIELD_COPY;
   std::optional<ValuePlace> result = {};
   std::vector<ValuePlace> operands = {};
-  u32 low = 0, high = 0;                   // of the second word, instead of operands C and D, and above them
-  u32 x = 0;                               // the second word of a literal or a number
+  u32 low = 0, high = 0;                   // second word: low half instead of operands C and D, high half
+  u32 x = 0;                               // second word: a literal or a number
   std::optional<std::size_t> target = {};  // a label
-  u32 counter = 0;                         // of a counter's instruction, instead of the result
+  u32 counter = 0;                         // in counter instructions, replaces the result
 };
 
 struct StoredValue {
@@ -41,10 +41,10 @@ struct StoredValue {
   bool is_used = false;
 };
 
-/// Writes the instructions of a function and of those that it calls.
+/// Emits a function and its callees.
 class Flattener {
  public:
-  /// `hoists`: numbers that loops use are loaded before them, at a register each.
+  /// `hoists`: loads numbers used in loops before the loops, at a register each.
   Flattener(const FieldCode& code, bool hoists) : hoists_(hoists) {
     const ValuePlace point = add_value(3), active = add_value(1);
     const ValuePlace result = write(code, point, active, 0);
@@ -53,15 +53,15 @@ class Flattener {
 
   std::vector<Instruction> instructions;
   std::vector<StoredValue> values;
-  std::vector<std::size_t> labels;                         // the instruction that each stands before
-  std::vector<std::pair<std::size_t, std::size_t>> loops;  // by their labels, inner ones first
+  std::vector<std::size_t> labels;                         // the instruction after each label
+  std::vector<std::pair<std::size_t, std::size_t>> loops;  // as labels, inner ones first
 
  private:
   struct Scope {
     FieldStatement::Kind kind;
     std::size_t begin = 0, out = 0;  // labels
     u32 counter = 0, turn = 0;
-    std::size_t next = 0;  // of turns: where the next one stands
+    std::size_t next = 0;  // of turns: the next alternative
     bool is_outermost = false;
   };
 
@@ -87,7 +87,7 @@ class Flattener {
     return static_cast<u32>(number);
   }
 
-  /// A number in a register: from before the outermost loop, or loaded here.
+  /// A number in a register: hoisted before the outermost loop, or loaded here.
   ValuePlace load(u32 op, u32 x) {
     if (loop_depth_ > 0 && hoists_) {
       const auto [found, is_new] = hoisted_.try_emplace({op, x});
@@ -103,7 +103,7 @@ class Flattener {
     std::vector<ValuePlace> variables;
     std::size_t table = 0;
     std::vector<Scope> scopes;
-    u32 iteration = 0;  // the counter
+    u32 iteration = 0;  // loop counter
   };
 
   ValuePlace place(const Frame& frame, const Operand& operand) {
@@ -197,7 +197,7 @@ class Flattener {
     add(std::move(made));
   }
 
-  /// Continues at `label` unless the counter is below `bound`.
+  /// Jumps to `label` unless the counter is below `bound`.
   void below(u32 counter, std::size_t bound, std::size_t label) {
     add({.op = FIELD_BELOW, .high = half(bound), .target = label, .counter = counter});
   }
@@ -243,7 +243,7 @@ class Flattener {
     if (scope.is_outermost) insert_hoisted();
   }
 
-  /// Puts what was written since the outermost loop began behind the code before it and the loop's numbers.
+  /// Inserts the hoisted loads before the outermost loop.
   void insert_hoisted() {
     std::vector<Instruction> inside = std::exchange(instructions, std::move(outside_));
     for (const auto& [number, place] : hoisted_)
@@ -263,7 +263,7 @@ class Flattener {
   int loop_depth_ = 0;
 };
 
-/// Gives each value its registers.
+/// Assigns registers to values.
 class Allocator {
  public:
   explicit Allocator(Flattener& code) : code_(code) {
@@ -274,7 +274,7 @@ class Allocator {
     take(code_.values[0]);
     take(code_.values[1]);
     for (std::size_t at = 0; at < code_.instructions.size(); ++at) {
-      // What is read here for the last time makes room for what is written.
+      // Values read for the last time here free their registers for the result.
       for (const std::size_t i : values_by_last_[at])
         if (code_.values[i].first < at || i < 2) release(code_.values[i]);
       if (const auto& result = code_.instructions[at].result) {

@@ -1,4 +1,4 @@
-// The code of fields as programs for the kernels' interpreter (kernels/lib/sdf/interpret.cl).
+// Compiles fields' code to programs for the kernels' interpreter (kernels/lib/sdf/interpret.cl).
 #pragma once
 #include <span>
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace sundog {
 
-/// Instructions that the functions of all fields may have together.
+/// Limit of instructions for all fields together.
 inline constexpr std::size_t max_program = 16384;
 
-/// `functions`: each field's distance, signed, sample and, of uneven fields, near. Returns four words a
-/// field, where they begin, counted from the first word, and then the instructions. Empty where a program
-/// cannot do what they do (native code), or takes more registers or instructions than there are.
+/// `functions`: each field's distance, signed, sample and, for uneven fields, near. Returns four start
+/// offsets per field, in words from the beginning, then the instructions. Empty if programs cannot express
+/// the fields (native code), or exceed the registers or instructions.
 std::vector<u32> field_programs(std::span<const std::vector<FieldCode>> functions);
 
-/// The instructions of one function; empty where there can be none. Pure.
+/// The instructions of one function; empty if not possible. Pure.
 std::vector<u32> field_program(const FieldCode& code);
 
 }  // namespace sundog

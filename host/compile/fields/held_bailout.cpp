@@ -11,11 +11,11 @@ namespace {
 
 namespace in = formula_input;
 
-constexpr double least_bailout = 4;      // below, orbits of usual maps may come back
-constexpr double greatest_part = 5e17;   // of a position, whose square must have room
-constexpr double greatest_value = 1e37;  // of all that an iteration computes
+constexpr double least_bailout = 4;      // below, orbits of usual maps may return
+constexpr double greatest_part = 5e17;   // limit of a position, whose square must not overflow
+constexpr double greatest_value = 1e37;  // limit of all values in an iteration
 
-/// One map, from any place at a distance.
+/// The growth of one map at a given distance.
 class Growth {
  public:
   Growth(const LoweredFormula& formula, const std::vector<double>& parameters)
@@ -25,7 +25,7 @@ class Growth {
     program_ = GraphProgram(formula.map.graph, all);
   }
 
-  /// Whether floats hold an iteration from `radius`, in directions all round.
+  /// Whether floats can hold an iteration from `radius`, in directions all round.
   bool holds(double radius) {
     for (int i = 0; i < 24; ++i) {
       point_at(i, radius);
@@ -37,7 +37,7 @@ class Growth {
   }
 
  private:
-  /// Of an additive sequence, which leaves no gaps; away from the axes, where some maps have poles.
+  /// Points of an additive sequence, which leaves no gaps; off the axes, where some maps have poles.
   void point_at(int i, double radius) {
     const double steps[4] = {0.8191725134, 0.6710436067, 0.5497004779, 0.4503599627};
     double square = 0;

@@ -1,12 +1,12 @@
-// How far orbits may go before floats end.
+// Limits bailout radii to the range of floats.
 #pragma once
 #include "scene/formula/sdf.h"
 
 namespace sundog {
 
-/// The field's bailout or, where one more iteration from there could leave the range of floats, the greatest
-/// radius from which none does: an orbit that has escaped this far escapes for good, and the estimate from
-/// there is the same to a part in the radius. Throws FormulaError.
+/// The field's bailout or, if another iteration from there could overflow floats, the largest radius from
+/// which none does. An orbit that has escaped this far never returns, and the estimate from there differs by
+/// about one part in the radius. Throws FormulaError.
 double held_bailout(const FormulaField& field);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Formulas of patterns as OpenCL C ("generated/patterns.cl").
+// Compiles patterns' formulas to OpenCL C ("generated/patterns.cl").
 #pragma once
 #include <span>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace sundog {
 
-/// The text of generated/patterns.cl, whose pattern_formula() computes formula `number`. It depends on the
-/// formulas and their whole exponents; all other parameters are in the table that it is called with. Throws
+/// The text of generated/patterns.cl, whose pattern_formula() computes formula `number`. It depends only on
+/// the formulas and their integer exponents; other parameters are in the table that it is called with. Throws
 /// FormulaError.
 std::string pattern_code(std::span<const PatternFormula> formulas);
 

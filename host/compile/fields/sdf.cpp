@@ -1,4 +1,4 @@
-// The tree of each field becomes calls of the leaves' functions and of lib/sdf/compose.cl.
+// Compiles each field's tree to calls of leaf functions and lib/sdf/compose.cl.
 #include "compile/fields/sdf.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ constexpr const char* compose_head = "#include \"lib/sdf/compose.cl\"\n\n";
 class FieldsEmitter {
  public:
   CompiledFields run(std::span<const SdfDescription> fields) {
-    if (!fields.empty()) table({0});  // where the programs stand
+    if (!fields.empty()) table({0});  // offset of the programs
     for (const SdfDescription& field : fields) {
       SdfDescription leveled = field;
       level_scales(leveled.root);
@@ -42,7 +42,7 @@ class FieldsEmitter {
   }
 
   CompiledFields run_deep(std::span<const DeepField> fields) {
-    table({0});  // there are no programs in double precision
+    table({0});  // no programs in double precision
     for (const DeepField& deep : fields) {
       SdfDescription field = deep.field;
       level_scales(field.root);
@@ -83,7 +83,7 @@ class FieldsEmitter {
     std::array<std::shared_ptr<const FieldCode>, 3> functions;
   };
 
-  /// The same functions for the kernels' interpreter, behind all other numbers.
+  /// Appends the functions as programs for the kernels' interpreter.
   void add_programs() {
     const std::vector<u32> words = field_programs(codes_);
     if (words.empty()) return;
@@ -98,7 +98,7 @@ class FieldsEmitter {
     return first;
   }
 
-  /// Parameters get their places once for the three functions: by the order in which the tree is walked.
+  /// Allocates parameters once for the three functions, in tree order.
   void place(const SdfNode& node, int depth = 1) {
     if (depth > SdfNode::max_depth)
       throw FormulaError(0, 0, fmt::format("fields nested deeper than {} levels", SdfNode::max_depth));
@@ -134,7 +134,7 @@ class FieldsEmitter {
                       wanted == 2 ? "two or more" : std::to_string(wanted), node.children.size()));
     for (const SdfNode& child : node.children) place(child, depth + 1);
   }
-  /// The gradient is left to differences. Build logs name the code's own lines.
+  /// The gradient uses differences. #line makes build logs name the native code's lines.
   static std::string native_code(const std::string& code, std::size_t index) {
     return fmt::format(
         "static inline REAL native{0}(REAL3 p) {{\n#line 1 \"native code {0} of the scene\"\n{1}\n}}\n#line "
@@ -201,7 +201,7 @@ class FieldsEmitter {
     return code_.define("v", op, std::move(operands), number);
   }
 
-  /// Writes a node at point `p` and returns its value. `two_sided`: depths inside are wanted.
+  /// Emits a node at point `p` and returns its value. `two_sided`: depths inside are needed.
   Operand visit(const SdfNode& node, const Operand& p, bool two_sided) {
     if (kind_ == 3 && is_smooth(node)) {
       kind_ = 2;
@@ -245,7 +245,7 @@ class FieldsEmitter {
     const FieldOp op = node.kind == SdfNode::Kind::unite ? (samples() ? FIELD_UNITE_SAMPLES : FIELD_UNITE)
                        : subtract ? (samples() ? FIELD_SUBTRACT_SAMPLES : FIELD_SUBTRACT_FROM)
                                   : (samples() ? FIELD_INTERSECT_SAMPLES : FIELD_INTERSECT);
-    const bool rounded = node.smooth > 0;  // a rounded joint needs depths beside its seam
+    const bool rounded = node.smooth > 0;  // a rounded joint needs depths near its seam
     Operand value = visit(node.children[0], p, two_sided || rounded);
     for (std::size_t i = 1; i < node.children.size(); ++i) {
       const Operand other = visit(node.children[i], p, two_sided || subtract || rounded);
@@ -285,7 +285,7 @@ class FieldsEmitter {
     return out;
   }
 
-  /// What marching calls where the fields themselves are in doubles.
+  /// Functions for marching fields in doubles.
   std::string shallow_functions() const {
     std::string out =
         "static inline REAL3 sdf_place(u32 field, REAL3 p, __global const float* restrict q) {\n  const u32 "
@@ -302,7 +302,7 @@ class FieldsEmitter {
     return out;
   }
 
-  /// The question that marching asks of a field, and SDF_HAS_NEAR, without which it asks none.
+  /// Emits sdf_uneven(), and SDF_HAS_NEAR, without which marching does not call it.
   std::string uneven_fields() const {
     std::string out =
         "#define SDF_HAS_NEAR 1\nstatic inline bool sdf_uneven(u32 field, __global const float* restrict q) "
@@ -312,17 +312,17 @@ class FieldsEmitter {
     return out + ";\n}\n\n";
   }
 
-  /// The function of a field: one whose estimates are distances has no other near its surface.
+  /// The suffix of a field's function; even fields have no separate near function.
   const char* suffix_of(std::size_t field, int kind) const {
     return kinds[kind == 3 && !uneven_[field] ? 1 : kind].suffix;
   }
 
   static int iterations_of(const SdfNode& node) {
     int sum = node.kind == SdfNode::Kind::formula  ? node.formula.iterations
-              : node.kind == SdfNode::Kind::native ? 100  // nobody knows
+              : node.kind == SdfNode::Kind::native ? 100  // unknown cost
                                                    : 0;
     for (const SdfNode& child : node.children) sum += iterations_of(child);
-    return node.kind == SdfNode::Kind::repeat ? 8 * sum : sum;  // a repeated field asks up to eight cells
+    return node.kind == SdfNode::Kind::repeat ? 8 * sum : sum;  // it evaluates up to eight cells
   }
 
   static bool is_smooth(const SdfNode& node) {
@@ -360,14 +360,14 @@ class FieldsEmitter {
   }
 
   CompiledFields out_;
-  std::vector<double> exact_;               // the parameters in double precision
-  std::map<std::string, Leaf> leaf_names_;  // by their code
+  std::vector<double> exact_;               // parameters in double precision
+  std::map<std::string, Leaf> leaf_names_;  // by code
   std::string leaves_, fields_;
-  FieldCode code_;                             // of the function that is being written
-  std::vector<std::vector<FieldCode>> codes_;  // a field's functions
+  FieldCode code_;                             // the function being emitted
+  std::vector<std::vector<FieldCode>> codes_;  // functions of each field
   std::vector<std::size_t> places_;
   std::vector<Leaf> leaf_of_place_;
-  std::vector<bool> uneven_;  // a field each
+  std::vector<bool> uneven_;  // one per field
   std::size_t next_place_ = 0, next_leaf_ = 0, next_native_ = 0, native_count_ = 0;
   int leaf_count_ = 0, kind_ = 0;
 };

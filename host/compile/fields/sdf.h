@@ -1,5 +1,4 @@
-// From descriptions of signed distance fields to the OpenCL C that computes them ("generated/sdf.cl") and its
-// tables.
+// Compiles signed distance fields to OpenCL C ("generated/sdf.cl") and tables.
 #pragma once
 #include <span>
 #include <string>
@@ -10,19 +9,19 @@
 
 namespace sundog {
 
-/// `source` depends on the formulas, their whole exponents and how the fields are put together; every other
-/// number is in `parameters`, so that changing it builds no kernel anew. Behind the numbers stand the same
-/// fields as programs.
+/// `source` depends only on the formulas, their integer exponents and the structure of the fields; all other
+/// numbers are in `parameters`, so changing them rebuilds no kernel. After the numbers come the same fields
+/// as programs.
 struct CompiledFields {
-  std::string source;  // text of generated/sdf.cl; empty when there are no fields
+  std::string source;  // generated/sdf.cl; empty without fields
   std::vector<float> parameters;
-  std::vector<SdfField> fields;  // as many as there were descriptions
+  std::vector<SdfField> fields;  // one per description
 };
 
-/// What stands for a scene's own `source` where kernels run the fields' programs, whatever the fields.
+/// Replaces `source` in kernels that run the fields' programs, for any fields.
 inline constexpr const char* interpreting_source = "#include \"lib/sdf/interpret.cl\"\n";
 
-/// Whether the parameters hold the fields as programs too, which kernels/lib/sdf/interpret.cl runs.
+/// Whether the parameters include programs, which kernels/lib/sdf/interpret.cl runs.
 bool have_programs(std::span<const float> parameters);
 
 /// Pure. Throws FormulaError.

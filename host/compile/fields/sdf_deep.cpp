@@ -1,4 +1,4 @@
-// See sdf_deep.h. The code of deep fields is written in sdf.cpp.
+// See sdf_deep.h. sdf.cpp emits the code of deep fields.
 #include "compile/fields/sdf_deep.h"
 
 #include <algorithm>
@@ -10,14 +10,13 @@
 namespace sundog {
 namespace {
 
-// In units of the greatest coordinate: estimates in floats are off by a few 1e-7.
+// Relative to the largest coordinate: float estimates are off by a few 1e-7.
 constexpr double float_footprint = 4e-6;
-constexpr double default_least = 3e-5;  // of half the interval's diagonal, as read
+constexpr double default_least = 3e-5;  // relative to half the interval's diagonal, as in the reader
 
 double at_repeated(const SdfNode& node, const dvec3& p, double unknown);
 
-/// The estimate at `p`, -unknown where there is no more to say than that it is inside, and unknown where the
-/// code is the user's own.
+/// The estimate at `p`; -unknown if it is only known to be inside, and unknown for native code.
 double distance_at(const SdfNode& node, const dvec3& p, double unknown) {
   using Kind = SdfNode::Kind;
   const auto child = [&](std::size_t i) { return distance_at(node.children[i], p, unknown); };
@@ -49,7 +48,7 @@ double distance_at(const SdfNode& node, const dvec3& p, double unknown) {
   return value;
 }
 
-/// In the nearest cell and those next to it.
+/// Evaluates the nearest cell and its neighbours.
 double at_repeated(const SdfNode& node, const dvec3& p, double unknown) {
   double least = std::numeric_limits<double>::infinity();
   for (int neighbour = 0; neighbour < 27; ++neighbour) {
@@ -70,14 +69,14 @@ double at_repeated(const SdfNode& node, const dvec3& p, double unknown) {
   return least;
 }
 
-/// How far `p` is outside the interval; 0 inside.
+/// Distance of `p` from the interval; 0 inside.
 double beside_interval(const SdfDescription& field, const dvec3& p) {
   double away = glm::length(glm::max(glm::max(field.lower - p, p - field.upper), dvec3(0)));
   if (field.sphere) away = std::max(away, glm::length(p - dvec3(*field.sphere)) - field.sphere->w);
   return away;
 }
 
-/// Each doubling of what is seen asks for as much as another iteration of a map of degree 2.
+/// Each doubling of magnification needs as much as another iteration of a quadratic map.
 void add_iterations(SdfNode& node, int more) {
   FormulaField& formula = node.formula;
   if (node.kind == SdfNode::Kind::formula) {

@@ -1,4 +1,4 @@
-// Views of fields from so near that floats do not tell the pixels' points apart.
+// Deep zooms: views so near a field that floats cannot distinguish the pixels' points.
 #pragma once
 #include <optional>
 #include <span>
@@ -9,30 +9,30 @@
 
 namespace sundog {
 
-/// A field as the camera sees it, all in the field's own units.
+/// The camera's view of a field, in the field's units.
 struct FieldView {
-  dvec3 place{0};        // of the camera
-  double footprint = 0;  // of a pixel on the nearest point of the field, as far as the estimate knows
+  dvec3 place{0};        // the camera's position
+  double footprint = 0;  // pixel footprint at the nearest point of the field, as estimated
 };
 
-/// Of a scene's object that is a field.
+/// `object` must be a field.
 FieldView view_of_field(const SceneDescription& scene, const Object& object);
 
-/// Whether floats are too coarse for the view: then the field is marched in doubles.
+/// Whether floats are too coarse for the view, so the field must be marched in doubles.
 bool is_deep(const FieldView& view);
 
-/// The description with what follows the footprint of a near view, unless the scene has set it: the least
-/// threshold and, in deep views, the iterations.
+/// Adapts to the footprint of a near view what the scene leaves open: the minimum threshold and, in deep
+/// views, the number of iterations.
 SdfDescription near_description(SdfDescription field, const FieldView& view);
 
-/// A field whose rays count from `origin`, a point of its own space.
+/// A field and the origin of its rays' coordinates, a point in its own space.
 struct DeepField {
   SdfDescription field;
   dvec3 origin{0};
 };
 
-/// Like compile_fields(), in doubles: intervals count from the origins, and each number is in the table
-/// twice, as a float and as a double. Throws FormulaError.
+/// compile_fields() in doubles: intervals are relative to the origins, and each number is stored twice, as a
+/// float and as a double. Throws FormulaError.
 CompiledFields compile_deep_fields(std::span<const DeepField> fields);
 
 }  // namespace sundog

@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-/// All but sums, choices and powers of roots, whose operands stand in another order.
+/// All except sums, choices and powers of roots, whose operands have another order.
 FieldOp field_op(Op op) {
   switch (op) {
     case Op::multiply:
@@ -82,7 +82,7 @@ void GraphWriter::count_uses() {
     const Node& node = graph_[id];
     if (uses_[id] == 0 || (node.op != Op::add && node.op != Op::subtract)) continue;
     const auto product = [&](NodeId x) { return graph_[x].op == Op::multiply && uses_[x] == 1; };
-    // The second operand of a sum, the first of a difference: the orders of lib/core/lanes.h.
+    // The second operand of a sum, the first of a difference: the order of lib/core/lanes.h.
     const bool first = node.op == Op::subtract;
     if (product(first ? node.a : node.b))
       is_fused_[first ? node.a : node.b] = true;

@@ -1,4 +1,4 @@
-// Straight-line graphs as statements of a field's code.
+// Emits straight-line graphs as statements of a field's code.
 #pragma once
 #include <functional>
 #include <map>
@@ -10,18 +10,18 @@
 
 namespace sundog {
 
-/// Writes the statements of one graph. Products that are used once, in a sum, become fma().
+/// Emits one graph. Products used once, in a sum, become fma().
 class GraphWriter {
  public:
-  /// `prefix` names its variables; input(index) gives an input, asked once each. `code` and `graph` must
-  /// outlive it.
+  /// `prefix` names the variables; input(index) supplies an input, called once each. `code` and `graph` must
+  /// outlive this.
   GraphWriter(FieldCode& code, const Graph& graph, std::vector<NodeId> outputs, std::string prefix,
               std::function<Operand(int)> input);
 
-  /// Statements for what does not change with the inputs for which `changes` holds, and for the rest.
+  /// Emits nodes that do not depend on inputs for which `changes` holds; write_rest() emits the others.
   void write_invariants(const std::function<bool(int)>& changes);
   void write_rest();
-  /// A node that is written, a constant or an input.
+  /// An emitted node, a constant or an input.
   Operand value(NodeId id);
 
  private:
@@ -38,7 +38,7 @@ class GraphWriter {
   std::function<Operand(int)> input_;
   std::vector<int> uses_;
   std::vector<bool> is_fused_;
-  std::map<NodeId, Operand> values_;  // of what is written, and of inputs
+  std::map<NodeId, Operand> values_;  // emitted nodes and inputs
 };
 
 }  // namespace sundog

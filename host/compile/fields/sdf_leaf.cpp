@@ -1,4 +1,4 @@
-// A leaf's functions: what its orbit's end, or its direct formula, says of the distance. See sdf_leaf.h.
+// Emits a leaf's distance from the end of its orbit, or from its direct formula. See sdf_leaf.h.
 #include "compile/fields/sdf_leaf.h"
 
 #include <algorithm>
@@ -44,8 +44,7 @@ void LeafEmitter::direct() {
       code_.define("scaled", FIELD_MULTIPLY, {write.value(s.distance), slot(leaf_slot::safety)});
   const Operand distance = code_.define("distance", FIELD_FINITE, {scaled});
   if (!is_sample()) return code_.set_result(distance);
-  // Of the distance that is returned; where it is divided by its gradient, to first order about the
-  // surface.
+  // Gradient of the returned distance; if that is divided by its gradient, to first order about the surface.
   Operands parts;
   for (const NodeId id : s.gradient) parts.push_back(write.value(id));
   Operand gradient = code_.assemble("gradient", FieldType::point, parts);

@@ -1,4 +1,4 @@
-// One formula, or hybrid of formulas, as three functions: distance, two-sided distance, and sample (distance,
+// Compiles one formula or hybrid to three functions: distance, two-sided distance, and sample (distance,
 // gradient, orbit traps).
 #pragma once
 #include <array>
@@ -15,7 +15,7 @@ struct LeafCode {
   std::vector<double> parameters;
 };
 
-/// The functions take (p, active, q), q the first of `parameters`. Throws FormulaError.
+/// The functions take (p, active, q), where q is the first of `parameters`. Throws FormulaError.
 LeafCode leaf_code(const FormulaField& field);
 
 }  // namespace sundog

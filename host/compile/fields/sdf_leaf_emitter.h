@@ -1,4 +1,4 @@
-// Writes one function of a leaf: what is shared by its parts. Internal to leaf_code().
+// Emits one function of a leaf. Internal to leaf_code().
 #pragma once
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace sundog {
 
-// The table of a leaf: these, then the parameters of its steps in order.
+// A leaf's table: these entries, then the steps' parameters in order.
 namespace leaf_slot {
 constexpr int iterations = 0, bailout = 1, inside = 2, safety = 3, inside_safety = 4, level = 5,
               first_parameter = 6;
@@ -21,7 +21,7 @@ class LeafEmitter {
  public:
   enum class Variant { distance, two_sided, sample };
 
-  /// `field` must outlive it.
+  /// `field` must outlive this.
   LeafEmitter(const FormulaField& field, Variant variant);
 
   FieldCode function();
@@ -31,7 +31,7 @@ class LeafEmitter {
   bool bails_out() const { return escapes() || field_.bailout > 0; }
   bool running() const { return !jacobian_; }
   bool is_sample() const { return variant_ == Variant::sample; }
-  /// Only |z| and its derivative at the escape are wanted: z itself may run on.
+  /// Only |z| and its derivative at escape are needed, so z may continue.
   bool latched() const { return variant_ == Variant::distance && escapes() && running(); }
   std::size_t components() const { return static_cast<std::size_t>(size_); }
 
@@ -40,18 +40,18 @@ class LeafEmitter {
                      const char* prefix);
   static Operand slot(int index) { return Operand::table(static_cast<std::size_t>(index)); }
 
-  // The orbit (sdf_leaf_orbit.cpp): z, c and derivatives before the first iteration; one iteration; all.
+  // The orbit (sdf_leaf_orbit.cpp): z, c and derivatives before the first iteration; one iteration; the loop.
   void start();
   void square(const Operand& r2);
   Operand below_bailout();
   void assign(const Operand& variable, const Operand& value);
   GraphWriter map_writer(std::size_t step);
   void map(std::size_t step, GraphWriter& write);
-  /// What stays the same in all iterations, a step each.
+  /// Emits loop invariants; one writer per step.
   std::vector<GraphWriter> begin_maps();
-  /// One iteration: the only step, or the step whose turn it is.
+  /// One iteration: the only step, or the one whose turn it is.
   void iteration(std::vector<GraphWriter>& maps);
-  /// dr from the Jacobian: the most that lengths grow in any direction.
+  /// dr from the Jacobian: its largest stretch.
   Operand derivative_from_jacobian();
   void inner_distance();
   void traps();
@@ -59,11 +59,11 @@ class LeafEmitter {
   void latched_loop();
   void loop();
 
-  // What comes of it (sdf_leaf.cpp).
+  // The result (sdf_leaf.cpp).
   void direct();
   /// The gradient of |z| times |z|: J^T z.
   std::array<Operand, 3> gradient_of_length();
-  /// Distance of an orbit that escaped or was ended; one that stays is inside, as deep as `inner`.
+  /// Distance of an escaped or stopped orbit; one that never escapes is inside at depth `inner`.
   Operand escape_distance();
   Operand folded_distance(std::array<Operand, 3>* gradient);
   void iterated();

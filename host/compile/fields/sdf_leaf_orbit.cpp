@@ -1,4 +1,4 @@
-// A leaf's orbit as code: before the first iteration, one iteration, the loop. See sdf_leaf_emitter.h.
+// Emits a leaf's orbit: before the first iteration, one iteration, the loop. See sdf_leaf_emitter.h.
 #include <fmt/format.h>
 
 #include "compile/fields/sdf_leaf_emitter.h"
@@ -117,7 +117,7 @@ GraphWriter LeafEmitter::map_writer(std::size_t step) {
 void LeafEmitter::map(std::size_t step, GraphWriter& write) {
   const Section& s = lowered_[step].map;
   write.write_rest();
-  // All new values are known before the first is set: what is itself a variable is kept.
+  // All new values must be computed before the first is assigned, so variables are copied.
   const auto kept = [&](const std::string& name, NodeId id) {
     const Operand value = write.value(id);
     return s.graph[id].op == Op::input ? code_.define(name, FIELD_COPY, {value}) : value;

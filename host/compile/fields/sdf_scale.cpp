@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-// Of the list's closed forms; a lower safety is a scale, no allowance. What others wrote may be anything.
+// For built-in closed forms, a lower safety is a scale, not a margin. Users' formulas may be anything.
 constexpr double even_safety = 0.8;
 
 bool is_direct(const SdfNode& node) {
@@ -19,7 +19,7 @@ bool has_length(const SdfNode& node) {
   return node.kind == SdfNode::Kind::thicken || node.kind == SdfNode::Kind::shell || node.smooth > 0;
 }
 
-/// What the values of `node` are multiples of; the least one where its parts differ.
+/// The scale of `node`'s values; the smallest if its parts differ.
 double scale_of(const SdfNode& node) {
   if (node.children.empty()) return is_direct(node) ? node.formula.safety : 1;
   double least = 1;

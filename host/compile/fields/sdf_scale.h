@@ -1,15 +1,14 @@
-// The numbers that estimates are scaled by ("safety"), as the operations on them see it.
+// Scales of estimates ("safety"), for operations on them.
 #pragma once
 #include "scene/formula/sdf.h"
 
 namespace sundog {
 
-/// Brings all operands of an operation that has a length of its own (thicken, shell, rounded joints) to one
-/// scale, and that length too, so that the safety of a formula moves no surface. Code of the user's own is
-/// taken as it is.
+/// Brings the operands and the length of an operation (thicken, shell, rounded joints) to one scale, so that
+/// a formula's safety moves no surface. Users' native code is left as it is.
 void level_scales(SdfNode& node);
 
-/// Near the surface of some formula under `node` an estimate may be a small part of the distance.
+/// Whether an estimate near the surface of a formula under `node` may be much smaller than the distance.
 bool is_uneven(const SdfNode& node);
 
 }  // namespace sundog

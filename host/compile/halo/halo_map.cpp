@@ -27,7 +27,7 @@ double edge_of(int band) {
   return first_wavelength + (last_wavelength - first_wavelength) * band / band_count;
 }
 
-/// The bands are white together: the sun's own colour comes with its irradiance.
+/// Bands sum to white; the sun's colour comes with its irradiance.
 std::vector<dvec3> band_colors() {
   std::vector<dvec3> colors(band_count);
   dvec3 all(0);
@@ -41,7 +41,7 @@ std::vector<dvec3> band_colors() {
   return colors;
 }
 
-/// Rays 0 .. count - 1 in launches.
+/// Divides rays 0 .. count - 1 into launches.
 void add_launches(HaloLaunch launch, u32 count, std::vector<HaloLaunch>& launches) {
   for (u32 first = 0; first < count; first += rays_a_launch) {
     launch.first = first;
@@ -52,8 +52,8 @@ void add_launches(HaloLaunch launch, u32 count, std::vector<HaloLaunch>& launche
 
 HaloLaunch launch_of(const EnvironmentDescription& e, const HaloCrystals& crystals, int band, u32 kind) {
   const double height = e.sun_altitude * pi / 180, half = 2 / std::sqrt(3.0) * crystals.ratio;
-  // A face's area by its cosine, summed: at most that of a vector of the areas, as the three pairs of sides
-  // show no more than twice one.
+  // Upper bound of the sum of face areas times cosines: that of a vector of the areas, as the three pairs of
+  // sides show at most twice one.
   const double basal = 2 * std::sqrt(3.0), side = 4 / std::sqrt(3.0) * half;
   HaloLaunch launch{};
   launch.shape = crystals.shape;
@@ -72,7 +72,7 @@ HaloLaunch launch_of(const EnvironmentDescription& e, const HaloCrystals& crysta
   return launch;
 }
 
-/// Of cells beyond the square's edges those that lie there on the sphere: an edge is folded about its middle.
+/// Cells beyond the square's edges are mapped to their place on the sphere: an edge folds about its middle.
 std::size_t cell_at(int side, int column, int row) {
   if (column < 0 || column >= side) {
     column = column < 0 ? -1 - column : 2 * side - 1 - column;
@@ -85,7 +85,7 @@ std::size_t cell_at(int side, int column, int row) {
   return std::size_t(row) * std::size_t(side) + std::size_t(column);
 }
 
-/// As halo_cell() in kernels/lib/halo/sky_map.cl: the place in the square, [0, 1].
+/// As halo_cell() in kernels/lib/halo/sky_map.cl: the position in the square, [0, 1].
 glm::dvec2 place_of(const dvec3& d) {
   const double x = std::abs(d.x), y = std::abs(d.y), radius = std::sqrt(std::max(1 - std::abs(d.z), 0.0));
   const double v = radius * std::atan2(y, x) * 2 / pi, u = radius - v;
@@ -135,7 +135,7 @@ HaloMap HaloSum::map() const {
   HaloMap map;
   map.side = plan_.side;
   map.cells.assign(3 * sums_.size(), 0.0f);
-  // What the sun's upright plane mirrors is as likely: half of the noise's square.
+  // Mirroring in the sun's vertical plane is equally likely and halves the variance.
   const double scale =
       units_ > 0 ? 0.5 * double(sums_.size()) / (4 * pi) * double(plan_.bands.size()) / units_ : 0;
   const auto side = static_cast<std::size_t>(map.side);

@@ -1,5 +1,5 @@
-// What lib/core/lanes.h is for kernels, for the host's C++: four lanes in the compiler's vectors. Included
-// once, before kernels/lib/halo, inside of its namespace.
+// The host's counterpart of lib/core/lanes.h: four lanes in compiler vectors. Include once, before
+// kernels/lib/halo, inside its namespace.
 #define SUNDOG_HOST_LANES
 #define SUNDOG_LIB_LANES_H
 #define LANES 4

@@ -1,4 +1,4 @@
-// Halos on the host: the kernels' own functions, compiled as C++.
+// Traces halos on the host with the kernels' functions, compiled as C++.
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 #include "compile/halo/host_lanes.h"
 #include "lib/halo/trace.cl"
 
-/// Counts of one thread.
+/// One thread's counts.
 struct Counts {
   std::vector<u32> cells, tallies;
 };

@@ -25,7 +25,7 @@ constexpr int matte_viewers = 12;
 
 dvec3 matte_viewer(int k) { return viewer(std::max(k / 11.0, 0.01), 0); }
 
-/// The sum over directions, by cosine and turn, of `value(wi)` times the cosine's share of the hemisphere.
+/// Integrates `value(wi)` over directions, weighted by the cosine.
 template <class Value>
 double over_hemisphere(int rows, int columns, const Value& value) {
   double sum = 0;
@@ -68,8 +68,8 @@ AlbedoRow fuzz_albedo(double alpha) {
 
 namespace {
 
-/// Sums over directions wi of what a white matte ground's value is made of, by the column of `past` that each
-/// is weighed with: 1, the part of wi alone, and for each viewer the part of both.
+/// Integrals over wi of the terms of a white matte ground, by the column of `past` that weights each: 1, the
+/// term of wi, and for each viewer the term of both.
 struct MatteSums {
   AlbedoRow plain{}, part{};
   std::array<AlbedoRow, matte_viewers> both{};

@@ -24,17 +24,17 @@ GainGrid make_gains(double anisotropy) {
   return grid;
 }
 
-/// Of facets as wide across as along: the same for all materials.
+/// Isotropic facets: the same for all materials.
 const GainGrid& round_gains() {
-  // Its own tasks alone run meanwhile: another's might ask for the grid.
+  // Isolated, because a stolen task might request the grid.
   static const GainGrid grid = tbb::this_task_arena::isolate([] { return make_gains(0); });
   return grid;
 }
 
-/// As the kernels ask.
+/// By the kernels' test.
 bool is_round(double anisotropy) { return float(1 - anisotropy) == 1; }
 
-/// The gains of one anisotropy, which the materials of a scene share.
+/// The gains of one anisotropy, shared by a scene's materials.
 const GainGrid& gain_grid(double anisotropy, LayerRows& rows) {
   if (is_round(anisotropy)) return round_gains();
   const auto found = rows.gains.find(anisotropy);
@@ -42,23 +42,23 @@ const GainGrid& gain_grid(double anisotropy, LayerRows& rows) {
                                    : rows.gains.emplace(anisotropy, make_gains(anisotropy)).first->second;
 }
 
-/// What the steps of a grid are of: the roughness, or the coat's weight.
+/// The parameter of a grid's steps: roughness, or coat weight.
 struct GridSteps {
   double anisotropy;
-  std::span<const FacetWidths> by_coat;  // of each step; empty in a grid by roughness
+  std::span<const FacetWidths> by_coat;  // one per step; empty in a grid by roughness
 
   FacetWidths widths_at(double y) const {
     if (by_coat.empty()) return sundog::widths_at(y, anisotropy);
     const auto step = std::min(static_cast<std::size_t>(y), steps - 2);
     const FacetWidths &a = by_coat[step], &b = by_coat[step + 1];
-    // Between steps the roughness is linear: the root of the widths.
+    // Roughness, the square root of the width, is linear between steps.
     const auto between = [&](double from, double to) {
       const double root = std::lerp(std::sqrt(from), std::sqrt(to), y - double(step));
       return root * root;
     };
     return {between(a.x, b.x), between(a.y, b.y)};
   }
-  /// Of the way to the next step, as the kernels have it.
+  /// Position between steps, as in kernels.
   double part_at(double y) const {
     const auto step = static_cast<std::size_t>(y);
     if (!by_coat.empty()) return y - double(step);
@@ -77,8 +77,7 @@ FacetGains gains_at(double y, const GridSteps& of, const GainGrid& grid) {
   return gains;
 }
 
-/// The greatest shine_scale of each step that lets no facets between it and its neighbours return more than
-/// all light.
+/// The largest shine_scale per step such that facets between it and its neighbours reflect at most all light.
 std::array<double, steps> greatest_scales(const GridSteps& of, const GainGrid& gains) {
   std::array<double, steps> scales;
   scales.fill(1);
@@ -90,7 +89,7 @@ std::array<double, steps> greatest_scales(const GridSteps& of, const GainGrid& g
   return scales;
 }
 
-/// Of each step of a grid; `around` has one for all steps, or one for each.
+/// All steps of a grid; `around` has one entry for all, or one each.
 std::array<BaseInterface, steps> make_steps(const GridSteps& of, const GainGrid& gains,
                                             const std::array<double, steps>& scales,
                                             std::span<const BaseSurroundings> around) {
@@ -125,7 +124,7 @@ void write_grid(const std::array<BaseInterface, steps>& made, const GainGrid& ga
   }
 }
 
-/// Neighbours often have the same widths: those of a smooth coat.
+/// Neighbours often have equal widths: those of a smooth coat.
 GainGrid gains_of(std::span<const FacetWidths> widths) {
   GainGrid gains;
   for (std::size_t i = 0; i < steps; ++i) {

@@ -26,20 +26,20 @@ double hidden_by(const dvec3& w, const FacetWidths& a) {
   return (std::sqrt(1 + stretched / std::max(w.z * w.z, 1e-12)) - 1) / 2;
 }
 
-/// `stretched`: the viewer above round facets of the slope 1.
+/// `stretched`: the viewer, scaled so that facets have slope 1.
 dvec3 facet_seen_from(const dvec3& stretched, const FacetWidths& a, const LatticeTurn& turn, double v) {
   const double z = (1 - v) * (1 + stretched.z) - stretched.z, side = std::sqrt(std::max(1 - z * z, 0.0));
   const dvec3 h = dvec3(side * turn.cosine, side * turn.sine, z) + stretched;
   return glm::normalize(dvec3(a.x * h.x, a.y * h.y, std::max(h.z, 1e-6)));
 }
 
-/// Where gains have a direction: from this row and column the parts of the way to the next.
+/// The cell of a direction in the gains, and interpolation weights.
 struct GainPlace {
   unsigned row, column;
   double to_next_row, to_next_column;
 };
 
-/// `one_row`: all rows of the gains are equal, so the first serves.
+/// `one_row`: all rows of the gains are equal.
 GainPlace place_of(const dvec3& w, bool one_row) {
   const double x = std::clamp(w.z, 0.0, 1.0) * (LAYER_STEPS - 1);
   const unsigned column = std::min(static_cast<unsigned>(x), LAYER_STEPS - 2);
@@ -50,7 +50,7 @@ GainPlace place_of(const dvec3& w, bool one_row) {
   return {row, column, y - double(row), x - double(column)};
 }
 
-/// std::lerp for positive a and b and t from 0 to 1, without its branches.
+/// std::lerp without branches, for positive a and b and t from 0 to 1.
 double between(double a, double b, double t) {
   const double x = a + t * (b - a), bounded = b > a ? std::min(x, b) : std::max(x, b);
   return t == 1 ? b : bounded;
@@ -64,8 +64,8 @@ double gain_at(const FacetGains& gains, const GainPlace& at) {
   return at.to_next_row == 0 ? first : between(first, in_row(gains[at.row + 1]), at.to_next_row);
 }
 
-/// Light of white facets, each drawn with the same weight: where it comes from, the part that is sent on, and
-/// the cosine to the facet.
+/// Light from an equally weighted white facet: its origin, the fraction reflected, and the cosine to the
+/// facet.
 struct SentLight {
   GainPlace from;
   double part, cosine;
@@ -155,16 +155,16 @@ FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, con
 
 namespace {
 
-/// Neighbours by cosine, each group with as much of the light.
+/// Groups facets by cosine, each with an equal share of light.
 std::array<FacetGroup, round_groups> grouped(std::vector<SentLight> sent, const FacetGains& gains) {
   std::ranges::sort(sent, {}, &SentLight::cosine);
   double all = 0;
   for (const SentLight& one : sent) all += one.part;
-  std::array<dvec3, round_groups> sums{};  // of cosines, parts and gained parts
+  std::array<dvec3, round_groups> sums{};  // of cosines, fractions and fractions with gains
   double before = 0;
   for (const SentLight& one : sent) {
     const double end = before + one.part;
-    // A draw that lies across the groups' limits is shared between them.
+    // A facet that straddles groups is divided between them.
     for (double from = before; from < end;) {
       const auto group = std::min(static_cast<std::size_t>(from / all * round_groups), round_groups - 1);
       const double limit =

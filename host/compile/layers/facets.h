@@ -1,11 +1,11 @@
-// What facets of two widths return: the gains that give back what each loses to the others, and albedos of
-// interfaces between dielectrics.
+// Reflectance of anisotropic microfacets: gains that restore the energy lost between facets, and albedos of
+// dielectric interfaces.
 #pragma once
 #include "compile/layers/albedos.h"
 
 namespace sundog {
 
-/// What an interface reflects at a cosine: of the relative index, and with a film's weight the film's row.
+/// Reflectance of an interface by cosine: its relative index, blended by weight with a film's row.
 struct Interface {
   double eta, film;
   AlbedoRow film_row;
@@ -13,17 +13,17 @@ struct Interface {
 
 double interface_reflects(double cosine, const Interface& interface);
 
-/// By the turn about the normal: row i for directions whose part along the tangent has the square i /
-/// (LAYER_TURNS - 1) of the whole.
+/// By azimuth: row i holds directions whose squared component along the tangent is i / (LAYER_TURNS - 1) of
+/// the whole.
 using FacetGains = std::array<AlbedoRow, LAYER_TURNS>;
 
-/// The gains of both directions are factors on a white lobe, which then returns all light (lobe_energy.h);
-/// being one function for both, they leave it reciprocal.
+/// Gains multiply a white lobe by one function of both directions, so that it reflects all light
+/// (lobe_energy.h) and stays reciprocal.
 FacetGains facet_gains(const FacetWidths& widths);
 
 struct FacetAlbedo {
-  AlbedoRow of_interface;  // the most that facets which reflect as the interface does return
-  double scale;            // 1 over the most that white ones return, at most 1
+  AlbedoRow of_interface;  // maximum albedo of facets with the interface's reflectance
+  double scale;            // 1 / maximum albedo of white facets, at most 1
 };
 FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, const Interface& interface);
 

@@ -11,7 +11,7 @@
 namespace sundog {
 namespace {
 
-/// Amplitudes of both polarisations that an interface reflects, from the index n to the index m.
+/// Reflected amplitudes of both polarisations at an interface from index n to index m.
 struct Amplitudes {
   double s, p;
 };
@@ -26,7 +26,7 @@ double airy(double first, double second, double cos_phase) {
   return (square + other + 2 * both * cos_phase) / (1 + square * other + 2 * both * cos_phase);
 }
 
-/// The cosine behind an interface; below 0 where light does not get there.
+/// The cosine behind an interface; negative for total reflection.
 double cosine_behind(double n, double cosine, double m) {
   const double square = 1 - (1 - cosine * cosine) * (n / m) * (n / m);
   return square > 0 ? std::sqrt(square) : -1;

@@ -16,7 +16,7 @@
 namespace sundog {
 namespace {
 
-/// The index that reflects `weight` times what `index` does, straight on.
+/// The index whose normal reflectance is `weight` times that of `index`.
 double weighted_index(double index, double weight) {
   const double root = (index - 1) / (index + 1);
   const double wanted = std::min(weight * root * root, 0.999);
@@ -24,18 +24,18 @@ double weighted_index(double index, double weight) {
   return (1 + signed_root) / (1 - signed_root);
 }
 
-/// The index above the base, below a coat of this weight.
+/// The index above the base, under a coat of this weight.
 double index_above(const OpenPbr& v, double coat_weight) {
   return v.coat_bends ? 1 + coat_weight * (v.coat_ior - 1) : 1;
 }
 
-/// The base's index over that, or 1 over it where it is less.
+/// The base's index relative to that, or its inverse if below 1.
 double base_eta(const OpenPbr& v, double coat_weight) {
   const double index = weighted_index(v.specular_ior / index_above(v, coat_weight), v.specular_weight);
   return index < 1 ? 1 / index : index;
 }
 
-/// A coat's facets bend the view of the base's: it is as rough as both together.
+/// A coat's facets blur the view of the base, which appears as rough as both together.
 double roughened(const OpenPbr& v, double coat_weight) {
   if (!v.coat_bends) return v.specular_roughness;
   const double both =
@@ -43,12 +43,12 @@ double roughened(const OpenPbr& v, double coat_weight) {
   return std::lerp(v.specular_roughness, both, coat_weight);
 }
 
-/// What a coat's inside sends back of the light from a base (OpenPBR 1.1, "Coat", "Darkening"): of one
-/// without roughness what it sends back straight on, of a rough one as of a matte one.
+/// Internal reflectance of a coat for light from a base (OpenPBR 1.1, "Coat", "Darkening"): at normal
+/// incidence for a smooth base, diffuse for a rough one.
 double inner_reflectance(double eta, double roughness) {
   constexpr int steps = 256;
   const Interface outer{eta, 0, {}};
-  double outside = 0;  // what it reflects of light from all around
+  double outside = 0;  // diffuse reflectance from outside
   for (int i = 0; i < steps; ++i) {
     const double cosine = (i + 0.5) / steps;
     outside += 2 * cosine * interface_reflects(cosine, outer) / steps;
@@ -58,7 +58,7 @@ double inner_reflectance(double eta, double roughness) {
 
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-/// The rows of a film; empty without one.
+/// A film's rows; empty without a film.
 struct FilmColors {
   std::array<dvec3, LAYER_STEPS> glass{}, metal{};
 };
@@ -83,10 +83,10 @@ void write_film(const FilmColors& film, std::vector<float>& to) {
       for (const dvec3& color : *colors) to.push_back(float(color[channel]));
 }
 
-/// What fuzz of its weight leaves, and what a coat of the weight 1 returns.
+/// Light that weighted fuzz transmits, and the albedo of a coat of weight 1.
 struct Above {
   AlbedoRow past_fuzz, coat;
-  FacetGains coat_gains;  // where there is a coat
+  FacetGains coat_gains;  // if there is a coat
   double fuzz_weight;
 };
 
@@ -114,7 +114,7 @@ AlbedoRow past_coat(const Above& above, double coat_weight) {
   return past;
 }
 
-/// What the base has about it below a coat of this weight.
+/// The base's surroundings under a coat of this weight.
 BaseSurroundings surroundings(const OpenPbr& v, double coat_weight, const Above& above,
                               const FilmColors& film) {
   BaseSurroundings around;
@@ -164,7 +164,7 @@ bool maps_coat(const OpenPbr& v, const MaterialTextures& textures) {
   return v.coat_weight > 0 && textures.coat >= 0;
 }
 
-/// The grid by the coat's weight, and by roughness too where a texture gives that.
+/// The grid by coat weight, and by roughness too if a texture gives it.
 void add_coat_steps(const OpenPbr& v, bool rough, const Above& above, LayerRows& rows, Layers& to) {
   const double anisotropy = v.specular_roughness_anisotropy;
   std::vector<BaseSurroundings> around;
@@ -244,7 +244,7 @@ void add_layers(const SceneDescription& scene, CompiledScene& out) {
         0)
       out.features.surface_coordinates = true;
   }
-  layers.push_back({});  // of things without a material
+  layers.push_back({});  // for objects without a material
   out.layers = std::move(layers);
   out.layer_rows = std::move(rows.values);
 }

@@ -1,4 +1,4 @@
-// See round_facets.h. Rows are even in the root of the width and read by cubics through four of them.
+// See round_facets.h. Rows are uniform in the root of the width and interpolated by cubics through four.
 #include "compile/layers/round_facets.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t facets_size = sizeof(RoundFacets) / sizeof(float);
 
-/// Four rows from `first` on, and Lagrange's weight of each.
+/// Four rows from `first` on, and their Lagrange weights.
 struct RowsBetween {
   std::size_t first;
   std::array<double, 4> weights;
@@ -28,7 +28,7 @@ RowsBetween rows_at(double alpha) {
            t * (t - 1) * (t - 2) / 6}};
 }
 
-/// `size` numbers between the rows of a table of such rows.
+/// Interpolates `size` numbers between rows of a table.
 void between(std::span<const float> table, std::size_t size, double alpha, float* to) {
   const RowsBetween rows = rows_at(alpha);
   const float* at = table.data() + rows.first * size;

@@ -1,5 +1,5 @@
-// See content_key.h. Each struct is taken apart by a structured binding, which names all its members: one
-// that is added does not build until it is put into the key here, or left out on purpose.
+// See content_key.h. Structured bindings name all members of a struct, so that a new member fails to compile
+// until it is added here or left out on purpose.
 #include "compile/parts/content_key.h"
 
 #include <tbb/parallel_for.h>
@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::uint64_t odd_a = 0x9E3779B97F4A7C15u, odd_b = 0xC2B2AE3D27D4EB4Fu;
 
-/// Numbers without gaps between them, as one piece of memory.
+/// Adds trivially copyable rows as one block of memory.
 template <class Rows>
 void add_rows(KeyMaker& key, const Rows& rows) {
   static_assert(std::is_trivially_copyable_v<typename Rows::value_type>);
   key.add(rows.size()).bytes(rows.data(), rows.size() * sizeof(typename Rows::value_type));
 }
 
-/// Pieces of many bytes have keys of their own, made by several threads.
+/// Large blocks are hashed in pieces by several threads.
 void add_many_bytes(KeyMaker& key, const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t piece = std::size_t{1} << 19;
   std::vector<ContentKey> keys((bytes.size() + piece - 1) / piece);
@@ -187,7 +187,7 @@ KeyMaker& KeyMaker::add(const MaterialDescription& material) {
                displacement, displacement_middle, displacement_edge, occlusion, coat, layers, by_paths] =
       material;
   (void)name;
-  // These have made the meshes.
+  // Already applied to the meshes.
   (void)displaced_by, (void)displacement, (void)displacement_middle, (void)displacement_edge;
   add_each(type, ambient, diffuse, specular, exponent, blinn, emission, reflection, transmission, roughness,
            multiple_scattering, medium, wall_ior, shadow_opaque, off_camera, shadow_filter, checker,

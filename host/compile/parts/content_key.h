@@ -1,4 +1,4 @@
-// Keys of parts of a description: what has the same key compiles to the same bytes.
+// Content keys of parts of a description: equal keys compile to equal bytes.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace sundog {
 
-/// 128 bits of a hash that is not cryptographic: edits do not meet by chance. The default one is no
-/// content's.
+/// A non-cryptographic 128-bit hash, long enough to avoid accidental collisions. The default value matches no
+/// content.
 struct ContentKey {
   std::uint64_t a = 0, b = 0;
   friend bool operator==(const ContentKey&, const ContentKey&) = default;
@@ -19,7 +19,7 @@ struct ContentKey {
 template <class T>
 concept NumberOrEnum = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// Mixes values into a key, in order. Numbers count by their bits: 0 and -0 differ.
+/// Hashes values in order. Numbers count by their bits: 0 and -0 differ.
 class KeyMaker {
  public:
   KeyMaker& bytes(const void* data, std::size_t count);
@@ -39,11 +39,11 @@ class KeyMaker {
     return bytes(&m, sizeof m);
   }
 
-  // Of a description all that compile() reads; names and places, which only messages have, are left out.
+  // All that compile() reads of a description; omits names and places, which appear only in messages.
   KeyMaker& add(const Camera& camera);
   KeyMaker& add(const LightDescription& light);
   KeyMaker& add(const EnvironmentDescription& environment);
-  /// What a map of a halo is made of.
+  /// The inputs of a halo map.
   KeyMaker& add_halo(const EnvironmentDescription& environment);
   KeyMaker& add(const MediumDescription& medium);
   KeyMaker& add(const ImageDescription& image);
@@ -60,7 +60,7 @@ class KeyMaker {
     for (const auto& item : list) add(item);
     return *this;
   }
-  /// All arguments in turn.
+  /// Adds all arguments in order.
   template <class... T>
   KeyMaker& add_each(const T&... values) {
     (add(values), ...);

@@ -1,4 +1,4 @@
-// The part of the fields: each as its nearest view wants it.
+// Compiles the fields, each for its nearest view.
 #include <algorithm>
 #include <limits>
 
@@ -15,7 +15,7 @@ dvec3 origin_in(const Object& object, const dvec3& origin) {
   return dvec3(glm::inverse(object.world_from_object) * glm::dvec4(origin, 1));
 }
 
-/// In a deep view each placed field is one of its own, which counts from the tables' origin.
+/// In a deep view, each placed field is separate and relative to the tables' origin.
 std::vector<DeepField> deep_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
                                    CompiledScene& out) {
   std::vector<DeepField> fields;
@@ -29,7 +29,7 @@ std::vector<DeepField> deep_fields(const SceneDescription& scene, const std::vec
   return fields;
 }
 
-/// Each as its nearest view wants it.
+/// Each field for its nearest view.
 std::vector<SdfDescription> near_fields(const SceneDescription& scene, const std::vector<FieldView>& views) {
   std::vector<SdfDescription> fields = scene.fields;
   std::vector<double> nearest(fields.size(), std::numeric_limits<double>::infinity());
@@ -44,7 +44,7 @@ std::vector<SdfDescription> near_fields(const SceneDescription& scene, const std
   return fields;
 }
 
-/// Shadows with a penumbra and darker crevices stand in for light that path tracing follows.
+/// Soft shadows and ambient occlusion approximate light that path tracing computes.
 void drop_artifices(CompiledScene& out) {
   for (SdfField& field : out.sdf_fields.edit()) field.shadow_hardness = field.occlusion_reach = 0;
 }
@@ -95,7 +95,7 @@ ScenePart make_fields(const SceneDescription& scene, const std::vector<FieldView
       fields = compile_fields(near_fields(scene, views));
     }
   } catch (const FormulaError& error) {
-    // Reading has checked each formula; only their number and their combination may still fail.
+    // Formulas were checked on reading; only their number and combination may still fail.
     throw SceneError(scene.file.string(), "", error.what());
   }
   part.made.field_source = std::move(fields.source);

@@ -1,4 +1,4 @@
-// Parts that rays meet: meshes with their coordinates for textures, and instances.
+// Compiles geometry: meshes, their texture coordinates, and instances.
 #include "compile/mesh_groups.h"
 #include "compile/parts/parts.h"
 #include "compile/placing/instances.h"
@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-/// What instances take from a material.
+/// Material properties that instances depend on.
 void add_facts(const Material& material, KeyMaker& key) {
   const float4& shines = material.emission;
   constexpr u32 known = MATERIAL_TRANSMITS | MATERIAL_REFLECTS | MATERIAL_SHADOW_OPAQUE | MATERIAL_THIN;

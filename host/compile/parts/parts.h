@@ -1,4 +1,4 @@
-// The parts that a compiled scene is put together from, each with the key of all that it is made of.
+// The parts of a compiled scene, each with the content key of its inputs.
 #pragma once
 #include "compile/compiled_scene.h"
 #include "compile/fields/sdf_deep.h"
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// The tables, features and numbers of one part in a scene that has nothing else (but what it reads).
+/// One part's tables, features and numbers, in a scene without the other parts (except those it reads).
 struct ScenePart {
   ContentKey key;
   CompiledScene made;
@@ -22,17 +22,17 @@ struct MeshesPart : ScenePart {
 };
 
 struct InstancesPart : ScenePart {
-  std::vector<Bounds> boxes;  // of each instance
+  std::vector<Bounds> boxes;  // one per instance
 };
 
-/// The map of a halo, where there is one.
+/// The map of a halo, if any.
 struct HaloPart {
   ContentKey key;
   std::shared_ptr<const HaloMap> map;
 };
 
 ContentKey halo_key(const SceneDescription& scene);
-/// The description's own map, or else one that is traced here.
+/// Returns the description's own map, or traces one.
 HaloPart make_halo(const SceneDescription& scene);
 
 ContentKey lights_key(const SceneDescription& scene, const dvec3& origin);
@@ -44,7 +44,7 @@ SurfacesPart make_surfaces(const SceneDescription& scene);
 ContentKey meshes_key(const SceneDescription& scene, const SurfacesPart& surfaces);
 MeshesPart make_meshes(const SceneDescription& scene, const SurfacesPart& surfaces);
 
-/// What textures want of the meshes: further coordinates and tangents.
+/// Further texture coordinates and tangents that textures need.
 ContentKey mapping_key(const MeshesPart& meshes, const SurfacesPart& surfaces);
 ScenePart make_mapping(const SceneDescription& scene, const MeshesPart& meshes, const SurfacesPart& surfaces);
 
@@ -53,21 +53,21 @@ ContentKey instances_key(const SceneDescription& scene, const MeshesPart& meshes
 InstancesPart make_instances(const SceneDescription& scene, const MeshesPart& meshes,
                              const SurfacesPart& surfaces, const dvec3& origin);
 
-/// Which instances lie on others; how near that is follows from the camera's place too.
+/// Instances that touch others; the tolerance depends on the camera's position.
 ContentKey touching_key(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin);
 ScenePart make_touching(const SceneDescription& scene, const InstancesPart& instances, const dvec3& origin);
 
-/// The fields' views, an object each that is one.
+/// The fields' views, one per object that is a field.
 std::vector<FieldView> views_of(const SceneDescription& scene);
 
-/// `instances`: the key of what make_fields() is given.
+/// `instances`: key of the instances given to make_fields().
 ContentKey fields_key(const SceneDescription& scene, const std::vector<FieldView>& views,
                       const ContentKey& instances, const dvec3& origin);
-/// In a deep view each placed field is one of its own: `instances` are given their numbers.
+/// In a deep view, each placed field is compiled separately; sets the field indices in `instances`.
 ScenePart make_fields(const SceneDescription& scene, const std::vector<FieldView>& views,
                       const CompiledScene& instances);
 
-/// Puts what a part has into the whole: its tables, and its features beside those that are there.
+/// Adds a part's tables and features to the whole.
 void take_part(const CompiledScene& part, CompiledScene& out);
 
 }  // namespace sundog

@@ -15,9 +15,9 @@ namespace sundog {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::size_t most_targets = 64;  // each is looked at for every photon
-constexpr double photons_within = 12;     // the first radius, where light is spread as it arrives
-constexpr double least_share = 0.02;      // of the photons, shared evenly by the lights that shine
+constexpr std::size_t most_targets = 64;  // each costs time for every photon
+constexpr double photons_within = 12;     // within the first radius, if light is uniform
+constexpr double least_share = 0.02;      // of the photons, divided evenly among the emitters
 
 bool is_smooth(const Material& material) {
   return material.flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS) && material.reflection.w == 0;
@@ -34,7 +34,7 @@ bool sends_on(const SceneDescription& scene, const Instance& instance, const Com
 
 glm::dvec3 middle_of(const float4& ball) { return {ball.x, ball.y, ball.z}; }
 
-/// A ball about the instance, wherever it moves: a sphere's own, where its scale is the same along all axes.
+/// A ball around the instance over its motion; exact for a uniformly scaled sphere.
 float4 ball_about(const SceneDescription& scene, const Instance& instance, const Bounds& box) {
   float4 ball = sphere_around(box);
   if (instance.shape != SHAPE_SPHERE || scene.objects[instance.object].moves()) return ball;
@@ -47,8 +47,8 @@ float4 ball_about(const SceneDescription& scene, const Instance& instance, const
   return ball;
 }
 
-/// The smooth things' balls behind that about everything. A plane has no end: the part that matters is taken
-/// to be not much farther away than the camera and all other things.
+/// The balls of smooth objects, after one around everything. Of a plane, which is infinite, the relevant part
+/// is assumed to be not much farther away than the camera and all other objects.
 std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bounds> boxes,
                                const CompiledScene& out) {
   Bounds all = Bounds::none(), smooth = Bounds::none();
@@ -79,7 +79,7 @@ double luminance(const float4& color) {
   return 0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z);
 }
 
-/// The environment's radiance, the mean of all directions.
+/// The environment's mean radiance over all directions.
 double mean_luminance(const CompiledScene& out) {
   const Environment& e = out.environments[0];
   double sum = 0, weights = 0;
@@ -91,7 +91,7 @@ double mean_luminance(const CompiledScene& out) {
   return sum / weights;
 }
 
-/// About the light that goes from a light to a ball.
+/// Estimates the light from a light to a ball.
 double light_to_ball(const Light& light, const float4& ball, double environment) {
   const double radius = double(ball.w), across = pi * radius * radius;
   const double bright = luminance(light.color);
@@ -106,7 +106,7 @@ double light_to_ball(const Light& light, const float4& ball, double environment)
   return bright * lamp_bounds(light).area * across / (d * d);
 }
 
-/// For each light the running sum of the lights' shares; empty where none shines.
+/// Cumulative shares of the lights; empty if none emits.
 std::vector<float> share_photons(const std::vector<float4>& balls, const CompiledScene& out) {
   const double environment = out.environments.empty() ? 0 : mean_luminance(out);
   std::vector<double> parts;
@@ -123,16 +123,16 @@ std::vector<float> share_photons(const std::vector<float4>& balls, const Compile
     if (part > 0) sum += (1 - least_share) * part / all + least_share / shining;
     sums.push_back(static_cast<float>(std::min(sum, 1.0)));
   }
-  // The last that shines takes what rounding has left.
+  // The last emitter absorbs rounding errors.
   const float last = sums.back();
   for (float& value : sums)
     if (value == last) value = 1;
   return sums;
 }
 
-/// Planes behind the balls, with a weight below 0 and where no number chooses them
-/// (kernels/lib/pathtracer/photon_start.cl): where they are when the shutter opens, and those that move also
-/// where they are when it closes.
+/// Appends planes after the balls, with a negative weight and never sampled
+/// (kernels/lib/pathtracer/photon_start.cl): at their positions when the shutter opens and, if they move,
+/// when it closes.
 void append_planes(const SceneDescription& scene, const CompiledScene& out,
                    std::vector<PhotonTarget>& targets) {
   for (const Instance& instance : out.instances.rows()) {
@@ -146,7 +146,7 @@ void append_planes(const SceneDescription& scene, const CompiledScene& out,
   }
 }
 
-/// Photons go to balls in proportion to their radii: small things throw the sharpest light.
+/// Distributes photons to balls in proportion to their radii: small objects cast the sharpest light.
 std::vector<PhotonTarget> share_balls(const std::vector<float4>& balls) {
   double sum = 0, all = 0;
   for (std::size_t i = 1; i < balls.size(); ++i) all += double(balls[i].w);
@@ -159,7 +159,7 @@ std::vector<PhotonTarget> share_balls(const std::vector<float4>& balls) {
   return targets;
 }
 
-/// So that about the same number of photons counts at a place whatever their number and the things' sizes.
+/// A radius that makes the number of photons per estimate independent of their total and of object sizes.
 double usual_radius(const std::vector<float4>& balls, double count) {
   double squares = 0;
   for (std::size_t i = 1; i < balls.size(); ++i) squares += double(balls[i].w) * double(balls[i].w);
@@ -172,7 +172,7 @@ bool may_be_inside(const Light& light, std::span<const Bounds> boxes, const Comp
   return is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
 }
 
-constexpr double least_radius = 1e-15;  // less is nothing as the square of a float
+constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of a float
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Where photons are sent to, and which lights send how many (kernels/shared/photons.h).
+// Chooses the targets of photons and each light's share of them (kernels/shared/photons.h).
 #pragma once
 #include <span>
 
@@ -6,9 +6,9 @@
 
 namespace sundog {
 
-/// Fills `out.photon_targets` and `out.photon_lights` and sets the feature, for a scene that is path-traced
-/// with caustics and has both lights and smooth things that mirror or bend light; else nothing. `boxes`: of
-/// each instance of `out`, whose lights are complete.
+/// Fills `out.photon_targets` and `out.photon_lights` and sets the feature, for path tracing with caustics in
+/// a scene with lights and smooth reflecting or refracting objects; else does nothing. `boxes`: one per
+/// instance of `out`, whose lights must be complete.
 void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> boxes, CompiledScene& out);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Parts that shading reads: lights with the environment, and surfaces.
+// Compiles shading data: lights with the environment, and surfaces.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ bool scatters(const Medium& medium) {
   return s.x != 0 || s.y != 0 || s.z != 0;
 }
 
-/// As highlight() of kernels/lib/shade/bsdf.cl tells them.
+/// By the test of highlight() in kernels/lib/shade/bsdf.cl.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
   return exponent != std::floor(exponent) || exponent > GREATEST_WHOLE_EXPONENT;

@@ -17,9 +17,9 @@ constexpr double most_share = 0.01;                           // of the camera's
 
 double greatest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// The camera, and the origin of the tables' coordinates, in an object's space.
+/// The camera and the tables' origin in an object's space.
 struct Seen {
-  glm::dmat3 normals;  // from there to the world
+  glm::dmat3 normals;  // from object to world space
   dvec3 camera, origin;
 
   Seen(const glm::dmat4& world_from_unit, const dvec3& from, const dvec3& tables) {
@@ -28,7 +28,7 @@ struct Seen {
     camera = dvec3(back * glm::dvec4(from, 1));
     origin = dvec3(back * glm::dvec4(tables, 1));
   }
-  /// A length along a unit normal.
+  /// Converts a length along a unit normal.
   double in_world(double length, const dvec3& normal) const { return length / glm::length(normals * normal); }
 };
 
@@ -38,7 +38,7 @@ double distance_of(const UnitShape& unit, const dvec3& q) {
   return glm::length(glm::max(glm::abs(q) - dvec3(1, 0, 1), dvec3(0)));
 }
 
-/// The direction away from a solid's surface, unit.
+/// The unit direction away from a solid's surface.
 dvec3 away_from(const UnitShape& unit, const dvec3& q) {
   const double step = 1e-4 * std::max(1.0, greatest_of(q));
   dvec3 slope(0);
@@ -58,7 +58,7 @@ CoarseStart start_on_solid(const UnitShape& unit, const Seen& seen) {
   return {{}, seen.in_world(rounding, normal), seen.in_world(distance_of(unit, seen.camera), normal)};
 }
 
-/// On the triangle whose offset is greatest beside its distance.
+/// On the triangle with the largest offset relative to its distance.
 CoarseStart start_on_mesh(const Mesh& mesh, const Seen& seen) {
   CoarseStart worst{{}, 0, std::numeric_limits<double>::infinity()};
   const double scale = 1 / std::cbrt(std::abs(glm::determinant(seen.normals)));
@@ -74,7 +74,7 @@ CoarseStart start_on_mesh(const Mesh& mesh, const Seen& seen) {
   return worst;
 }
 
-/// Whether some triangle can be so large, or so far from its mesh's origin, that it is worth a look at each.
+/// Whether some triangle can be so large, or so far from its mesh's origin, that all must be tested.
 bool may_be_coarse(const Mesh& mesh, const Seen& seen, double least) {
   glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
   for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
@@ -86,7 +86,7 @@ bool may_be_coarse(const Mesh& mesh, const Seen& seen, double least) {
 
 std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec3& origin) {
   const Camera& camera = scene.camera;
-  // No more than what rounding at the camera's own place asks for.
+  // At most what rounding at the camera's position requires.
   const double least = scene_spacing * greatest_of(camera.position - origin);
   std::vector<CoarseStart> found;
   for (const Object& object : scene.objects) {

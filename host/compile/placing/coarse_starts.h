@@ -1,4 +1,4 @@
-// Objects so large beside their distance from the camera that floats do not tell what lies close to them.
+// Detects objects so large relative to their distance that floats cannot resolve details near the camera.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace sundog {
 
-/// Rays leave the object `away` off its surface, as far as rounding may place a hit beside it
-/// (kernels/lib/shade/interaction.cl); `distance`, less than a hundred times as much, is the camera's.
+/// Secondary rays start `away` from the object's surface, the bound of a hit's rounding
+/// (kernels/lib/shade/interaction.cl); `distance`, less than a hundred times that, is the camera's.
 struct CoarseStart {
   std::string object;
   double away = 0, distance = 0;
 };
 
-/// `origin`: of the tables' coordinates. Fields are left out: rays leave them by their own rules.
+/// `origin`: of the tables' coordinates. Skips fields, which offset rays differently.
 std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec3& origin);
 
 }  // namespace sundog

@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-// How much boxes are widened, of their coordinates: instances' transforms are rounded to floats.
+// Relative widening of boxes: instances' transforms are rounded to floats.
 constexpr double widening = 0x1p-22;
 
 float round_down(double value) {
@@ -17,7 +17,7 @@ float round_down(double value) {
 
 float round_up(double value) { return -round_down(-value); }
 
-/// How far the shape reaches along `direction` (unit space): of a mesh or a field, its boxes.
+/// The support along `direction` (unit space); for a mesh or field, that of its boxes.
 double reach(const UnitShape& unit, std::span<const Bounds> boxes, const dvec3& d) {
   if (unit.shape != SHAPE_MESH && unit.shape != SHAPE_SDF) return reach(unit, d);
   double most = -std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ double reach(const UnitShape& unit, std::span<const Bounds> boxes, const dvec3& 
   return most;
 }
 
-/// The box around unit-space points about `center`, up to `half` along each axis, within `whole`.
+/// The box around unit-space points about `center`, within `half` along each axis, clipped to `whole`.
 Bounds part_of(const Bounds& whole, const dmat4& world_from_unit, const dvec3& center, const dvec3& half) {
   Bounds bounds = whole;
   for (int axis = 0; axis < 3; ++axis) {
@@ -66,7 +66,7 @@ Bounds world_bounds(const UnitShape& unit, std::span<const Bounds> boxes, const 
 
 std::vector<Bounds> part_bounds(const UnitShape& unit, const dmat4& world_from_unit, const Bounds& whole) {
   constexpr int most_parts = 4;
-  constexpr float least_saving = 0.6f;  // a cut leaves at most so much of the boxes' areas
+  constexpr float least_saving = 0.6f;  // a cut must reduce the boxes' area at least to this
   dvec3 center, half, length;
   for (int axis = 0; axis < 3; ++axis) {
     dvec3 along(0);

@@ -20,12 +20,12 @@
 namespace sundog {
 namespace {
 
-/// An instance and its bounds in the world; `cost` is that of a ray that crosses them.
+/// An instance and its world bounds; `cost` is that of a ray that crosses them.
 struct Placed {
   Instance instance{};
-  Bounds box = Bounds::none();  // wherever it is while the shutter is open
-  std::vector<Bounds> parts;    // smaller boxes that hold it between them; empty: there are none
-  std::vector<Placed> sharing;  // those that follow in its BVH
+  Bounds box = Bounds::none();  // over the shutter interval
+  std::vector<Bounds> parts;    // smaller boxes that together contain it; may be empty
+  std::vector<Placed> sharing;  // the others in its BVH
   bool follows = false;
   double cost = 1;
   float4 moves{};
@@ -39,7 +39,7 @@ struct Placed {
                                object.name));
 }
 
-/// Writes the rows of the inverse of `world_from_unit`; returns the transform that a kernel then really uses.
+/// Stores the inverse of `world_from_unit`; returns the transform that kernels effectively use.
 dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
                     Instance& instance) {
   const bool identity = world_from_unit == dmat4(1) && !object.moves();
@@ -75,7 +75,7 @@ u32 surface_flags(const Material& material) {
   return flags;
 }
 
-/// The box in which a field is built, rounded outwards.
+/// A field's interval, rounded outwards.
 Bounds interval_of(const SdfDescription& field) {
   Bounds box = Bounds::none();
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,14 +87,14 @@ Bounds interval_of(const SdfDescription& field) {
   return box;
 }
 
-/// Of the object's material; 0 without a checker.
+/// Of the object's material; 0 without a checkerboard.
 double checker_size(const SceneDescription& scene, const Object& object) {
   if (object.material < 0) return 0;
   const MaterialDescription& material = scene.materials[static_cast<std::size_t>(object.material)];
   return material.checker ? material.checker_size : 0;
 }
 
-/// Turns objects into instances and notes what their materials ask of the kernels.
+/// Converts objects to instances, and notes the kernel features that their materials need.
 class Placer {
  public:
   Placer(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
@@ -191,7 +191,7 @@ class Placer {
   CompiledScene& out_;
 };
 
-/// Whether the camera may be inside a solid with a medium.
+/// Whether the camera may be inside this solid with a medium.
 bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camera) {
   if (!(instance.flags & INSTANCE_TRANSMITS)) return false;
   if (instance.shape == SHAPE_PLANE) {
@@ -205,7 +205,7 @@ bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camer
   return true;
 }
 
-/// Puts meshes that are in the BVH of others to the first of these.
+/// Moves meshes that share a BVH to the first of them.
 void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
   std::unordered_map<u32, std::size_t> first;
   for (std::size_t i = 0; i < bounded.size(); ++i)
@@ -219,16 +219,16 @@ void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
   }
 }
 
-/// The box of an instance and those in its BVH.
+/// The box of an instance and the others in its BVH.
 Bounds box_of_all(const Placed& placed) {
   Bounds box = placed.box;
   for (const Placed& other : placed.sharing) box.extend(other.box);
   return box;
 }
 
-/// Refs of the instances' boxes, or of their parts': an instance is then in several leaves.
+/// Refs of the instances' boxes, or of their parts', which puts an instance into several leaves.
 std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
-  constexpr std::size_t most_in_parts = 1000;  // the leaves of a CompactNode lie near each other
+  constexpr std::size_t most_in_parts = 1000;  // the leaves of a CompactNode must be close together
   std::vector<Ref> refs;
   for (std::size_t i = 0; i < bounded.size(); ++i) {
     const Placed& placed = bounded[i];
@@ -240,14 +240,14 @@ std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
   return refs;
 }
 
-/// The scene BVH over the bounded instances, which are put in its leaf order.
+/// Builds the scene BVH over the bounded instances, and sorts them in leaf order.
 void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_stack) {
   const std::vector<Ref> refs = refs_of(bounded);
   WideBvhSettings settings;
   settings.block_width = 1;
   settings.block_cost = 3;  // an instance costs more than a node
   const bool shared = std::ranges::any_of(bounded, [](const Placed& one) { return !one.sharing.empty(); });
-  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's follow each other
+  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's are consecutive
   WideBvh tree =
       build_wide_bvh(refs.size(), [&](std::span<Ref> to) { std::ranges::copy(refs, to.begin()); }, settings);
   const bool alone = bounded.size() == 1;
@@ -271,7 +271,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
 
   const auto root = static_cast<u32>(out.nodes.size());
   std::vector<Bvh8Node>& nodes = out.nodes.edit();
-  nodes.reserve(nodes.size() + tree.nodes.size());  // no room that stays empty
+  nodes.reserve(nodes.size() + tree.nodes.size());  // no excess capacity
   for (Bvh8Node node : tree.nodes) {
     for (u32& child : node.child)
       if (!(child & BVH_LEAF)) child += root;
@@ -288,10 +288,10 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
   });
 }
 
-/// Beside meshes a few solids that many rays meet stay out of the scene BVH: testing one for a whole batch of
-/// rays is then quicker than taking every ray to it through the tree, and where no other is left a lone mesh
-/// is walked without one. How many meet a solid is, as for SAH, its box's area as a part of `scene`'s; a
-/// small one costs each ray more than it gives. Takes them out.
+/// Removes a few large solids from the scene BVH and returns them: testing one for a whole batch of rays is
+/// faster than taking every ray to it through the tree, and a single remaining mesh needs no scene tree at
+/// all. As in SAH, the share of rays that hit a solid is its box's area relative to `scene`'s; a small solid
+/// would cost each ray more than it saves.
 std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds& scene) {
   constexpr float share = 0.05f;
   constexpr std::ptrdiff_t few = 16;

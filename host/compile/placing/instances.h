@@ -1,4 +1,4 @@
-// Objects to instances: transforms as the kernels use them, flags, and bounds in the world.
+// Compiles objects to instances: transforms for kernels, flags, and world bounds.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,23 +8,23 @@
 
 namespace sundog {
 
-/// Appends one instance an object to `out.instances` (bounded ones first, in leaf order, then planes, then
-/// distance fields, which the scene BVH does not hold), the scene BVH to
-/// `out.nodes`, and fills the parts of `out.info` and `out.features` that speak of them. Meshes without
-/// triangles are left out. All positions count from `out.origin`. Returns the instances' boxes in the world.
-/// Throws SceneError for a transform that cannot be inverted in single precision.
+/// Appends an instance per object to `out.instances` (bounded ones first, in leaf order, then planes, then
+/// distance fields, which are not in the scene BVH) and the scene BVH to `out.nodes`; sets the related parts
+/// of `out.info` and `out.features`. Skips meshes without triangles. Positions are relative to `out.origin`.
+/// Returns the instances' world boxes. Throws SceneError for a transform that is not invertible in single
+/// precision.
 std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
                                   u32 default_material, CompiledScene& out);
 
-/// Marks the instances that lie on others, where a scene has media (touching/touching.h).
+/// Marks instances that touch others, in scenes with media (touching/touching.h).
 void find_touching(const SceneDescription& scene, const std::vector<Bounds>& boxes, CompiledScene& out);
 
-/// Whether a camera there, from the tables' origin, may be inside a solid with a medium.
+/// Whether a camera there, relative to the tables' origin, may be inside a solid with a medium.
 bool is_camera_inside(const dvec3& camera, std::span<const Instance> instances,
                       std::span<const Bounds> boxes);
 
-/// From a plane's own space to the tables': it is moved along itself, so that the middle of its space is
-/// near, by whole periods of its pattern. With textures, which may have any period, it stays.
+/// The transform from a plane's space to the tables': the plane is shifted along itself by whole periods of
+/// its pattern, to bring its origin near. With textures, which may have any period, it is not shifted.
 dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const dvec3& origin);
 
 }  // namespace sundog

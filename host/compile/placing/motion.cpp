@@ -16,15 +16,14 @@ using glm::dmat3;
 
 double farthest(const dvec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
-/// The cross product with the axis, in the world. Of `frame`s that are no rotations the turn is no rotation
-/// there either.
+/// The cross product with the axis, in the world. If `frame` is not a rotation, neither is the turn.
 dmat3 spin_of(const TurnDescription& turn) {
   const dvec3 a = glm::normalize(turn.axis);
   const dmat3 cross(0, a.z, -a.y, -a.z, 0, a.x, a.y, -a.x, 0);
   return turn.frame * cross * glm::inverse(turn.frame);
 }
 
-/// How much longer vectors get at most by a turn: 1 where it is a rotation in the world.
+/// The largest stretch of vectors by a turn: 1 for a rotation in the world.
 double stretch_of(const TurnDescription& turn) {
   const dmat3 square = glm::transpose(turn.frame) * turn.frame;
   const double even = (square[0][0] + square[1][1] + square[2][2]) / 3;
@@ -45,13 +44,12 @@ dmat4 turned_at(const TurnDescription& turn, double time) {
   return result;
 }
 
-/// How far a point may be from one place, and its greatest speed and acceleration, a shutter's time as the
-/// unit.
+/// Upper bounds of a point's distance from one place, its speed and acceleration, per shutter interval.
 struct Way {
   double distance = 0, speed = 0, acceleration = 0;
 };
 
-/// The way of a point from within: turned about, then moved. Distances are from the turn's point.
+/// Composes the motion of a point with a turn, which also moves it. Distances are from the turn's point.
 Way turned(const Way& from, const TurnDescription& turn) {
   const double rate = std::abs(glm::radians(turn.degrees)), stretch = stretch_of(turn);
   const double size = stretch * std::max(1.0, turn.growth), growing = stretch * std::abs(turn.growth - 1);
@@ -60,7 +58,7 @@ Way turned(const Way& from, const TurnDescription& turn) {
               2 * (growing + size * rate) * from.speed + size * from.acceleration};
 }
 
-/// The greatest acceleration of points of the object; `box` holds it when the shutter opens.
+/// The largest acceleration of the object's points; `box` contains it when the shutter opens.
 double greatest_acceleration(const Object& object, const Bounds& box, const dvec3& origin) {
   const float4 ball = sphere_around(box);
   dvec3 middle = origin + dvec3(ball.x, ball.y, ball.z);
@@ -83,7 +81,7 @@ void widen(double by, Bounds& box) {
   }
 }
 
-/// The greatest coordinate that the object's turns round at.
+/// The largest coordinate that limits the precision of the object's turns.
 double greatest_pivot(const Object& object, const dvec3& origin) {
   double most = 0;
   for (const TurnDescription& turn : object.turns)
@@ -125,8 +123,8 @@ Bounds moving_bounds(const Object& object, const UnitShape& unit, std::span<cons
     box.extend(at(1));
     return box;
   }
-  // Between two times a hull of the two boxes, widened by how far ways may bend off their chords: h^2 / 8 of
-  // the acceleration. A piece for each 1/400 of the size, as far as that is worth its time.
+  // Between two times: the hull of both boxes, widened by the deviation of paths from their chords, h^2 / 8
+  // times the acceleration. One piece per 1/400 of the size, up to a limit.
   const double bend = greatest_acceleration(object, box, origin) / 8;
   const double least = std::max(double(sphere_around(box).w) / 400, std::numeric_limits<double>::min());
   const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(bend / least)), 1.0, 4096.0));

@@ -1,4 +1,4 @@
-// See box_tree.h. Halved by number along the longest axis of the middles.
+// See box_tree.h. Splits by count along the longest axis of the centres.
 #include "compile/touching/box_tree.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr u32 leaf_size = 4;
 
-/// Twice the middle; of a box without bounds, that of the box cut to large numbers.
+/// Twice the centre; unbounded boxes are clipped to large numbers.
 Lanes middle2(const Bounds& box) {
   constexpr float far = 1e37f;
   return lanes_max(box.lower, lanes(-far)) + lanes_min(box.upper, lanes(far));

@@ -1,4 +1,4 @@
-// Which of many boxes overlap a box, without looking at each.
+// A tree of boxes that finds overlaps.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,28 +7,28 @@
 
 namespace sundog {
 
-/// A box, and how far around it others still overlap it: `slack`, or theirs where that is more.
+/// A box with a tolerance; two boxes use the larger `slack` of both.
 struct LooseBox {
   Bounds box;
   double slack;
 };
 
-/// Whether `a` and `b` overlap or are apart by no more than `slack` along each axis.
+/// Whether `a` and `b` overlap or are at most `slack` apart along each axis.
 bool overlap(const Bounds& a, const Bounds& b, double slack);
 
-/// A binary tree over boxes, which may be without bounds.
+/// A binary tree over boxes, which may be unbounded.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const LooseBox> boxes);
 
-  /// The numbers of the boxes that overlap `wanted` by the greater slack of both, and that are greater than
-  /// `after`, in ascending order.
+  /// Indices greater than `after` of the boxes that overlap `wanted` within the larger slack of both, in
+  /// ascending order.
   void find(const LooseBox& wanted, u32 after, std::vector<u32>& found) const;
 
  private:
   struct Node {
     LooseBox all;
-    u32 first, count;  // of a leaf, in order_
+    u32 first, count;  // of a leaf, into order_
     u32 right;         // the left child follows its parent
   };
   u32 build(u32 first, u32 count);

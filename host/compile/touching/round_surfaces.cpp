@@ -1,4 +1,4 @@
-// See round_surfaces.h. Cells are halved while both surfaces may pass through them side by side.
+// See round_surfaces.h. Subdivides cells while both surfaces may pass through them nearly parallel.
 #include "compile/touching/round_surfaces.h"
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 namespace sundog {
 namespace {
 
-/// A surface as its distance in unit space.
+/// A surface given by its unit-space distance.
 struct Surface {
   UnitShape unit;
   dmat4 unit_from_world;
-  double slope;      // greatest change of the unit distance a unit of world length
-  double curvature;  // greatest, in the world
+  double slope;      // maximum change of the unit distance per world length
+  double curvature;  // maximum, in the world
 
   double distance(const dvec3& world) const {
     return unit_distance(unit, dvec3(unit_from_world * glm::dvec4(world, 1)));
@@ -30,7 +30,7 @@ struct Surface {
   }
 };
 
-/// Greatest factor by which the matrix stretches a vector, a little rounded up: powers of m^T m grow like it.
+/// The spectral norm, slightly overestimated, from powers of m^T m.
 double norm(const glm::dmat3& m) {
   glm::dmat3 power = glm::transpose(m) * m;
   double scale = 0, weight = 1;
@@ -57,14 +57,14 @@ Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
   return {solid.unit, inverse, shrinks, bends.greatest * norm(back) * norm(back) * norm(across)};
 }
 
-constexpr double least_sine = 0.02;  // of the angle at which surfaces cross, not run side by side
+constexpr double least_sine = 0.02;  // of the angle from which surfaces count as crossing, not parallel
 
 struct Ball {
   dvec3 center;
   double radius;
 };
 
-/// A sphere that is stretched by the same factor along each axis.
+/// A sphere under uniform scaling.
 std::optional<Ball> as_ball(const RoundSolid& solid) {
   if (solid.unit.shape != SHAPE_SPHERE) return std::nullopt;
   const glm::dmat3 linear(solid.world_from_unit);
@@ -76,7 +76,7 @@ std::optional<Ball> as_ball(const RoundSolid& solid) {
   return Ball{dvec3(solid.world_from_unit[3]), std::sqrt(square)};
 }
 
-/// Whether the balls' surfaces are nowhere closer than the tolerance without crossing at an angle.
+/// Whether the balls' surfaces stay farther apart than the tolerance or cross at an angle.
 bool part_or_cross(const Ball& a, const Ball& b, double tolerance) {
   const double apart = glm::distance(a.center, b.center), both = a.radius + b.radius;
   const double nested = std::abs(a.radius - b.radius);
@@ -88,10 +88,10 @@ bool part_or_cross(const Ball& a, const Ball& b, double tolerance) {
 
 struct CellSearch {
   const Surface &a, &b;
-  double tolerance, least;  // radius of a cell in which nothing more is asked
+  double tolerance, least;  // cell radius at which subdivision stops
   int cells_left = 40000;
 
-  /// Whether the surfaces may run side by side in the cell.
+  /// Whether the surfaces may be nearly parallel and close in the cell.
   bool may_touch(const dvec3& center, double radius) const {
     const double at_a = a.distance(center), at_b = b.distance(center);
     if (std::abs(at_a) > a.slope * (radius + tolerance) || std::abs(at_b) > b.slope * (radius + tolerance))

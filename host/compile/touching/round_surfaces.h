@@ -1,4 +1,4 @@
-// Whether the round surfaces of two solids touch.
+// Tests whether curved surfaces of two solids touch.
 #pragma once
 #include "compile/bounds.h"
 #include "compile/shapes.h"
@@ -10,8 +10,8 @@ struct RoundSolid {
   dmat4 world_from_unit;
 };
 
-/// Whether the surfaces of two solids may touch, within `tolerance`, along their common tangents in `box`;
-/// false where one of them is not round. Where it cannot be told with moderate work, true.
+/// Whether the surfaces of two solids may touch, within `tolerance`, where they share tangents in `box`;
+/// false if one is not curved. True if moderate work does not decide it.
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance);
 
 }  // namespace sundog

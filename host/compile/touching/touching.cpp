@@ -1,5 +1,5 @@
-// See touching.h. A flat face lies on a convex solid where its plane is one that the solid leans against;
-// triangles are compared with triangles; round surfaces are looked at in ever smaller cells.
+// See touching.h. A flat face lies on a convex solid if its plane is a supporting plane of the solid;
+// triangles are compared with triangles; curved surfaces are searched in ever smaller cells.
 #include "compile/touching/touching.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Body {
   UnitShape unit;
   dmat4 world_from_unit;
   const Mesh* mesh;
-  double size;  // greatest coordinate, which rounding is relative to
+  double size;  // largest coordinate, the scale of rounding
   bool transmits, plane;
   std::vector<Face> faces;  // flat ones of a solid
 };
@@ -41,7 +41,7 @@ double greatest(const Bounds& box) {
   return most;
 }
 
-/// How far the solid reaches along `n`.
+/// The solid's support along `n`.
 double farthest(const Body& body, const dvec3& n) {
   const glm::dmat3 linear(body.world_from_unit);
   return glm::dot(n, dvec3(body.world_from_unit[3])) + reach(body.unit, glm::transpose(linear) * n);
@@ -116,8 +116,8 @@ bool leans_on(const Body& solid, const dvec3& normal, double at, double toleranc
 }
 
 bool face_on_solid(const Body& a, const Body& solid, double tolerance) {
-  if (solid.plane) return false;  // its own face is looked at
-  // A ball on a floor touches it in a point, which is not worth a look at each hit.
+  if (solid.plane) return false;  // its own face is tested
+  // A ball on a floor touches it in one point, which is not worth a test at each hit.
   if (solid.unit.shape == SHAPE_SPHERE) return false;
   return std::any_of(a.faces.begin(), a.faces.end(), [&](const Face& face) {
     return overlap(face.box, solid.box, tolerance) && leans_on(solid, face.normal, face.at, tolerance);
@@ -189,7 +189,7 @@ class Search {
   }
 
  private:
-  // Further rays start as far off a surface: see offset_distance() in kernels/lib/shade/interaction.cl.
+  // Secondary rays start this far off a surface: offset_distance() in kernels/lib/shade/interaction.cl.
   double tolerance(const Body& a, const Body& b) const {
     return 0x1p-19 * std::max({a.size, b.size, camera_, 1e-30});
   }

@@ -1,4 +1,4 @@
-// Which instances have faces in one place with others, exactly or to rounding.
+// Finds instances whose faces coincide with others, exactly or up to rounding.
 #pragma once
 #include <span>
 
@@ -8,19 +8,19 @@
 
 namespace sundog {
 
-/// An instance that is no field, and its bounds in the world (a plane has none).
+/// An instance that is not a field, and its world bounds (unbounded for a plane).
 struct PlacedBody {
   Instance* instance;
   Bounds box;
 };
 
-/// The greatest coordinate that rounding at the camera is taken to be relative to: that of its place, up to
-/// the next power of two, so that a camera that turns about something asks for no new search.
+/// The largest coordinate for rounding at the camera: that of its position, rounded up to a power of two, so
+/// that a camera that orbits causes no new search.
 double camera_reach(const SceneDescription& scene, const dvec3& origin);
 
-/// Sets Instance.touch of the bodies that may have a face on one of another, or of their own mesh, where at
-/// least one of the two has an interior medium. Errs on the safe side: what is marked only costs time. Sets
-/// features.touching when there are any. Boxes count from `origin`.
+/// Sets Instance.touch of bodies that may have a face on one of another body, or of their own mesh, if at
+/// least one of the two has an interior medium. Conservative: false positives only cost time. Sets
+/// features.touching if any are marked. Boxes are relative to `origin`.
 void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, const dvec3& origin,
                    SceneFeatures& features);
 

@@ -1,4 +1,4 @@
-// See touching_triangles.h. Candidates come from a grid whose cells are about as large as the triangles.
+// See touching_triangles.h. Candidates come from a grid with cells about as large as the triangles.
 #include "compile/touching/touching_triangles.h"
 
 #include <tbb/parallel_sort.h>
@@ -27,7 +27,7 @@ bool overlap(const DoubleBox& a, const DoubleBox& b) {
 
 using Flat = std::array<glm::dvec2, 3>;
 
-/// The triangle seen along axis `away`.
+/// Projects the triangle along axis `away`.
 Flat flatten(const PlacedTriangle& t, int away) {
   const int u = (away + 1) % 3, v = (away + 2) % 3;
   Flat flat;
@@ -35,7 +35,7 @@ Flat flatten(const PlacedTriangle& t, int away) {
   return flat;
 }
 
-/// Whether the edges of `a` part it from `b`. What overlaps by less than this share of a triangle meets at an
+/// Whether an edge of `a` separates it from `b`. Overlap below this share of a triangle is contact along an
 /// edge.
 bool parted_by_edge(const Flat& a, const Flat& b) {
   constexpr double share = 1e-4;
@@ -53,7 +53,7 @@ bool parted_by_edge(const Flat& a, const Flat& b) {
   return false;
 }
 
-/// A triangle's share in a cell of the grid.
+/// A triangle's entry in a grid cell.
 struct Entry {
   std::uint64_t cell;
   std::uint32_t index;
@@ -110,7 +110,7 @@ class Grid {
     }
   }
 
-  /// Two cells of one key only cost comparisons.
+  /// Cells that share a key only cost comparisons.
   static std::uint64_t key(double x, double y, double z) {
     const auto part = [](double value) { return std::uint64_t(std::int64_t(value)) & 0x1FFFFF; };
     return part(x) << 42 | part(y) << 21 | part(z);
@@ -130,7 +130,7 @@ class Grid {
 }  // namespace
 
 bool lies_on(const PlacedTriangle& a, const PlacedTriangle& b, double tolerance) {
-  constexpr double aslant = 2e-3;  // more than rounding turns a small triangle
+  constexpr double aslant = 2e-3;  // more than rounding tilts a small triangle
   const dvec3 normal_a = glm::cross(a.corner[1] - a.corner[0], a.corner[2] - a.corner[0]),
               normal_b = glm::cross(b.corner[1] - b.corner[0], b.corner[2] - b.corner[0]);
   const double size_a = glm::length(normal_a), size_b = glm::length(normal_b);

@@ -1,4 +1,4 @@
-// Triangles that lie on others.
+// Finds coincident triangles.
 #pragma once
 #include <span>
 
@@ -10,10 +10,10 @@ struct PlacedTriangle {
   dvec3 corner[3];
 };
 
-/// Whether two triangles lie in one plane, to `tolerance`, and overlap; neighbours along an edge do not.
+/// Whether two triangles are coplanar within `tolerance` and overlap; neighbours that share an edge do not.
 bool lies_on(const PlacedTriangle& a, const PlacedTriangle& b, double tolerance);
 
-/// Whether any triangle of `a` lies on one of `b`; with no `b` on another one of `a`.
+/// Whether any triangle of `a` coincides with one of `b`, or, if `b` is empty, with another of `a`.
 bool any_lies_on(std::span<const PlacedTriangle> a, std::span<const PlacedTriangle> b, double tolerance);
 
 }  // namespace sundog

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int bias = 127, steps = 255;
 
-/// The least power of two, as a biased exponent, of which 255 reach over `extent`.
+/// The smallest power of two, as a biased exponent, such that 255 of them cover `extent`.
 u32 step_exponent(double extent) {
   int exponent = 0;
   if (extent > 0) std::frexp(extent / steps, &exponent);  // extent / steps < 2^exponent
   return static_cast<u32>(std::clamp(exponent + bias, 1, 254));
 }
 
-/// Puts one axis of all boxes onto the node's grid.
+/// Quantises one axis of all boxes to the node's grid.
 void quantize_axis(const float* lower, const float* upper, u32 count, u32 axis, CompactNode& node) {
   const float origin = *std::min_element(lower, lower + count), end = *std::max_element(upper, upper + count);
   const u32 exponent = step_exponent(double(end) - double(origin));
@@ -38,7 +38,7 @@ void quantize_axis(const float* lower, const float* upper, u32 count, u32 axis, 
   }
 }
 
-/// Where the children are, from the least index of their kind on.
+/// Stores the children's positions, relative to the smallest index of their kind.
 void set_children(const Bvh8Node& wide, u32 count, CompactNode& node) {
   node.first_inner = node.first_leaf = NO_PRIM;
   for (u32 slot = 0; slot < count; ++slot) {

@@ -1,4 +1,4 @@
-// The BVH for devices that run a lane a ray: each node on a grid of its own, see CompactNode.
+// The BVH for devices with one ray per lane: each node has its own grid, see CompactNode.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace sundog {
 
-/// A node of the same index for each. A compact box contains the box that it stands for. The children's
-/// leaves must lie near each other in their table, as build_wide_bvh() leaves them; throws std::logic_error.
+/// Converts each node, keeping indices. A compact box contains the original. The children's leaves must be
+/// close together in their table, as from build_wide_bvh(); throws std::logic_error otherwise.
 std::vector<CompactNode> compact_nodes(std::span<const Bvh8Node> nodes);
 
 }  // namespace sundog

@@ -25,7 +25,7 @@ bool same_rows(const SharedTable<T>& a, const SharedTable<T>& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// Writes tables, which must fit into one allocation each, where the device has others.
+/// Uploads tables that differ from the device's; each must fit into one allocation.
 class Uploader {
  public:
   explicit Uploader(Device& device, bool compact) : device_(device), compact_(compact) {}
@@ -36,7 +36,7 @@ class Uploader {
     put(label, table, buffer);
     held = table;
   }
-  /// Nodes are of two kinds, so the kernels have them as words.
+  /// Nodes have two formats, so kernels take them as words.
   void operator()(const char* label, const SharedTable<Bvh8Node>& nodes, SharedTable<Bvh8Node>& held,
                   Buffer<u32>& buffer) {
     if (buffer.memory() && same_rows(nodes, held)) return;
@@ -62,7 +62,7 @@ class Uploader {
     figures_.bytes += bytes;
     figures_.tables += bytes > 0;
   }
-  /// In place if the device can read it there and it is large: small tables can change in their buffers.
+  /// Shares large tables in place if the device can; copies of small tables can change in their buffers.
   template <class T>
   void put(const char* label, const SharedTable<T>& table, Buffer<T>& buffer) {
     constexpr std::size_t large = std::size_t{1} << 20;
@@ -72,7 +72,7 @@ class Uploader {
     buffer = {}, buffer = device_.share(rows, table.owner());
     count(rows.size_bytes());
   }
-  /// Into the buffer that is there, where the size is the same.
+  /// Reuses the buffer if the size is unchanged.
   template <class T>
   void write(const char* label, std::span<const T> table, Buffer<T>& buffer) {
     check_size(label, table.size_bytes());

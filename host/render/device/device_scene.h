@@ -1,5 +1,5 @@
-// DeviceScene: a compiled scene's tables in one device's memory. A buffer has the same name here, in
-// CompiledScene and in the kernels.
+// DeviceScene: a compiled scene's tables in one device's memory. Buffers have the same names here, in
+// CompiledScene and in kernels.
 #pragma once
 #include "compile/compiled_scene.h"
 #include "device/device.h"
@@ -11,36 +11,36 @@ struct DeviceScene {
 #define SUNDOG_TABLE_BUFFER(type, host_type, name, label) Buffer<type> name;
   SCENE_TABLES(SUNDOG_TABLE_BUFFER)
 #undef SUNDOG_TABLE_BUFFER
-  Buffer<u32> camera_media;  // the MediaStack at the camera (kernels/lib/path/media.cl), low word first
+  Buffer<u32> camera_media;  // MediaStack at the camera (kernels/lib/path/media.cl), low word first
 
-  SceneTables held;       // the rows that are there
-  SceneInfo held_info{};  // the same of `info`
+  SceneTables held;       // the rows on the device
+  SceneInfo held_info{};  // the SceneInfo on the device
   bool compact = false;   // `nodes` are CompactNodes
 };
 
-/// What was written to a device.
+/// Statistics of an upload.
 struct UploadFigures {
   std::uint64_t tables = 0, bytes = 0;
-  bool numbers = false;  // SceneInfo too, which is not counted
+  bool numbers = false;  // whether SceneInfo was written, which is not counted
 };
 
-/// Bytes that upload_scene will take.
+/// Size of the scene on a device, in bytes.
 std::size_t scene_bytes(const CompiledScene& scene);
 
-/// Throws DeviceError when the device cannot hold the scene. camera_media is empty.
+/// Throws DeviceError if the device cannot hold the scene. camera_media is empty.
 DeviceScene upload_scene(Device& device, const CompiledScene& scene);
 
-/// Brings what a device holds to another scene: writes only the tables that differ. camera_media stays. After
-/// an exception the tables are of no use. Throws as upload_scene() does.
+/// Changes the scene on a device, writing only tables that differ. Keeps camera_media. After an exception the
+/// tables are invalid. Throws like upload_scene().
 UploadFigures update_scene(Device& device, const CompiledScene& scene, DeviceScene& held);
 
 #define SUNDOG_TABLE_TYPE(type, host_type, name, label) , Buffer<type>
 #define SUNDOG_TABLE_ARGUMENT(type, host_type, name, label) , scene.name
-/// A kernel that reads the scene: SCENE_PARAMETERS (kernels/lib/core/tables.h), then Args.
+/// A kernel with SCENE_PARAMETERS (kernels/lib/core/tables.h), then Args.
 template <class... Args>
 using SceneKernel = Kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>;
 
-/// Throws BuildError as Program::kernel() does.
+/// Throws BuildError like Program::kernel().
 template <class... Args>
 SceneKernel<Args...> scene_kernel(const Program& program, const std::string& name) {
   return program.kernel<Buffer<SceneInfo> SCENE_TABLES(SUNDOG_TABLE_TYPE), Args...>(name);

@@ -36,7 +36,7 @@ void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const Render
   other_scene_ = true;
   draws_draft_ = false;
   builder_.may_wait();
-  builder_.forget_later();  // until it rests again
+  builder_.forget_later();  // until the next rest
   closed_ = {};
   readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
   if (device_) device_->forget_times();

@@ -1,4 +1,4 @@
-// A device of this process as a TileServer.
+// Serves tiles with a device of this process.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -12,7 +12,7 @@ namespace sundog {
 
 class DeviceServer : public SceneServer {
  public:
-  /// `options` must outlive it. Opens nothing yet.
+  /// `options` must outlive this. Does not open the device.
   DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
 
   void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
@@ -23,7 +23,7 @@ class DeviceServer : public SceneServer {
   bool may_end_draft() const override;
   void rest() override;
   void keep_programs() override;
-  /// The largest work-group that its kernels allow; 0: unknown, or the server is not open.
+  /// Maximum work-group size of its kernels; 0: unknown, or not open.
   std::size_t greatest_group() const { return renderer_ ? renderer_->greatest_group() : 0; }
   std::size_t kernels_waiting() const override { return builder_.waiting(); }
 
@@ -34,7 +34,7 @@ class DeviceServer : public SceneServer {
   void close() override;
   double overdue() const override { return watch_.overdue(); }
   bool compiles() const override { return watch_.compiles(); }
-  /// For the calling thread, and those that the driver starts from it.
+  /// For the calling thread and threads that the driver starts from it.
   void be_nice() override;
 
  private:
@@ -48,10 +48,10 @@ class DeviceServer : public SceneServer {
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
   std::atomic<bool> draws_draft_{false};
-  bool works_ = false;          // nothing has failed since it was opened: fit for another scene
-  bool other_scene_ = false;    // open() may keep what suits it
-  double readback_before_ = 0;  // of scenes before
-  ServerFigures closed_;        // of what was opened before
+  bool works_ = false;          // no failure since it was opened: usable for another scene
+  bool other_scene_ = false;    // open() may keep kernels and tables
+  double readback_before_ = 0;  // from previous scenes
+  ServerFigures closed_;        // from previously opened renderers
 };
 
 }  // namespace sundog

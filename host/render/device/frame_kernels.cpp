@@ -32,7 +32,7 @@ Program build(Device& device, const std::string& entry, const KernelConfig& conf
   return program;
 }
 
-/// The kernels' own limits are known once they are built: theirs are what a group's registers suffice for.
+/// Lowers `most` to a built kernel's own limit, which depends on its registers.
 void limit_group(std::size_t limit, std::size_t& most) {
   if (limit > 0) most = most > 0 ? std::min(most, limit) : limit;
 }
@@ -55,8 +55,8 @@ auto integrator_kernel(const Program& program, const std::string& name) {
 constexpr const char* photon_entry = "entry/trace_photons.cl";
 constexpr const char* photon_kernel = "trace_photons";
 
-/// Where the integrator's kernel is to be built too, another process builds that of photons meanwhile, if the
-/// driver cannot build both at once. Returns whether it does.
+/// If the integrator's kernel must be built too, starts building the photon kernel in another process, unless
+/// the driver can build both at once. Returns whether it does.
 bool begin_photon_tracer(Device& device, const Integrator& integrator, const KernelConfig& config) {
   if (device.has(integrator.entry, config.defines, config.generated)) return false;
   const std::size_t group = photon_group(config, greatest_work_group(config, device.info()));
@@ -77,12 +77,12 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
   update.changed = true;
 }
 
-/// Its machine code is made while another process builds.
+/// Generates its machine code while another process builds.
 void make_integrator_ready(Device& device, FrameKernels& kernels) {
   try {
     device.make_ready(kernels.integrator, first_group(kernels.config));
   } catch (const DeviceError&) {
-    // the first launch that draws will say it
+    // the first launch that draws will report it
   }
 }
 
@@ -95,8 +95,8 @@ bool keeps_programs(const Device& device) {
   return environment.kernel_cache && !environment.cache.empty();
 }
 
-/// Lets the builder's thread build the kernels and waits for it. The device's thread stops waiting when the
-/// scene is replaced. Returns the number of kernels built.
+/// Waits for the builder's thread to build the kernels; the device's thread stops waiting if the scene is
+/// replaced. Returns the number of kernels built.
 unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
   if (!keeps_programs(device)) return 0;
   if (builder.wait_for(order)) return 1;
@@ -105,7 +105,7 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
   return 0;  // the build failed: the caller repeats it and reports the error
 }
 
-/// What to draw with: the wanted kernels where they are there or nothing stands in for them, not even a
+/// The kernels to draw with: the wanted ones if they are built or nothing can stand in for them, not even a
 /// draft.
 KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
                            FrameKernels& kernels, KernelUpdate& update) {
@@ -132,7 +132,7 @@ KernelConfig choose_config(Device& device, const Integrator& integrator, KernelC
   return wanted;
 }
 
-/// The kernels for the scene: what is there, or other ones.
+/// Updates the kernels for the scene, keeping suitable ones.
 void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
@@ -157,14 +157,14 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
     if (beside) make_integrator_ready(device, kernels);
     if (kernels.builder) kernels.known.push_back(kernels.config);
   }
-  // Last: while some drivers compile, they neither load nor begin other kernels.
+  // Last, because some drivers neither load nor start other kernels while they compile.
   if (kernels.wanted) kernels.builder->want({integrator.entry, integrator.kernel, *kernels.wanted});
   if (aovs) add_first_surfaces(device, kernels, times);
   if (photons) add_photon_tracer(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
 }
 
-/// The media that the camera is in, none where it is in none.
+/// Determines the media around the camera; none outside all solids.
 void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels& kernels) {
   if (find_integrator(scene.integrator)->needs_camera_media && scene.features.camera_inside) {
     find_camera_media(device, kernels);
@@ -180,7 +180,7 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 void build_general_kernels(const Device& device, FrameKernels& kernels) {
   if (!kernels.builder || !kernels.integrator.kernel()) return;
   std::vector<KernelOrder> orders;
-  std::vector<KernelConfig> built;  // looked up once: the cache is read and its checksums computed
+  std::vector<KernelConfig> built;  // cached, because lookups read the disk cache and compute checksums
   for (const KernelConfig& general : kernels.general)
     if (std::ranges::find(kernels.built_general, general) != kernels.built_general.end() ||
         device.has(kernels.entry, general.defines, general.generated))

@@ -19,7 +19,7 @@ Program build(Device& device, unsigned lanes) {
                       {{"LANES", std::to_string(lanes)}, {"TILE_W", "1"}, {"TILE_H", "1"}});
 }
 
-/// The counts of one band, on the device.
+/// One band's counts on the device.
 struct Band {
   Buffer<u32> cells, tallies;
   std::vector<u32> cell_values, tally_values;

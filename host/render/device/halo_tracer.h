@@ -1,4 +1,4 @@
-// Halos traced by a device: the map of trace_halo() (compile/halo/halo_map.h), to the bit.
+// Traces halos on a device; the map equals trace_halo()'s (compile/halo/halo_map.h) to the bit.
 #pragma once
 #include <functional>
 
@@ -7,16 +7,16 @@
 
 namespace sundog {
 
-/// The local sizes and the number of lanes are for tests: no map depends on them. 0: the device's own.
+/// Local sizes and number of lanes, for tests: maps do not depend on them. 0: the device's default.
 struct HaloLaunchSizes {
   unsigned lanes = 0, local = 0;
 };
 
-/// Compiles what trace_halo_on() uses, or takes it from the cache. Throws DeviceError, BuildError.
+/// Builds the kernel of trace_halo_on(), or loads it from the cache. Throws DeviceError, BuildError.
 void build_halo_kernel(Device& device);
 
-/// `progress` has the rays done, and returns false to give up (then the map is empty). Throws DeviceError,
-/// BuildError.
+/// `progress` receives the number of rays done and returns false to cancel (the map is then empty). Throws
+/// DeviceError, BuildError.
 HaloMap trace_halo_on(Device& device, const HaloPlan& plan,
                       const std::function<bool(std::uint64_t)>& progress = {},
                       const HaloLaunchSizes& sizes = {});

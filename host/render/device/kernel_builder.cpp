@@ -23,7 +23,7 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
   return std::ranges::any_of(list, [&](const KernelOrder& other) { return same(order, other); });
 }
 
-/// Builds a kernel, and launches it for no pixel: some drivers compile it at its first launch of a local
+/// Builds a kernel and launches it for no pixel, because some drivers compile at the first launch of a local
 /// size.
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
@@ -39,12 +39,12 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
 
 std::size_t first_group(const KernelConfig& config) { return config.tile_w * config.tile_h > 1 ? 1 : 64; }
 
-// The thread holds it too, so that nobody waits for a compiler when the builder goes.
+// The thread shares it, so that destroying the builder does not wait for a compiler.
 struct KernelBuilder::State {
   explicit State(DeviceInfo device) : info(std::move(device)) {}
 
   const DeviceInfo info;
-  std::mutex mutex;  // for all below
+  std::mutex mutex;  // guards everything below
   std::condition_variable changed;
   std::vector<KernelOrder> waiting;  // the last one is next
   std::vector<KernelOrder> later;
@@ -185,7 +185,7 @@ std::size_t KernelBuilder::waiting() const {
          (state_->urgent ? 1 : 0) + (state_->urgent_in_hand ? 1 : 0);
 }
 
-/// Waits for the next one; nothing when it ends.
+/// Waits for the next order; nothing at the end.
 std::optional<KernelOrder> KernelBuilder::State::take(std::unique_lock<std::mutex>& lock) {
   constexpr double rest = 1;  // seconds
   while (!ends) {
@@ -236,7 +236,7 @@ void KernelBuilder::State::run_urgent() {
 }
 
 void KernelBuilder::State::run() {
-  // The compiler takes only time that nobody else wants.
+  // The compiler runs at low priority.
   if (const auto& step_back = value_of(info.environment).step_back) step_back();
   DeviceInfo device = info;
   std::unique_lock lock(mutex);

@@ -1,5 +1,5 @@
-// Kernels that are built beside the work: in a thread of its own, on the device opened once more, into the
-// binary cache, from which the device that draws takes them in milliseconds.
+// Builds kernels in the background: in its own thread, on a second instance of the device, into the binary
+// cache, from which the drawing device loads them in milliseconds.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,45 +10,45 @@
 
 namespace sundog {
 
-/// An integrator's kernel, and its definitions.
+/// An integrator's kernel and its definitions.
 struct KernelOrder {
   std::string entry, kernel;
   KernelConfig config;
 };
 
-/// The local size that is launched first, in one column.
+/// The local size of the first launch, in one column.
 std::size_t first_group(const KernelConfig& config);
 
 class KernelBuilder {
  public:
   explicit KernelBuilder(DeviceInfo info);
-  /// If a compilation is still running, DeviceInfo::threads takes its thread over.
+  /// DeviceInfo::threads adopts the thread of a running compilation.
   ~KernelBuilder();
   KernelBuilder(const KernelBuilder&) = delete;
   KernelBuilder& operator=(const KernelBuilder&) = delete;
 
-  // Only the server's thread calls these, unless the comment says otherwise.
-  /// To be built next. What waits already is built after it; what was built, or failed to, is not again.
+  // Call from the server's thread only, unless stated otherwise.
+  /// Builds `order` next, before those that wait already; skips orders that were built or failed.
   void want(KernelOrder order);
-  /// Builds them in turn once nothing else was wanted for a second. They replace the earlier orders of this
+  /// Builds these in turn once nothing else has been wanted for a second. Replaces earlier orders of this
   /// kind.
   void want_later(std::vector<KernelOrder> orders);
-  /// Builds none of them.
+  /// Cancels want_later().
   void forget_later();
   /// Builds it next and waits for it. Returns false if the build fails, or if wants_no_more() ends the wait;
   /// the build then continues.
   bool wait_for(KernelOrder order);
   /// Allows wait_for() to wait until the next wants_no_more().
   void may_wait();
-  /// Ends the wait of wait_for(). Any thread may call it.
+  /// Ends the wait of wait_for(). Thread-safe.
   void wants_no_more();
   bool is_waited_for() const;
-  /// What was built so far, the latest first.
+  /// Kernels built so far, latest first.
   std::vector<KernelConfig> built() const;
   bool has_built(const KernelOrder& order) const;
-  /// Whether it was built, or could not be.
+  /// Whether it was built, or failed to build.
   bool has_tried(const KernelOrder& order) const;
-  /// How many wait or are in hand. Any thread.
+  /// Number of orders waiting or in progress. Thread-safe.
   std::size_t waiting() const;
 
  private:

@@ -13,34 +13,34 @@
 namespace sundog {
 namespace {
 
-// A CPU's driver keeps the private memory of a whole group on a thread's stack, 8 MiB by default, and crashes
-// when that is full. What a work-item holds is its ray stack and its batch.
+// A CPU's driver keeps a whole group's private memory on a thread's stack, 8 MiB by default, and crashes on
+// overflow. A work-item holds its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
 
-// The file of the fields' code.
+// The file with the fields' code.
 constexpr const char* fields_file = "generated/sdf.cl";
 
-// A field's own flags decide within those of the kernel.
+// A field's own flags apply within the kernel's.
 const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
 
-// General kernels have room for the rays of so many levels, and for the BVHs of most scenes; drafts for all
-// that a kernel can have, and for any BVH.
+// General kernels have room for rays of this many levels and for the BVHs of most scenes; drafts for the
+// maximum depth and any BVH.
 constexpr unsigned general_depth = 12, general_bvh_stack = 64, draft_depth = 32, draft_bvh_stack = 128;
 
-/// Shadow rays of one surface that wait at a time: a light each, as far as that is a moderate number, and
-/// rounded up, so that similar scenes share their kernels.
+/// Waiting shadow rays per surface: one per light, within limits, and rounded up so that similar scenes share
+/// kernels.
 unsigned light_room(const CompiledScene& scene) {
   return std::clamp(std::bit_ceil(scene.info.light_count), 2u, 16u);
 }
 
-/// Rays that are marched together: all of a work-item's, as far as there are vectors for it.
+/// Rays marched together: all of a work-item's, if vectors of that size exist.
 unsigned marched_lanes(unsigned batch) {
   for (const unsigned lanes : {16u, 8u, 4u})
     if (batch % lanes == 0) return lanes;
   return 1;
 }
 
-/// What the scene uses; `define` takes a name and a number.
+/// Defines the scene's features; `define` takes a name and a number.
 template <class Define>
 void define_features(const SceneFeatures& features, const Define& define) {
   define("HAS_MESH", features.shapes[SHAPE_MESH]);
@@ -53,9 +53,9 @@ void define_features(const SceneFeatures& features, const Define& define) {
 #undef SUNDOG_DEFINE_FEATURE
 }
 
-/// Whether a definition changes no bit of a scene that does without, so that kernels with it draw that scene
-/// too (a test renders scenes both ways). Fog, lenses, textures and meshes are not among them: they change
-/// the arithmetic of every ray. Surface coordinates turn the frame in which layers are sampled.
+/// Whether a definition changes no bit of a scene without the feature, so that kernels with it can draw such
+/// a scene (a test renders scenes both ways). Fog, lenses, textures and meshes do not qualify, because they
+/// change the arithmetic of every ray; surface coordinates rotate the frame in which layers are sampled.
 bool harmless(const std::string& definition, const KernelDefines& defines) {
   static const std::set<std::string> always{
       "HAS_ABSORPTION", "HAS_AREA_LIGHTS",    "HAS_BOX",         "HAS_BVH",
@@ -68,8 +68,8 @@ bool harmless(const std::string& definition, const KernelDefines& defines) {
   return always.contains(definition);
 }
 
-/// Whether a definition changes rounding at most in a scene that does without, because what it is about is
-/// asked of materials, objects and the camera.
+/// Whether a definition changes at most rounding in a scene without the feature, because kernels test
+/// materials, objects and the camera at run time.
 bool has_no_use(const std::string& definition, const KernelDefines& defines) {
   static const std::set<std::string> solids{
 #define SUNDOG_SOLID_DEFINITION(constant, type, name) std::string("HAS_") + #constant,
@@ -84,7 +84,7 @@ bool has_no_use(const std::string& definition, const KernelDefines& defines) {
   return solids.contains(definition) || others.contains(definition) || harmless(definition, defines);
 }
 
-/// Kinds that a kernel knows, a bit each.
+/// Whether the definition is a mask of kinds, one bit each.
 bool is_mask(const std::string& definition) {
   static const std::set<std::string> masks{"SDF_FLAGS", "TEXEL_FORMATS", "TEXTURE_KINDS", "TEXTURE_MAPPINGS"};
   return masks.contains(definition);
@@ -95,7 +95,7 @@ bool is_room(const std::string& definition) {
   return rooms.contains(definition);
 }
 
-/// The kernels of the scene's features with secondary rays, of `depth` levels at least.
+/// The kernels of the scene's features with secondary rays of at least `depth` levels.
 KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning,
                          unsigned depth) {
   CompiledScene deep;
@@ -231,8 +231,8 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("TILE_H", config.tile_h);
   define("WIDE_VECTORS", vectors);
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
-  // Depth first, `batch` rays at a time, at most that many wait on each level, and one batch of children
-  // more. Beyond 32 levels the kernel counts what does not fit, and the frame reports it.
+  // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Beyond
+  // 32 levels, the kernel counts rays that do not fit and the frame reports them.
   const bool waits = scene.features.secondary_rays && !traces_paths(scene.integrator);
   const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
   define("RAY_STACK", rays);
@@ -241,12 +241,12 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
     define("LIGHT_ROOM", light_room(scene));
     config.ray_stack += light_room(scene) + 1;
   }
-  // Rounded up, so that similar scenes share their kernels.
+  // Rounded up so that similar scenes share kernels.
   define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
   define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);
-  // Packets gain by a tree over fewer; over very few nothing, and its kernels take long to compile.
+  // Packets profit from a tree of fewer solids, but not of very few, and its kernels compile slowly.
   const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);

@@ -1,4 +1,4 @@
-// What the kernels are specialised to: the scene's features and the device's class, as sorted -D definitions.
+// Specialisation of kernels to a scene's features and a device's class, as sorted -D definitions.
 #pragma once
 #include "compile/compiled_scene.h"
 #include "device/device.h"
@@ -6,53 +6,53 @@
 
 namespace sundog {
 
-/// The shape of a work-item's pixels, and the definitions that the kernels are built with
-/// (kernels/lib/core/config.h has their defaults).
+/// The shape of a work-item's pixels, and the definitions for building kernels (kernels/lib/core/config.h has
+/// the defaults).
 struct KernelConfig {
-  unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
+  unsigned tile_w = 4, tile_h = 4;  // pixels per work-item
   unsigned ray_stack = 0;           // rays that may wait in a work-item
   KernelDefines defines;
   GeneratedFiles generated;   // the scene's formulas as kernel code
-  bool has_programs = false;  // the scene has its fields as programs too
+  bool has_programs = false;  // the scene also has its fields as programs
   friend bool operator==(const KernelConfig&, const KernelConfig&) = default;
 };
 
-/// Whether the kernels run the programs of any scene's fields, slowly, instead of code made for one scene's.
+/// Whether the kernels interpret any scene's field programs, slowly, instead of a scene's generated code.
 bool interprets(const KernelConfig& config);
 
-/// Whether the device runs one ray a lane over compact nodes: by its class, unless the scene says which.
+/// Whether the device traces one ray per lane over compact nodes: by its class, unless the scene decides.
 bool traces_compact(const CompiledScene& scene, const DeviceInfo& device);
 
-/// Pure. Devices with vectors take 4x4 pixels a work-item and eight boxes an instruction, the others a pixel.
+/// Pure. Devices with vectors process 4x4 pixels per work-item and eight boxes an instruction, others a
+/// pixel.
 KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& device,
                                 const Tuning& tuning = {});
 
-/// Whether kernels of `general` draw all that those of `wanted` draw, to the bit: they differ in definitions
-/// that leave every bit of a scene that does without, and in room.
+/// Whether kernels of `general` draw everything that those of `wanted` draw, to the bit: they differ only in
+/// definitions that do not affect scenes without the feature, and in capacity.
 bool stands_in(const KernelConfig& general, const KernelConfig& wanted);
 
-/// Those that stand in for the scene's, and for those of scenes with most other materials, lights and solids,
-/// of the same formulas. A path tracer's are its own. Pure.
+/// Stand-ins for the kernels of the scene and of scenes with the same formulas and most other materials,
+/// lights and solids. Path tracing has its own. Pure.
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
 
-/// The same for scenes of any other formulas. Only where the scene's fields are programs too. Pure.
+/// general_config() for scenes with any other formulas, if the scene's fields are programs too. Pure.
 KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device,
                                  const Tuning& tuning = {});
 
-/// Whether kernels of `draft` draw what those of `wanted` draw but for rounding: they have all its features.
+/// Whether kernels of `draft` draw the picture of `wanted` up to rounding: they have all its features.
 bool drafts(const KernelConfig& draft, const KernelConfig& wanted);
 
-/// Those of all features but fog, lens, filter and what moves, which are the scene's: slow, and of other
-/// rounding, so their picture is replaced. Only where interpreting_config() may be built. Pure.
+/// All features except the scene's own fog, lens, filter and motion: slow and rounding differently, so its
+/// picture is replaced later. Only if interpreting_config() may be built. Pure.
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
 
-/// Those of general_config(), where there are fields those that interpret them, the first with and without
-/// what else an edit switches on or off by a number (fog, a lens), and drafts. Those come first that most
-/// edits want. Pure.
+/// general_config() and, with fields, interpreting_config(); the first one also with and without features
+/// that an edit toggles by a number (fog, a lens); and drafts. Ordered by how many edits need them. Pure.
 std::vector<KernelConfig> general_configs(const CompiledScene& scene, const DeviceInfo& device,
                                           const Tuning& tuning = {});
 
-/// Most work-items that a group of the render kernels may have; 0: the device does not say.
+/// Maximum work-group size of the render kernels; 0: unknown.
 std::size_t greatest_work_group(const KernelConfig& config, const DeviceInfo& device);
 
 }  // namespace sundog

@@ -9,14 +9,14 @@
 namespace sundog {
 namespace {
 
-// A launch is short enough for a watchdog and for Ctrl-C, and long against its overhead of some microseconds.
+// Short enough for a watchdog and for Ctrl-C, long relative to the overhead of some microseconds.
 constexpr double launch_seconds = 0.05;
-// A unit gets at least so many work-items of a launch, so that units end together.
+// Minimum work-items per unit and launch, so that units finish together.
 constexpr unsigned unit_work_items = 16;
-// Pixel-samples before anything is known of the device; a field's may take a thousand times as long.
+// Initial pixel-samples; those of fields may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
 
-// Resources that ran out may be those of a group, where it has more work-items than this.
+// Groups above this size may be the reason when resources run out.
 constexpr std::size_t small_group = 64;
 
 unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
@@ -30,12 +30,12 @@ LaunchSizer::LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, con
       tuning_(tuning),
       next_size_(fields ? first_launch_size_of_fields : first_launch_size),
       most_group_(limits.most_group) {
-  // What was fastest for a scene of less depth may be too large for this one.
+  // The fastest group for a shallower scene may be too large for this one.
   if (most_group_ > 0 && tuning_.work_group.x * tuning_.work_group.y > most_group_) tuning_.work_group = {};
   if (most_group_ > 0 && tuning_.surfaces_group.x > most_group_) tuning_.surfaces_group = {};
 }
 
-// The user's, else the tuned one, else the default.
+// The user's, else the tuned, else the default group.
 const WorkGroup& LaunchSizer::work_group() const {
   return asked_.kind == WorkGroup::Kind::automatic ? tuning_.work_group : asked_;
 }
@@ -49,7 +49,7 @@ LaunchSize LaunchSizer::within_limits(LaunchSize size) const {
   return size;
 }
 
-// columns x rows work-items: as a grid where the user asked for a group of two dimensions, else in one row.
+// columns x rows work-items: a grid if the user requested a two-dimensional group, else one row.
 LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const {
   const WorkGroup& group = work_group();
   const std::size_t items = columns * rows;
@@ -58,8 +58,8 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
     return within_limits(group.y > 1 ? LaunchSize{columns, rows, group.x, group.y}
                                      : LaunchSize{items, 1, group.x, 1});
   if (alone_) return {items, 1, 1, 1};
-  // One ray a lane wants a full group, if only to fill the driver's vectors. With many pixels a work-item,
-  // PoCL's groups of one cost nothing: it hands them out 32 at a time, and compiles for one size alone.
+  // One ray per lane needs a full group, at least to fill the driver's vectors. With many pixels per
+  // work-item, PoCL's groups of one are free: it hands them out 32 at a time, and compiles for a single size.
   std::size_t wanted = 64;
   if (limits_.device_class == DeviceClass::cpu) {
     const bool many_pixels = limits_.tile_w * limits_.tile_h > 1;
@@ -91,7 +91,7 @@ void LaunchSizer::begin(const Tile& tile, unsigned samples) {
   row_height_ = blocks ? 4 : limits_.tile_h;
   columns_ = blocks ? divide_up(width, 8) * 32 : divide_up(width, limits_.tile_w);
   rows_ = divide_up(height, row_height_);
-  // A grid of groups takes whole rows of items; else each unit should have one.
+  // A grid of groups takes whole rows of items; otherwise each unit should get an item.
   step_ = grid_ ? columns_ : std::clamp(limits_.compute_units, 1u, std::max(1u, columns_ * rows_));
   least_size_ = static_cast<std::size_t>(step_) * item_pixels;
   item_ = items_ = sample_ = 0;
@@ -104,7 +104,7 @@ std::optional<SizedLaunch> LaunchSizer::next() {
   const unsigned all = columns_ * rows_;
   if (item_ >= all || samples_ == 0) return std::nullopt;
   const std::size_t item_pixels = std::size_t{limits_.tile_w} * limits_.tile_h;
-  if (items_ == 0)  // all samples of these items come before the next items
+  if (items_ == 0)  // all samples of these items precede the next items
     items_ =
         static_cast<unsigned>(std::clamp<std::size_t>(next_size_ / least_size_ * step_, step_, all - item_));
   const std::size_t pixels = items_ * item_pixels;
@@ -163,14 +163,14 @@ std::optional<std::string> LaunchSizer::shrink_launch(const std::string& why) {
   return fmt::format("{}: launches of at most {} pixel-samples from here on", why, most_size_);
 }
 
-// Only where the last group had more than `least` work-items.
+// Applies only if the last group had more than `least` work-items.
 std::optional<std::string> LaunchSizer::shrink_group(const std::string& why, std::size_t least) {
   if (last_group_ <= least) return std::nullopt;
   most_group_ = last_group_ / 2;
   return fmt::format("{}: work-groups of at most {} from here on", why, most_group_);
 }
 
-// At last gives each work-item a group of its own, whose loops no other shares.
+// Finally gives each work-item its own group, so that no other shares its loops.
 std::optional<std::string> LaunchSizer::fewer_samples(const std::string& why) {
   if (limits_.most_run > 1) {
     limits_.most_run = 1;

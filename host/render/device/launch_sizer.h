@@ -1,5 +1,5 @@
-// How a tile is cut into launches: how many pixels and samples each makes, in which work-groups, and what is
-// asked for after a failure. Arithmetic that knows no device: launches are timed and run by others.
+// Divides a tile into launches: pixels and samples of each, work-group sizes, and reductions after failures.
+// Pure arithmetic; others run and time the launches.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,58 +11,58 @@
 
 namespace sundog {
 
-/// What a device and its kernels allow.
+/// Limits of a device and its kernels.
 struct LaunchLimits {
   DeviceClass device_class = DeviceClass::cpu;
   unsigned compute_units = 1;
-  unsigned tile_w = 4, tile_h = 4;  // pixels a work-item
-  std::size_t most_group = 0;       // work-items of a group; 0: not known
-  unsigned most_run = 1;            // items that a work-item can take, one after another
+  unsigned tile_w = 4, tile_h = 4;  // pixels per work-item
+  std::size_t most_group = 0;       // work-items per group; 0: unknown
+  unsigned most_run = 1;            // items that a work-item can process in turn
 };
 
-/// How a launch failed.
+/// The cause of a failed launch.
 enum class LaunchFailure {
   group_too_large,   // for the kernel's registers or stack
   out_of_resources,  // a smaller group or launch may fit
-  loops_cut_short    // the driver ended loops before their end: fewer samples may be within its limit
+  loops_cut_short    // the driver ended loops early: fewer samples may stay within its limit
 };
 
-/// A launch, and the work-items that it is enqueued with.
+/// A launch and its work-items.
 struct SizedLaunch {
   Launch launch{};
   LaunchSize size;
   std::size_t samples = 0;      // pixels times samples
-  double expected_seconds = 0;  // by the launches before; 0: nothing is known
+  double expected_seconds = 0;  // by earlier launches; 0: unknown
 };
 
 class LaunchSizer {
  public:
-  /// `fields`: launches begin small, since a field's sample may take a thousand times as long as others.
+  /// `fields`: start with small launches, since a field's sample may take a thousand times as long.
   LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, const Tuning& tuning, bool fields);
 
   /// Changes the work-group. Measured launch times are kept.
   void ask_for(const WorkGroup& group);
-  /// Starts with short launches again, because the next work may cost more.
+  /// Returns to short launches, because the next work may cost more.
   void calm();
-  /// Begins a tile, or begins it again.
+  /// Starts or restarts a tile.
   void begin(const Tile& tile, unsigned samples);
-  /// The next launch of the tile; nothing when all its samples are made. Samples of a pixel follow each
-  /// other, so where they are cut changes no bit.
+  /// The next launch of the tile; nothing when all samples are done. The samples of a pixel are consecutive,
+  /// so dividing them changes no bit.
   std::optional<SizedLaunch> next();
-  /// What the launch took that next() gave last: the following ones take about the wanted time.
+  /// Reports the time of the launch from next(); later launches aim at the target time.
   void note_time(double seconds);
-  /// Rows of the tile's pixels that have all their samples.
+  /// Rows of the tile with all samples.
   unsigned finished_rows() const;
 
-  /// The launch of the kernel that makes the AOVs of so many pixels.
+  /// The launch size of the AOV kernel for this many pixels.
   LaunchSize surfaces(std::size_t pixels);
 
-  /// Asks for less from now on: smaller groups, then smaller launches, fewer samples at a time. Returns what
-  /// is asked for, in words that begin with `why`; nothing when there is nothing less.
+  /// Reduces the load: smaller groups, then smaller launches, then fewer samples at a time. Returns a
+  /// description that starts with `why`; nothing if no reduction is left.
   std::optional<std::string> ask_less(LaunchFailure failure, const std::string& why);
 
   std::size_t most_group() const { return most_group_; }
-  /// The most samples of any launch of the tile.
+  /// Maximum samples of any launch of the tile.
   unsigned tile_samples() const { return last_samples_; }
 
  private:
@@ -76,23 +76,23 @@ class LaunchSizer {
   LaunchLimits limits_;
   WorkGroup asked_;
   Tuning tuning_;
-  // The tile in hand.
+  // The current tile.
   Tile tile_{};
   unsigned samples_ = 0, columns_ = 0, rows_ = 0, row_height_ = 1, step_ = 1;
-  unsigned item_ = 0, items_ = 0, sample_ = 0;  // of the next launch: first work-item, how many, first sample
-  bool grid_ = false;                           // groups of two dimensions
-  std::size_t least_size_ = 0;                  // pixel-samples of any launch
+  unsigned item_ = 0, items_ = 0, sample_ = 0;  // next launch: first work-item, their number, first sample
+  bool grid_ = false;                           // two-dimensional groups
+  std::size_t least_size_ = 0;                  // minimum pixel-samples of a launch
   // The last launch.
   std::size_t last_size_ = 0,
               last_group_ = 0;  // pixel-samples; work-items of a group, 0: the driver's choice
   unsigned last_samples_ = 0;
-  // What is asked for.
+  // Current targets and limits.
   std::size_t next_size_;                         // pixel-samples of the next launch
-  std::size_t most_size_ = std::size_t{1} << 30;  // less where the device ran out of resources
+  std::size_t most_size_ = std::size_t{1} << 30;  // reduced when the device ran out of resources
   std::size_t most_group_;
-  unsigned most_samples_ = ~0u;  // of a launch; less where the driver ended loops early
+  unsigned most_samples_ = ~0u;  // per launch; reduced when the driver ended loops early
   bool alone_ = false;           // work-groups of one
-  double sample_seconds_ = 0;    // a pixel-sample's, by the last launch; 0: not known
+  double sample_seconds_ = 0;    // per pixel-sample, by the last launch; 0: unknown
 };
 
 }  // namespace sundog

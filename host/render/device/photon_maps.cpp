@@ -14,14 +14,14 @@
 namespace sundog {
 namespace {
 
-constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less lets it shrink faster
+constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less shrinks it faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
 constexpr u32 least_cells = 1024;
-// By the default number of photons those of 1024 samples have room in the one, those of 30,000 in the other.
+// With default settings, one holds the photons of 1024 samples, the other those of 30,000.
 constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::uint64_t{2} << 30;
 
-/// Bytes that maps may take on the device together: a quarter of its memory, within these bounds, and no
-/// more than one buffer may have.
+/// Memory budget of all maps on the device: a quarter of its memory, within these bounds, and at most one
+/// buffer's maximum.
 std::uint64_t room_on(const DeviceInfo& info) {
   const auto kibibytes =
       fault(value_of(info.environment).faults, "photons", fmt::format("{}:{}", info.platform, info.device));
@@ -30,8 +30,7 @@ std::uint64_t room_on(const DeviceInfo& info) {
   return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;
 }
 
-/// Photons in the order of their cells, in each cell in that of their numbers; `begins` receives where each
-/// cell begins and the last one ends.
+/// Sorts photons by cell, then by number; `begins` receives the start of each cell and the end of the last.
 std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::vector<u32>& cells, u32 mask,
                                  std::vector<u32>& begins) {
   begins.assign(std::size_t{mask} + 2, 0);
@@ -86,7 +85,7 @@ void PhotonMaps::make_room(const PhotonTracer& tracer) {
 }
 
 void PhotonMaps::trace(const PhotonTracer& tracer, const PhotonLaunch& launch) {
-  constexpr double expected = 3;  // not known: only what stands for minutes is stuck
+  constexpr double expected = 3;  // unknown, so only minutes count as stuck
   FrameKernels& kernels = tracer.kernels;
   const std::size_t batch = std::size_t{kernels.config.tile_w} * kernels.config.tile_h;
   const std::size_t items = (launch.last - launch.first + batch - 1) / batch;
@@ -122,7 +121,7 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
   return made;
 }
 
-/// Makes the maps from `number` on, until those of the samples to be made are there or there is no room.
+/// Makes maps from `number` on, until all needed ones exist or memory is full.
 bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 number) {
   std::vector<PhotonMap> maps;
   std::vector<u32> cells;

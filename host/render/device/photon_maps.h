@@ -1,5 +1,5 @@
-// The maps of photons that samples look at (kernels/shared/photons.h), made by a device when its samples come
-// to them: each is a function of the scene and its number, whoever makes it and when.
+// Photon maps (kernels/shared/photons.h), made by a device when its samples need them: each is a function of
+// the scene and its number only.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace sundog {
 
-/// What photons are traced by.
+/// Device and kernels that trace photons.
 struct PhotonTracer {
   Device& device;
   FrameKernels& kernels;
@@ -25,11 +25,11 @@ class PhotonMaps {
         targets_(static_cast<u32>(scene.photon_targets.size())),
         lights_(scene.lights.size()) {}
 
-  /// The samples [first, last) are to be made: puts their maps into `tracer.kernels.tables`, as far as there
-  /// is room. Returns false when it was stopped. Throws DeviceError.
+  /// Makes the maps for the samples [first, last) and stores them in `tracer.kernels.tables`, as far as there
+  /// is room. Returns false if stopped. Throws DeviceError.
   bool prepare(const PhotonTracer& tracer, const StopFlags& flags, u32 first, u32 last);
 
-  /// The end of those of the samples [first, last) that have their maps in the tables, one after another.
+  /// The end of the first samples of [first, last) whose maps are in the tables.
   u32 end_of_maps(u32 first, u32 last) const;
 
  private:
@@ -46,18 +46,18 @@ class PhotonMaps {
   bool fill(const PhotonTracer& tracer, const StopFlags& flags, u32 number);
 
   PhotonPlan plan_;
-  u32 targets_ = 0;  // rows of the scene's photon_targets; 0: it has no photons
+  u32 targets_ = 0;  // rows of the scene's photon_targets; 0: no photons
   std::size_t lights_ = 0;
-  u32 first_map_ = 0, end_map_ = 0;  // those in the tables
+  u32 first_map_ = 0, end_map_ = 0;  // maps in the tables
   u32 wanted_end_ = 0;
-  bool full_ = false;        // there was no room for more
-  Buffer<u32> light_media_;  // the MediaStack at each light, low word first
+  bool full_ = false;        // no room for more maps
+  Buffer<u32> light_media_;  // MediaStack at each light, low word first
   bool traced_ = false;      // the kernel has run before
   Buffer<float4> landed_;
   Buffer<u32> cells_;
 };
 
-/// The radius of map `number`, over that of map 0 (Knaus and Zwicker 2011, equation 18).
+/// The radius of map `number` relative to map 0 (Knaus and Zwicker 2011, equation 18).
 double shrunk_radius(u32 number);
 
 }  // namespace sundog

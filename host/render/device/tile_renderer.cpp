@@ -17,15 +17,15 @@
 namespace sundog {
 namespace {
 
-/// The driver ended a kernel's loops before their end: smaller launches may be within its limit.
+/// The driver ended a kernel's loops early; smaller launches may stay within its limit.
 struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
 };
 
-/// The counts of a tile's launches, in blocks.
+/// The counters of a tile's launches, in blocks.
 using LaunchCounts = std::array<u32, std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK>;
 
-/// Where an exception ends a tile, its arrays may be on their way still.
+/// After an exception, waits for transfers that may still be running.
 class SettledAtEnd {
  public:
   explicit SettledAtEnd(Device& device) : device_(device), before_(std::uncaught_exceptions()) {}
@@ -55,7 +55,7 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
   return show_surfaces(options.aovs) || needs_surfaces(scene.sampling);
 }
 
-/// The kernels with what a frame wants of them from now on.
+/// Applies a frame's options to the kernels.
 FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
   kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
   kernels.only_general = options.kernels == KernelChoice::general;
@@ -65,7 +65,7 @@ FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, Fra
   return kernels;
 }
 
-/// What a failed launch may be answered with; nothing when smaller launches would not help.
+/// How to respond to a failed launch; nothing if smaller launches would not help.
 std::optional<LaunchFailure> failure_of(const DeviceError& error) {
   if (dynamic_cast<const LoopsCutShort*>(&error)) return LaunchFailure::loops_cut_short;
   if (is_work_group_too_large(error.status)) return LaunchFailure::group_too_large;
@@ -125,8 +125,8 @@ void TileRenderer::prepare_surfaces() {
   add_first_surfaces(device_, kernels_, times);
 }
 
-// Returns the rows whose pixels have all samples. With photons all pixels get the samples whose maps are
-// there before other maps are made.
+// Returns the rows with all samples. With photons, all pixels get the samples of the current maps before
+// further maps are made.
 unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   u32 first = request.first_sample;
   const u32 end = first + samples_of(request);
@@ -149,7 +149,7 @@ unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlag
   return 0;
 }
 
-// Returns its seconds, without those in which the driver made a kernel ready for its first launch.
+// Returns its seconds, excluding the driver's preparation of a first launch.
 double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& sized) {
   const double first_launches = first_launch_seconds(device_.times());
   const Stopwatch clock;
@@ -167,7 +167,7 @@ void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std
   if (aovs_.count < vectors) aovs_ = device_.make<float4>(vectors);
   aovs.resize(vectors);
   if (pixels == 0) return;
-  constexpr double expected = 3;  // not known: only what stands for minutes is stuck
+  constexpr double expected = 3;  // unknown, so only minutes count as stuck
   const WatchedLaunch watched(watch_, expected, !aovs_launched_,
                               value_of(device_.info().environment).launch_limit);
   run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
@@ -180,7 +180,7 @@ void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std
   device_.read(aovs_, std::span<float4>(aovs));
 }
 
-// Whether every sample was traced to its end: a driver may end a kernel's loops early without an error.
+// Checks that every sample was finished, because a driver may end a kernel's loops early without an error.
 void TileRenderer::check_finished(const TileRequest& asked, const TileResult& made) {
   const auto primary = static_cast<u32>(made.counts[COUNT_PRIMARY]);  // the device's sums are modulo 2^32
   auto finished = static_cast<u32>(made.counts[COUNT_FINISHED]);
@@ -195,7 +195,7 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
   if (fault(value_of(device_.info().environment).faults, "cut",
             fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
     finished = 0;
-  // A tile that was stopped may have samples of rows that are not finished.
+  // A stopped tile may have samples of unfinished rows.
   if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;
   throw LoopsCutShort(
       fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
@@ -226,7 +226,7 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
   }
 }
 
-// What the tile's samples are added to: nothing, or a pass's earlier ones.
+// Writes the initial values of the tile's samples: zero, or a pass's earlier samples.
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (film_.count < pixels) {
@@ -242,7 +242,7 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   if (rays_.count < std::max<std::size_t>(1, counted))
     rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
   result.rays.resize(counted);
-  if (request.first_sample > 0) {  // the kernels begin the others at 0
+  if (request.first_sample > 0) {  // kernels initialise the others to 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
     device_.begin_write(weights_, std::span<const float>(request.weights));
     if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));
@@ -267,7 +267,7 @@ void TileRenderer::read_result(unsigned samples, TileResult& result) {
   readback_seconds_ += reading.seconds();
 }
 
-// A failed launch may have added some of its samples, so a tile is always begun from what it was.
+// A failed launch may have added some samples, so a tile always restarts from its initial values.
 TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags& flags) {
   TileResult result;
   result.tile = request.tile;

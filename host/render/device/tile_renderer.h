@@ -1,4 +1,4 @@
-// One device at work on a frame: launches that make a tile, run in turn, and what is done when one fails.
+// Renders tiles on one device: sequences of launches, and recovery from failed ones.
 #pragma once
 #include <vector>
 
@@ -15,48 +15,48 @@ namespace sundog {
 
 class TileRenderer {
  public:
-  /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. Where options
-  /// allow it, `builder` builds kernels beside the work while others stand in for them. Throws DeviceError,
+  /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. If the options
+  /// allow it, `builder` builds kernels in the background while others stand in. Throws DeviceError,
   /// BuildError.
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
                LaunchWatch& watch, KernelBuilder* builder = nullptr);
 
-  /// Draws another scene from now on: keeps the kernels and tables that suit it, and builds and uploads the
-  /// others. `options` must outlive it. After an exception it is of no use. Throws as the constructor does.
+  /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. `options`
+  /// must outlive this. Unusable after an exception. Throws like the constructor.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
 
-  /// Keeps what the driver has compiled so far for the next start.
+  /// Caches the driver's compiled programs for the next start.
   void keep_programs();
 
-  /// Called when nothing is to be drawn: keeps what was compiled, and has general kernels built.
+  /// Call when idle: caches compiled programs, and starts building general kernels.
   void rest();
 
-  /// Builds the kernel of the AOVs where it is missing, for requests of passes that ask for surfaces.
+  /// Builds the AOV kernel if missing, for passes that request surfaces.
   void prepare_surfaces();
 
-  /// Renders what is asked for of a tile in launches of bounded time. Where the device runs out of memory or
-  /// resources, once more in launches of half the size, and so on; where its driver ended the kernel's loops
-  /// early, in launches of half the samples, at last in work-groups of one; where a work-group is too large
-  /// for it, in groups of half the size. Throws DeviceError.
+  /// Renders a tile request in launches of bounded time. If the device runs out of memory or resources,
+  /// retries with launches of half the size, repeatedly; if its driver ended loops early, with half the
+  /// samples, finally in work-groups of one; if a work-group is too large, with half the group size. Throws
+  /// DeviceError.
   TileResult render(const TileRequest& request, const StopFlags& flags);
-  /// The same of a plain frame's tile.
+  /// Renders a plain frame's tile.
   TileResult render(const Tile& tile, const StopFlags& flags) {
     TileRequest request;
     request.tile = tile;
     return render(request, flags);
   }
 
-  /// What the constructor or the last change_scene() has built and uploaded.
+  /// Statistics of the constructor or the last change_scene().
   const KernelUpdate& update() const { return update_; }
-  /// What its kernels are specialised to: it changes before a tile, when better ones have been built.
+  /// The specialisation of its kernels; changes before a tile when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
-  /// It draws what other kernels have to draw anew, and whether those are there.
+  /// Whether the picture must be drawn again by other kernels, and whether those are built.
   bool draws_draft() const { return kernels_.is_draft; }
   bool may_end_draft() const { return sundog::may_end_draft(kernels_); }
-  /// The largest work-group that its kernels allow; 0: unknown.
+  /// Maximum work-group size of its kernels; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
-  /// What did not stop it: a cache that could not be used, launches that had to be made smaller.
+  /// Warnings: an unusable cache, launches that had to be reduced.
   const std::vector<std::string>& notes() const { return kernels_.notes; }
 
  private:
@@ -91,7 +91,7 @@ class TileRenderer {
   Buffer<float4> film_;
   Buffer<float> weights_;
   Buffer<float4> aovs_;
-  Buffer<u32> rays_;  // of each pixel, where they are asked for; else of one
+  Buffer<u32> rays_;  // per pixel if requested, else one
   Buffer<u32> counters_;
   double readback_seconds_ = 0;
 };

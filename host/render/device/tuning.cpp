@@ -96,7 +96,7 @@ std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
   try {
     TuningFile file = read_tuning_file(path);
     if (file.kernels == kernels_hash(value_of(device.environment))) return file;
-  } catch (const std::runtime_error&) {  // damaged: as if it were not there
+  } catch (const std::runtime_error&) {  // damaged: treat as missing
   }
   return {};
 }

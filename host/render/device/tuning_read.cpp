@@ -1,5 +1,5 @@
-// A tuning result from JSON: what is kept for a device, and what `sundog tune --import` is given. Every error
-// names the file and the place in it.
+// Reads tuning results from JSON: the device's own, and those for `sundog tune --import`. Errors name the
+// file and the place.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kept = "as tunings are exported";
 
-/// What scene_class() may say.
+/// Reads a value of scene_class().
 std::string scene_class_from(const JsonValue& value) {
   const std::string found = value.text();
   for (const char* kind : {"fields", "meshes", "solids"})
@@ -57,7 +57,7 @@ TuningEntry entry_from(JsonObject& entry) {
   tuning.surfaces_group = work_group_from(entry.at("surfaces_group", kept));
   tuning.tile_w = whole("tile_w", 16);
   tuning.tile_h = whole("tile_h", 16);
-  // What a batch of rays has vectors for.
+  // Batch sizes with matching vectors.
   constexpr std::array<unsigned, 5> batches = {0, 1, 4, 8, 16};
   const unsigned batch = tuning.tile_w * tuning.tile_h;
   if ((tuning.tile_w == 0) != (tuning.tile_h == 0) || std::ranges::find(batches, batch) == batches.end())

@@ -11,14 +11,14 @@
 namespace sundog {
 namespace {
 
-constexpr float least_angle = 4e-7f;  // of a pixel: a few of the spacings of floats about 1
+constexpr float least_angle = 4e-7f;  // of a pixel: a few float spacings at 1
 
 float pixel_angle(const CompiledScene& scene) {
   const float4& dx = scene.info.camera_dx;
   return std::sqrt(dx.x * dx.x + dx.y * dx.y + dx.z * dx.z);
 }
 
-// Of the greatest coordinate: estimates in doubles are off by about as much.
+// Relative to the largest coordinate: the error of estimates in doubles.
 constexpr double double_footprint = 8e-15;
 
 bool ends_doubles(const FieldView& view) {

@@ -1,4 +1,4 @@
-// What a view asks of floats, or of a device, that they have not.
+// Warnings about views that exceed the precision of floats or a device's capabilities.
 #pragma once
 #include <span>
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace sundog {
 
-/// Each with its mend: a deep view of a field on a device without doubles, or from nearer than doubles go; a
-/// field seen through so narrow an angle of view that pixels differ by less than floats do; objects so large
-/// beside their distance that floats do not tell what lies close to them.
+/// One per problem, with the remedy: a deep view of a field on a device without doubles, or beyond their
+/// precision; a field seen through such a narrow angle that pixels differ by less than floats resolve;
+/// objects so large relative to their distance that floats do not resolve details near them.
 std::vector<std::string> view_warnings(const SceneDescription& scene, const CompiledScene& flat,
                                        std::span<const DeviceInfo> devices);
 

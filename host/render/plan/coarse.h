@@ -1,5 +1,5 @@
-// The first pictures of a frame that somebody waits for: one pixel of each block of them, in ever smaller
-// blocks. They are only looked at: the frame itself is made of none of their samples.
+// Coarse previews of a frame: one pixel per block, in ever smaller blocks. They are only for display; none of
+// their samples enter the frame.
 #pragma once
 #include <vector>
 
@@ -8,28 +8,27 @@
 
 namespace sundog {
 
-/// The edge of the first blocks in pixels, such that their picture is there in about a twentieth of a second,
-/// by the seconds that a pixel takes (0: not known); 0 where all pixels are as good as there at once.
+/// The edge of the first blocks in pixels, such that their picture takes about a twentieth of a second, given
+/// the seconds per pixel (0: unknown); 0 if all pixels are nearly as fast.
 int first_block(double pixel_seconds, std::size_t pixels);
 
-/// The edge of the next blocks after those of `block`, 0 when all pixels come next. What is to come takes
-/// longer than what is added to it by this.
+/// The edge of the blocks after `block`; 0: full resolution. The remaining time must justify the additional
+/// pass.
 int next_block(int block, double pixel_seconds, std::size_t pixels);
 
-/// The seconds that a pixel of a whole image takes, by what it took in a coarse pass and in the frame before
-/// (0: not known).
+/// Expected seconds per pixel of a whole image, from a coarse pass and the previous frame (0: unknown).
 double expected_pixel_seconds(double coarse, double before);
 
-/// The pass over the middle pixel of each block.
+/// The pass over the centre pixel of each block.
 Pass coarse_pass(int width, int height, int block);
 
-/// The picture of blocks that is complete.
+/// The latest complete coarse picture.
 struct CoarsePicture {
-  int block = 0;  // 0: none is
+  int block = 0;  // 0: none
   int columns = 0;
-  std::vector<float4> colors;  // of each block, row by row: linear RGB and coverage
+  std::vector<float4> colors;  // per block, row by row: linear RGB and coverage
 
-  /// Takes the place of what was there.
+  /// Replaces the picture.
   void take(const Pass& pass, const Film& made, int image_width, int image_height, int edge);
   const float4& at(int x, int y) const {
     return colors[static_cast<std::size_t>(y / block) * static_cast<std::size_t>(columns) +

@@ -12,7 +12,7 @@ struct Candidate {
   unsigned cores;
 };
 
-/// The same for the same device of a machine.
+/// Equal for the same device of a machine.
 using Place = std::tuple<std::string, std::string, int, int, std::string>;
 
 Place place(const DeviceInfo& device) {
@@ -21,7 +21,7 @@ Place place(const DeviceInfo& device) {
   return {device.host, "", device.platform, device.device, device.name};
 }
 
-/// A sub-device of `units`, or the whole where that is as much.
+/// A sub-device of `units`, or the whole device if that is as much.
 DeviceInfo part(DeviceInfo device, unsigned units) {
   if (units >= device.compute_units) return device;
   device.estimate *= static_cast<double>(units) / device.compute_units;
@@ -29,7 +29,7 @@ DeviceInfo part(DeviceInfo device, unsigned units) {
   return device;
 }
 
-/// One processor among the ranks that see it.
+/// Divides one CPU among the ranks that see it.
 void divide(const std::vector<Candidate>& candidates, std::vector<DeviceInfo>& dealt) {
   const DeviceInfo& whole = *candidates.front().device;
   const auto ranks = static_cast<unsigned>(candidates.size());
@@ -57,7 +57,7 @@ std::vector<DeviceInfo> deal_devices(const std::vector<RankDevices>& ranks) {
       if (candidates.empty()) in_order.push_back(place(device));
       candidates.push_back({&device, rank.cores});
     }
-  std::map<int, int> counts;  // devices of each rank
+  std::map<int, int> counts;  // devices per rank
   for (const Place& each : in_order) {
     const std::vector<Candidate>& candidates = places[each];
     if (candidates.front().device->type == "cpu" && candidates.front().device->max_sub_devices > 1) {

@@ -1,4 +1,4 @@
-// Which rank of a job serves which device: every device of a machine once, however many ranks run there.
+// Assigns devices to the ranks of a job: every device of a machine once, however many ranks run there.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace sundog {
 
-/// The devices that were chosen among those one rank sees, their `rank` and `host` filled in.
+/// The devices selected among those one rank sees, with `rank` and `host` set.
 struct RankDevices {
-  unsigned cores = 0;  // that the rank may run on; 0: unknown
+  unsigned cores = 0;  // on which the rank may run; 0: unknown
   std::vector<DeviceInfo> devices;
 };
 
-/// A device that several ranks of a machine see goes to the one of them that has least so far. A processor is
-/// divided among them instead: each gets a sub-device of its share of the compute units, of not more than the
-/// cores it may run on. Ranks for which nothing is left get nothing. Sub-devices that were asked for by size
-/// are everybody's own. In order of rank.
+/// A device that several ranks of a machine see goes to the one with the fewest so far. A CPU is divided
+/// instead: each rank gets a sub-device with its share of the compute units, but at most the cores on which
+/// it may run. Some ranks may get nothing. Sub-devices requested by size belong to each rank. In order of
+/// rank.
 std::vector<DeviceInfo> deal_devices(const std::vector<RankDevices>& ranks);
 
 }  // namespace sundog

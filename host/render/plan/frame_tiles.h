@@ -1,4 +1,4 @@
-// A frame's tiles by what the user asked for: their size, a split, a part of the frame.
+// Plans a frame's tiles from the options: tile size, split, part of the frame.
 #pragma once
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// What is unfinished of `film`. `estimates` of the devices' speeds divide a fixed split without shares.
+/// The unfinished tiles of `film`. `estimates` of device speeds divide a fixed split without shares.
 TilePlan plan_tiles(const RenderOptions& options, const Film& film, std::span<const double> estimates);
 
 }  // namespace sundog

@@ -22,20 +22,20 @@ Pass whole_pass(const GrowingFilm& film, u32 first_sample, u32 sample_count, boo
   return pass;
 }
 
-/// Whether two neighbours show different surfaces, or colours.
+/// Whether two neighbours show different surfaces or colours.
 bool differ(const Film& film, std::size_t a, std::size_t b, float threshold) {
   constexpr float least_cosine = 0.9f;
   return !same_surface(film, a, b, least_cosine) ||
          contrast(color_at(film, a), color_at(film, b)) > threshold;
 }
 
-/// The samples that each pixel gets of an adaptive frame.
+/// Initial samples per pixel of an adaptive frame.
 u32 first_level(const SamplingPlan& plan) {
   return std::min(static_cast<u32>(std::max(1, plan.settings.first_samples)), plan.samples);
 }
 
-/// Of the indices of pixels, leaves those of the greatest errors for which `more` samples each stay within
-/// the budget, samples a pixel of the frame.
+/// Keeps the pixels with the largest errors such that `more` samples each stay within the budget, in mean
+/// samples per pixel.
 void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::vector<float>& squares,
                  std::vector<std::size_t>& kept) {
   const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
@@ -50,7 +50,7 @@ void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::ve
   std::ranges::sort(kept);
 }
 
-/// Whether a pixel differs from one beside it, above it or below it.
+/// Whether a pixel differs from a horizontal or vertical neighbour.
 bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
   const auto width = static_cast<std::size_t>(film.width), height = static_cast<std::size_t>(film.height);
   const std::size_t x = pixel & 0xffffu, y = pixel >> 16, p = y * width + x;
@@ -60,9 +60,9 @@ bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
          (y + 1 < height && differ(film, p, p + width, threshold));
 }
 
-/// Those of the last pass's pixels, which have `level` samples, that need `more`. Samples go where each
-/// lowers the picture's squared error most: for n samples the threshold is sqrt(n / 2) times as high. With a
-/// budget those of the greatest errors, so that the frame's samples stay within it.
+/// The pixels of the last pass, with `level` samples each, that need `more`. Samples go where each reduces
+/// the picture's squared error most: at n samples the threshold is sqrt(n / 2) times as high. A budget
+/// selects the largest errors.
 std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last, u32 level,
                              u32 more) {
   const auto threshold = static_cast<float>(plan.settings.threshold);
@@ -90,8 +90,7 @@ std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, 
   return pixels;
 }
 
-/// The next doubling of samples; the pixels of the last pass have `level` of them, the others have stopped
-/// before.
+/// Doubles the samples of pixels that have not converged; those of the last pass have `level` samples.
 std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
   const u32 level = last.first_sample + last.sample_count;
   if (level >= plan.samples) return std::nullopt;

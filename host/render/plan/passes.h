@@ -1,4 +1,4 @@
-// Which pixels get which samples next: arithmetic over a growing film, the same whoever makes the samples.
+// Decides which pixels get which samples next, from a growing film; independent of who renders them.
 #pragma once
 #include <optional>
 
@@ -7,28 +7,28 @@
 
 namespace sundog {
 
-/// What a frame is sampled by.
+/// Sampling parameters of a frame.
 struct SamplingPlan {
   Sampling settings;
-  u32 samples = 1;        // a pixel, at most
+  u32 samples = 1;        // maximum per pixel
   double noise = 0;       // the frame ends when its mean error is below; 0: never
-  bool surfaces = false;  // AOVs are wanted of every pixel
+  bool surfaces = false;  // AOVs are needed for every pixel
 };
 
-/// Whether a frame is made in passes.
+/// Whether a frame is rendered in passes.
 bool in_passes(const Sampling& settings);
 
-/// Whether the passes ask for what the camera sees first.
+/// Whether the passes need the surfaces that the camera sees.
 bool needs_surfaces(const Sampling& settings);
 
-/// The pass after those that `film` holds, of which `last` is the last if there are any; none when the frame
-/// is finished. Counts film.step. Its pixels are those of a whole image or of a list.
+/// The pass after those in `film`, of which `last` is the last, if any; none when the frame is finished.
+/// Increments film.step. Covers the whole image or a list of pixels.
 std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last = {});
 
-/// Whether the plan may make a pass of those samples: one that is read from a file has to be asked.
+/// Whether a pass can belong to the plan; validates passes read from files.
 bool may_be_of(const SamplingPlan& plan, const Pass& pass);
 
-/// The mean of the pixels' estimated errors (pixel_errors()); infinite while nothing is known.
+/// The mean of the pixels' estimated errors (pixel_errors()); infinite while unknown.
 double mean_error(const GrowingFilm& film);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// When two pixels of a film look alike.
+// Similarity of two pixels of a film.
 #pragma once
 #include "render/film/film.h"
 
@@ -7,11 +7,11 @@ namespace sundog {
 /// The mean of a pixel's samples.
 Color color_at(const Film& film, std::size_t pixel);
 
-/// How far two colours are apart, as pixel_errors() measures it.
+/// The distance of two colours, in the units of pixel_errors().
 float contrast(const Color& a, const Color& b);
 
-/// Whether two pixels show surfaces alike: the same object and material, albedo, and normals less than
-/// `least_cosine` apart; or both none. The film has AOVs of both.
+/// Whether two pixels show similar surfaces: equal object, material and albedo, and a cosine of at least
+/// `least_cosine` between normals; or both none. The film must have these AOVs.
 bool same_surface(const Film& film, std::size_t a, std::size_t b, float least_cosine);
 
 }  // namespace sundog

@@ -10,10 +10,10 @@
 namespace sundog {
 namespace {
 
-// Normals of an even surface, at pixels that are two apart.
+// For normals of a flat surface at pixels that are two apart.
 constexpr float even_cosine = 0.98f;
 
-/// The image as cells between corners, which are two pixels apart, or one at the far edges.
+/// The image as cells between corners that are two pixels apart, or one at the far edges.
 struct Grid {
   const GrowingFilm& film;
   float threshold;
@@ -25,7 +25,7 @@ struct Grid {
   bool is_corner(int x, int y) const { return on_line(x, width) && on_line(y, height); }
   static bool on_line(int x, int size) { return x % 2 == 0 || x == size - 1; }
 
-  /// The corners about a pixel; on a line between two cells two of them twice, or all four the pixel itself.
+  /// The corners around a pixel; duplicated on a line between two cells, or four times the pixel itself.
   std::array<std::size_t, 4> corners(int x, int y) const {
     const int left = on_line(x, width) ? x : x - 1, right = on_line(x, width) ? x : x + 1;
     const int top = on_line(y, height) ? y : y - 1, bottom = on_line(y, height) ? y : y + 1;
@@ -42,7 +42,7 @@ struct Grid {
     return true;
   }
 
-  /// Whether all cells that a pixel lies in agree.
+  /// Whether all cells that contain a pixel agree.
   bool between_alike(int x, int y) const {
     const int u = on_line(x, width) ? 1 : 0, v = on_line(y, height) ? 1 : 0;
     for (int dy = -v; dy <= v; dy += 2)
@@ -64,7 +64,7 @@ struct Grid {
   }
 };
 
-/// The pixels that `wanted` is true of, in the order of a list.
+/// The pixels for which `wanted` is true, in list order.
 template <class Wanted>
 std::vector<u32> pick_any(const Grid& grid, const Wanted& wanted) {
   std::vector<u32> pixels = all_pixels(grid.width, grid.height);
@@ -74,21 +74,21 @@ std::vector<u32> pick_any(const Grid& grid, const Wanted& wanted) {
   return pixels;
 }
 
-/// The same of the pixels that are no corners.
+/// The pixels that are not corners and for which `wanted` is true.
 template <class Wanted>
 std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
   return pick_any(grid, [&](int x, int y) { return !grid.is_corner(x, y) && wanted(x, y); });
 }
 
-/// Whether a pixel's own surface is one with all its corners'.
+/// Whether a pixel's surface matches those of all its corners.
 bool fits_corners(const Grid& grid, int x, int y) {
   for (const std::size_t corner : grid.corners(x, y))
     if (!same_surface(grid.film.film, corner, grid.at(x, y), even_cosine)) return false;
   return true;
 }
 
-/// A sampled pixel whose light is not what its corners of the same surface promised: a shadow's or a
-/// reflection's edge, which may continue between the corners nearby.
+/// Whether a sampled pixel's light differs from that of its corners on the same surface: the edge of a shadow
+/// or reflection, which may continue between nearby corners.
 bool surprises(const Grid& grid, int x, int y) {
   const std::size_t p = grid.at(x, y);
   const GrowingFilm& film = grid.film;
@@ -110,7 +110,7 @@ std::vector<u32> near_surprises(const Grid& grid) {
   });
 }
 
-/// The pixels without samples of their own become the mean of their corners, where those have some.
+/// Sets pixels without samples to the mean of those corners that have some.
 void interpolate(GrowingFilm& film, const Grid& grid) {
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {

@@ -1,7 +1,7 @@
-// Subsampling: every second pixel each way gets its samples. Between four that agree on object, material,
-// normal and colour the others are interpolated, unless a ray through their own middle sees something else:
-// so nothing that the camera sees can hide between them, however thin. What is smaller in shadows and
-// reflections is followed: where a pixel differs from what its corners promised, its neighbours get samples.
+// Subsampling: renders every second pixel each way. Between four pixels that agree on object, material,
+// normal and colour, the others are interpolated, unless a ray through their centre sees a different surface;
+// so nothing that the camera sees is missed, however thin. Small features in shadows and reflections are
+// traced: where a pixel differs from its corners' interpolation, its neighbours are sampled.
 #pragma once
 #include <optional>
 
@@ -11,10 +11,10 @@ namespace sundog {
 
 struct SamplingPlan;
 
-/// The pass after those that `film` holds; none when the rest has been interpolated. Counts film.step.
+/// The pass after those in `film`; none when the rest has been interpolated. Increments film.step.
 std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan);
 
-/// Gives the pixels that have no samples the mean of their corners, where those have some.
+/// Sets pixels without samples to the mean of those corners that have some.
 void interpolate_rest(GrowingFilm& film);
 
 }  // namespace sundog

@@ -6,11 +6,11 @@
 namespace sundog {
 namespace {
 
-// How often an idle device looks whether another's tile has become worth repeating.
+// How often an idle device checks for tiles worth repeating.
 constexpr std::chrono::milliseconds between_tiles{10};
 
-// A driver may compile in its first tile: only after so long is a device that has finished none taken to
-// hang.
+// A driver may compile during its first tile, so a device without finished tiles counts as hanging only after
+// this time.
 constexpr double first_tile_seconds = 10;
 
 }  // namespace
@@ -79,7 +79,7 @@ HeldTile TileQueue::as_held(const Held& held) {
   return tile;
 }
 
-/// Marks the devices whose tile takes much longer than it should, so that the others do not wait for them.
+/// Marks devices whose tile takes much too long, so that others do not wait for them.
 void TileQueue::find_stuck() {
   for (std::size_t i = 0; i < speeds_.size(); ++i)
     if (!devices_[i]->retired) {
@@ -112,7 +112,7 @@ std::optional<TileJob> TileQueue::take_waiting(std::size_t device) {
   return job;
 }
 
-/// In a static split only a device's last tile may be made by another too.
+/// In a static split, others may only repeat a device's last tile.
 bool TileQueue::may_repeat(const Held& held) const {
   if (plan_.lists.size() == 1) return true;
   const auto is_last = [&](const auto& holder) { return plan_.lists[holder.first].pixels() == 0; };
@@ -149,7 +149,7 @@ std::optional<TileJob> TileQueue::take(std::size_t device) {
 void TileQueue::measure(std::size_t device, const Tile& tile, double seconds) {
   State& state = *devices_[device];
   const auto pixels = static_cast<double>(pixel_count(tile));
-  // The first tile pays for what a driver does once: it counts only until there is another.
+  // The first tile includes a driver's startup cost: it counts only until there is another.
   const bool second = state.work.pixels > 0 && state.recent_pixels == static_cast<double>(state.work.pixels);
   const double memory = second ? 0 : 0.5;
   state.recent_pixels = memory * state.recent_pixels + pixels;

@@ -1,5 +1,5 @@
-// The frame's tiles, shared by the threads that serve the devices: who makes what by plan.h, what failed goes
-// to others, and what comes twice counts once.
+// The frame's tiles, shared by the threads that serve devices: plan.h decides who gets what, failed tiles go
+// to others, and duplicates count once.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -21,53 +21,52 @@ struct TileJob {
   Tile tile;
 };
 
-/// What the tiles are shared out by.
+/// How tiles are distributed.
 struct TilePlan {
   /// One list for all devices, or one a device (a static split).
   std::vector<WaitingTiles> lists;
-  bool whole = false;  // the lists' tiles are handed out uncut
-  bool exact = false;  // of lists a device: nobody makes another's tile too, not even the last
+  bool whole = false;  // tiles are not divided
+  bool exact = false;  // with a list per device: nobody repeats another's tile, not even the last
 };
 
 class TileQueue {
  public:
-  /// `devices` hold estimates; none is working yet.
+  /// `devices` contain estimates; none is working yet.
   TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices);
 
-  /// The frame has passes: when the tiles are made there are more to come, by refill(), until no_more().
+  /// The frame has passes: finished tiles are followed by refill() until no_more().
   void expect_more();
   void refill(TilePlan plan);
   void no_more();
-  /// The tiles are made, and more are expected.
+  /// Whether the tiles are done and more are expected.
   bool waits_for_more() const;
 
-  /// Waits while the device is better not started (is_spared); false when it never will be, because the
-  /// frame is finished or closed. In a fixed split every device is needed.
+  /// Waits while the device should not be started (is_spared); false if it never should, because the frame is
+  /// finished or closed. A fixed split needs every device.
   bool wait_until_needed(std::size_t device);
-  /// The device has built its kernels and will ask for tiles.
+  /// The device has built its kernels and will request tiles.
   void ready(std::size_t device);
-  /// The next tile for a device: a waiting one, or, when none is left for it, one that another device is
-  /// making and that this one would finish sooner. Waits while there may come one; nullopt when the frame is
-  /// finished or closed.
+  /// The next tile for a device: a waiting one or, if none is left, one that another device is rendering and
+  /// this one would finish sooner. Waits while one may come; nullopt when the frame is finished or closed.
   std::optional<TileJob> take(std::size_t device);
-  /// A tile was made, in `seconds`. True: it is the first to come and counts. The others that make it are
-  /// told to stop by their cancelled().
+  /// A tile was rendered in `seconds`. True: it is the first result and counts; the others' cancelled() is
+  /// set.
   bool finished(std::size_t device, const TileJob& job, double seconds);
-  /// Only a part of the tile was made, because the frame was stopped or another was faster. True: no other
-  /// device has finished the tile or given a part of it.
+  /// Only a part of the tile was rendered, because the frame was stopped or another was faster. True: no
+  /// other device has finished the tile or returned a part of it.
   bool given_up(std::size_t device, const TileJob& job);
-  /// The device could not make the tile: it waits for anybody again.
+  /// The device could not render the tile, which waits again for any device.
   void failed(std::size_t device, const TileJob& job);
-  /// No tile that the device is given from now on has more than half the pixels of `tile`.
+  /// Limits the device's future tiles to half the pixels of `tile`.
   void halve(std::size_t device, const Tile& tile);
-  /// The device takes no more tiles. What it still holds, and what was set aside for it, others may take.
+  /// The device takes no more tiles. Others may take those that it holds or that were reserved for it.
   void retire(std::size_t device);
-  /// No more tiles for anybody.
+  /// Hands out no more tiles.
   void close();
-  /// Waits until the frame is finished or closed, at most so long; true when it is.
+  /// Waits until the frame is finished or closed, for at most `seconds`; returns whether it is.
   bool wait(double seconds);
 
-  /// Set when the tile in hand has been finished by another. Reset by take().
+  /// Set when another device has finished the current tile. Reset by take().
   const std::atomic<bool>& cancelled(std::size_t device) const { return devices_[device]->cancelled; }
   bool complete() const;
   DeviceWork work(std::size_t device) const;
@@ -80,7 +79,7 @@ class TileQueue {
   struct State {
     std::atomic<bool> cancelled{false};
     bool retired = false;
-    double recent_pixels = 0, recent_seconds = 0;  // older tiles count less
+    double recent_pixels = 0, recent_seconds = 0;  // exponentially weighted
     std::uint64_t most_pixels = ~std::uint64_t{0};
     DeviceWork work;
     std::optional<Stopwatch> ready;
@@ -99,7 +98,7 @@ class TileQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   TilePlan plan_;
-  WaitingTiles returned_;  // failed, or left over by a retired device
+  WaitingTiles returned_;  // failed, or left by a retired device
   std::vector<DeviceSpeed> speeds_;
   std::vector<std::unique_ptr<State>> devices_;
   std::map<std::uint64_t, Held> held_;

@@ -10,7 +10,7 @@ int rounded_up(double value, int step) {
   return std::max(1, static_cast<int>(std::ceil(value / step))) * step;
 }
 
-/// Runs of blocks in one row of blocks that hold a pixel that is not done.
+/// Runs of blocks with unfinished pixels, within one row of blocks.
 std::vector<Tile> unfinished_in_row(const Film& film, const Tile& row) {
   std::vector<Tile> runs;
   for (int x = row.x; x < row.x + row.width; x += tile_align) {
@@ -37,7 +37,7 @@ std::vector<Tile> cut_tiles(int width, int height, int edge, int align) {
 
 std::vector<Tile> unfinished_tiles(const Film& film, const Tile& area) {
   std::vector<Tile> tiles;
-  std::size_t above = 0;  // where the row above's runs begin
+  std::size_t above = 0;  // first run of the row above
   for (int y = area.y; y < area.y + area.height; y += tile_align) {
     const Tile row{area.x, y, area.width, std::min(tile_align, area.y + area.height - y)};
     const std::vector<Tile> runs = unfinished_in_row(film, row);

@@ -1,5 +1,4 @@
-// A message on a socket: its size in 8 bytes, then kind and size of the JSON in 4 bytes each, the JSON, the
-// data.
+// Wire format: message size in 8 bytes, kind and JSON size in 4 bytes each, the JSON, the data.
 #include "render/remote/channel.h"
 
 #include <poll.h>

@@ -1,5 +1,5 @@
-// Messages between the process that has the frame and those that have devices: a worker process on the other
-// end of a socket, or another machine's process.
+// Messages between the process that owns the frame and those that own devices: a worker process behind a
+// socket, or another machine's process.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -12,48 +12,48 @@
 
 namespace sundog {
 
-/// The other end is gone.
+/// The peer is gone.
 struct ChannelClosed : DeviceError {
   using DeviceError::DeviceError;
 };
 
 struct Message {
   enum Kind : std::uint32_t {
-    list,     // to a worker: which devices are there?
-    devices,  // back: {devices, cores}
-    open,     // to a worker: make a device ready for a frame
-    ready,    // back: {times, scene}
+    list,     // to a worker: list the devices
+    devices,  // reply: {devices, cores}
+    open,     // to a worker: prepare a device for a frame
+    ready,    // reply: {times, scene}
     render,   // to a worker: {job, tile...}, data: the pixels of a pass and their earlier samples
-    stop,     // to a worker: {job}: enough of that tile
-    tile,     // back: {tile, counts, figures}, data: its pixels
-    failed,   // back, at any time: {what, status, build, log}; {closed}: nothing else will come; {hangs}:
-              // never
-    close,    // to a worker: the end
-    alive,    // both ways, again and again (silence.h); no receive() gives it out
+    stop,     // to a worker: {job}: stop rendering that tile
+    tile,     // reply: {tile, counts, figures}, data: its pixels
+    failed,   // at any time: {what, status, build, log}; {closed}: nothing else will come; {hangs}: nothing
+              // ever
+    close,    // to a worker: end
+    alive,    // both ways, periodically (silence.h); receive() filters it
     leave,    // to another rank: the job is over
-    left,     // back: it is ready for the end
+    left,     // reply: ready for the end
   };
   Kind kind = close;
   nlohmann::json values;
-  std::string data;  // bytes that are no JSON
+  std::string data;  // binary payload
 };
 
-/// Message <-> bytes.
+/// Serialisation.
 std::string pack(const Message& message);
-/// Throws ChannelClosed for what is no message.
+/// Throws ChannelClosed for malformed bytes.
 Message unpack(const std::string& bytes);
 
-/// One end. Both functions may be called by several threads.
+/// One end of a connection. Both functions are thread-safe.
 class Channel {
  public:
   virtual ~Channel() = default;
   /// Throws ChannelClosed.
   virtual void send(const Message& message) = 0;
-  /// Waits so long at most; nothing when nothing came. Throws ChannelClosed.
+  /// Waits for at most `seconds`; nothing on timeout. Throws ChannelClosed.
   virtual std::optional<Message> receive(double seconds) = 0;
 };
 
-/// A connected stream socket, which is closed at the end.
+/// A connected stream socket, closed on destruction.
 class SocketChannel : public Channel {
  public:
   explicit SocketChannel(int socket) : socket_(socket) {}
@@ -66,7 +66,7 @@ class SocketChannel : public Channel {
 
   int socket_;
   std::mutex sending_, receiving_;
-  std::string arrived_;  // the beginning of a message, or several
+  std::string arrived_;  // a partial message, or several
 };
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Looks after a server's launches from another thread, in a process that serves others.
+// Watches a server's launches from another thread, in a process that serves others.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -12,8 +12,8 @@ namespace sundog {
 
 class HangWatch {
  public:
-  /// `on_hang` is called once, with a sentence, by the watch's thread, when a launch has passed its limit;
-  /// `always` about twenty times a second.
+  /// The watch's thread calls `on_hang` once, with a message, when a launch exceeds its limit, and `always`
+  /// about twenty times a second.
   explicit HangWatch(std::function<void(const std::string&)> on_hang, std::function<void()> always = {});
   ~HangWatch();
   HangWatch(const HangWatch&) = delete;

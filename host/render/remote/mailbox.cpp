@@ -1,5 +1,5 @@
-// A message goes in pieces, each with its channel's number and whether it is the message's last in 4 bytes
-// each. Channel 0 is between the mailboxes themselves.
+// Messages are sent in pieces, each with its channel's number and a last-piece flag, 4 bytes each. Channel 0
+// connects the mailboxes themselves.
 #include "render/remote/mailbox.h"
 
 #include <fmt/format.h>
@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t largest_piece = std::size_t{4} << 20, piece_head = 8;
 constexpr std::uint32_t control = 0;
 
-// How many times longer than another rank 0 may be silent: a user who stops it by hand wants to continue it.
+// Factor on rank 0's silence limit, because a user who suspends it wants to resume it.
 constexpr double patience_with_rank_0 = 6;
 
-// At the end of the job, a rank that has not said so long that it lives is not waited for.
+// At the end of the job, ranks that have been silent this long are not waited for.
 constexpr double silence_at_end = 2;
 
-// Between looks at the transport: the first while messages come, the last when none has come for long.
+// Polling interval of the transport: from the first while messages arrive to the last when idle.
 constexpr std::chrono::microseconds shortest_pause{50}, longest_pause{1000};
 
 using Lock = std::unique_lock<std::mutex>;
@@ -69,7 +69,7 @@ class Mailbox::RankChannel : public Channel {
   std::string name_;
 };
 
-/// With the state's mutex held.
+/// Requires the state's mutex.
 void Mailbox::post(State& state, int rank, std::uint32_t channel, const Message& message) {
   const std::string bytes = pack(message);
   for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
@@ -164,7 +164,7 @@ void Mailbox::arrive(const Parcel& parcel) {
   }
   const auto inbox = channel == control ? state_->inboxes.try_emplace({parcel.from, control}).first
                                         : state_->inboxes.find({parcel.from, channel});
-  if (inbox == state_->inboxes.end()) return;  // this side has closed it
+  if (inbox == state_->inboxes.end()) return;  // closed on this side
   inbox->second.begun.append(parcel.bytes, piece_head);
   if (last == 0) return;
   Message message;
@@ -188,7 +188,7 @@ void Mailbox::take_control(int from, const Message& message) {
   if (message.kind == Message::left) state_->peers[static_cast<std::size_t>(from)].left = true;
 }
 
-/// Rank 0 hears from all, and all hear from rank 0.
+/// All ranks send to rank 0, and rank 0 to all.
 void Mailbox::beat() {
   if (since_beat_.seconds() < beat_seconds) return;
   since_beat_ = Stopwatch();

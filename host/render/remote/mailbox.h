@@ -1,5 +1,5 @@
-// The processes of one job to each other: channels over a Transport, served by one thread, which also says
-// that this process lives and notices those that do not.
+// Connects the processes of a job: channels over a Transport, served by one thread, which also sends
+// heartbeats and detects dead processes.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -20,14 +20,13 @@
 
 namespace sundog {
 
-/// Rank 0 opens channels to the others, as many as it likes; the others accept them. Every function may be
-/// called by any thread.
+/// Rank 0 opens any number of channels to the other ranks, which accept them. Thread-safe.
 class Mailbox {
  public:
-  /// Opens the transport in the thread that will use it. A rank that says nothing for `limit` seconds is
-  /// given up; rank 0, without which the others have nothing to do, after six times that.
+  /// Opens the transport in the thread that will use it. A rank that is silent for `limit` seconds is
+  /// abandoned; rank 0, on which the others depend, after six times that.
   Mailbox(const std::function<std::unique_ptr<Transport>()>& open, double limit);
-  /// What has not left by then is left behind as it is.
+  /// Discards unsent messages.
   ~Mailbox();
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
@@ -38,20 +37,20 @@ class Mailbox {
   /// "rank 2 on node7".
   std::string name(int rank) const;
 
-  /// A new channel to that rank, which throws ChannelClosed once the rank is gone.
+  /// Opens a channel to that rank, which throws ChannelClosed once the rank is gone.
   std::unique_ptr<Channel> connect(int rank) { return connector(rank)(); }
-  /// What makes them, and may outlive the mailbox.
+  /// A factory of channels that may outlive the mailbox.
   std::function<std::unique_ptr<Channel>()> connector(int rank) const;
-  /// The next channel that rank 0 has opened; none when the job is over.
+  /// The next channel opened by rank 0; none when the job is over.
   std::unique_ptr<Channel> accept();
-  /// Whether the rank will send nothing further.
+  /// Whether the rank will send nothing more.
   bool gone(int rank);
-  /// The ranks of which nothing has been heard for so long.
+  /// The ranks that have been silent for this long.
   std::vector<int> silent_for(double seconds);
 
-  /// The end of the job. Rank 0 tells the others, and each waits for all. When some are gone, or take more
-  /// than `grace` seconds, rank 0 ends them all by force, itself with `status`. Another rank returns false
-  /// when it was rank 0 that has gone.
+  /// Ends the job. Rank 0 notifies the others, and each waits for all. If some are gone, or take more than
+  /// `grace` seconds, rank 0 kills them all, and exits with `status`. Another rank returns false if rank 0 is
+  /// gone.
   bool leave(int status, double grace = 15);
 
  private:
@@ -69,7 +68,7 @@ class Mailbox {
     bool gone = false, left = false;
     std::string why;
   };
-  /// What channels share with the thread; they may outlive the mailbox.
+  /// Shared by the channels and the thread; may outlive the mailbox.
   struct State {
     std::mutex mutex;
     std::condition_variable outgoing_changed, arrived;
@@ -78,10 +77,10 @@ class Mailbox {
     std::deque<std::uint32_t> accepted;
     std::uint32_t last_channel = 0;
     std::vector<Peer> peers;
-    bool told_to_leave = false;  // rank 0 has said that the job is over, or is gone
-    bool over = false;           // nothing goes or comes any more
-    std::optional<int> abort;    // to end everything with that status
-    bool finish = false;         // to end in good order
+    bool told_to_leave = false;  // rank 0 has ended the job, or is gone
+    bool over = false;           // no more traffic
+    std::optional<int> abort;    // end everything with this status
+    bool finish = false;         // end in order
   };
   class RankChannel;
 

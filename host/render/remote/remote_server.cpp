@@ -9,11 +9,11 @@
 namespace sundog {
 namespace {
 
-constexpr double between_flags = 0.005;  // seconds between looks at the flags while a tile is made elsewhere
+constexpr double between_flags = 0.005;  // seconds between checks of the flags while a tile is rendered
 
 }  // namespace
 
-/// Throws what the other side failed at, as the exception that it was there.
+/// Rethrows a failure of the other side as the original exception type.
 void RemoteServer::fail(const nlohmann::json& failure) {
   std::string what = failure.at("what");
   const std::string where = fmt::format("rank {} on {}", device_.info.rank, device_.info.host);

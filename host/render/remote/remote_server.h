@@ -1,4 +1,4 @@
-// A device that another process has, as a TileServer.
+// Serves tiles with a device of another process.
 #pragma once
 #include <functional>
 #include <memory>
@@ -8,14 +8,14 @@
 
 namespace sundog {
 
-/// How a remote device is reached and what it is to do.
+/// How to reach a remote device, and its task.
 struct RemoteDevice {
   DeviceInfo info;
   int processor = -1;                                 // DeviceSpeed::processor
   std::function<std::unique_ptr<Channel>()> connect;  // throws DeviceError
   nlohmann::json settings;                            // of Message::open
-  std::uint64_t scene = 0;                            // hash_scene() of what it must render
-  unsigned restarts = 0;                              // how often it may be connected to again
+  std::uint64_t scene = 0;                            // expected hash_scene()
+  unsigned restarts = 0;                              // maximum number of reconnections
   unsigned failures = 3;                              // TileServer::failures_allowed()
 };
 
@@ -40,10 +40,10 @@ class RemoteServer : public TileServer {
   RemoteDevice device_;
   std::unique_ptr<Channel> channel_;
   std::uint64_t job_ = 0;
-  ServerFigures figures_;           // as of the last tile
-  std::vector<std::string> notes_;  // of this side
+  ServerFigures figures_;           // at the last tile
+  std::vector<std::string> notes_;  // from this side
   unsigned restarts_ = 0;
-  std::string hangs_;  // what was said when its driver was seen to hang
+  std::string hangs_;  // the message when its driver was found hanging
 };
 
 }  // namespace sundog

@@ -23,7 +23,7 @@ std::vector<T> take(const std::string& bytes, std::size_t& at, std::size_t count
   return values;
 }
 
-/// An array that is there for each pixel, or not at all.
+/// The length of an array that has a value per pixel, or none.
 std::size_t none_or_all(const nlohmann::json& count, std::size_t pixels) {
   const auto found = count.get<std::size_t>();
   if (found != 0 && found != pixels) throw DeviceError("a message has values for some of a tile's pixels");
@@ -39,7 +39,7 @@ Tile tile_from(const nlohmann::json& values) {
   return tile;
 }
 
-/// Throws DeviceError unless these are the rows that were asked for, or the first of them.
+/// Throws DeviceError unless the rows are those requested, or the first of them.
 void check_asked(const Tile& tile, const Tile& asked) {
   if (tile.x != asked.x || tile.y != asked.y || tile.width != asked.width || tile.height > asked.height)
     throw DeviceError("a tile came that was not asked for");

@@ -1,4 +1,4 @@
-// The values that go through a channel, as JSON.
+// Serialises the values sent through a channel as JSON.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -20,7 +20,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, r
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ServerFigures, kernels, readback_seconds, notes)
 
-/// What `read` makes of a message. Throws DeviceError "FROM: ..." where that lacks what `read` asks for.
+/// Calls `read`; throws DeviceError "FROM: ..." if the message lacks something.
 template <class Read>
 auto understood(const std::string& from, const Read& read) {
   try {
@@ -30,17 +30,17 @@ auto understood(const std::string& from, const Read& read) {
   }
 }
 
-/// {tile, counts} and the pixels' bytes.
+/// {tile, counts} and the pixels as bytes.
 struct PackedTile {
   nlohmann::json values;
   std::string data;
 };
 PackedTile pack_request(const TileRequest& request);
-/// Throws DeviceError when the tile is none or the bytes are not those of the request.
+/// Throws DeviceError for an invalid tile or if the bytes do not match the request.
 TileRequest unpack_request(const nlohmann::json& values, const std::string& data);
 PackedTile pack_tile(const TileResult& result);
-/// Throws DeviceError when it is not the tile that was asked for, with what a frame of these AOVs wants of
-/// it, or the bytes are not those of the tile.
+/// Throws DeviceError if it is not the requested tile with the values that these AOVs need, or if the bytes
+/// do not match the tile.
 TileResult unpack_tile(const nlohmann::json& values, const std::string& data, const TileRequest& request,
                        const std::vector<std::string>& aov_names);
 

@@ -1,5 +1,5 @@
-// How long a process that should say again and again that it lives has said nothing: what is stopped, or
-// swapped out, keeps its channel open and cannot be told from one that works otherwise.
+// Measures the silence of a process that should send heartbeats: a stopped or swapped-out process keeps its
+// channel open and cannot be detected otherwise.
 #pragma once
 #include <algorithm>
 
@@ -7,18 +7,18 @@
 
 namespace sundog {
 
-/// So often a process that serves devices says that it is there (Message::alive).
+/// Heartbeat interval (Message::alive) of a process that serves devices.
 inline constexpr double beat_seconds = 0.25;
 
-/// Counts only time in which this side listened: after both were stopped (Ctrl-Z, a sleeping machine), none
-/// has passed.
+/// Counts only time in which this side listened, so that suspending both (Ctrl-Z, a sleeping machine) counts
+/// nothing.
 class Silence {
  public:
   void heard() {
     seconds_ = 0;
     since_ = Stopwatch();
   }
-  /// To be called at least twice a second while it listens.
+  /// Call at least twice a second while listening.
   double seconds() {
     seconds_ += std::min(since_.seconds(), 0.5);
     since_ = Stopwatch();

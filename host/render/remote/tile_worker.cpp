@@ -44,7 +44,7 @@ void Orders::read() {
       take(std::move(*message));
       if (last) return;
     }
-  } catch (const std::exception&) {  // it is gone, or sends what makes no sense
+  } catch (const std::exception&) {  // the peer is gone, or sends malformed data
     on_closed_();
     take({});
   }

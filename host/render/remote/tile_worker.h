@@ -1,4 +1,4 @@
-// The other end of a RemoteServer: takes orders from a channel and has a device carry them out.
+// The peer of a RemoteServer: takes orders from a channel and executes them on a device.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -10,22 +10,22 @@
 
 namespace sundog {
 
-/// The cores that this process may run on; 0: unknown.
+/// The cores on which this process may run; 0: unknown.
 unsigned usable_cores();
 
-/// Reads a channel in a thread of its own, so that an order to stop, or the end of the other side, is noticed
-/// while a driver is at work.
+/// Reads a channel in its own thread, so that a stop order or the peer's end is noticed while a driver is
+/// working.
 class Orders {
  public:
-  /// `on_closed` is called by that thread when the other end is gone or hangs up.
+  /// The thread calls `on_closed` when the peer is gone or hangs up.
   Orders(Channel& channel, std::function<void()> on_closed);
   ~Orders();
   Orders(const Orders&) = delete;
   Orders& operator=(const Orders&) = delete;
 
-  /// The next list, open or render; nothing after close.
+  /// The next list, open or render order; nothing after close.
   std::optional<Message> next();
-  /// Set while the job that next() gave last is no longer wanted.
+  /// Set when the current job is no longer wanted.
   const std::atomic<bool>& unwanted() const { return unwanted_; }
 
  private:
@@ -43,16 +43,15 @@ class Orders {
   std::thread thread_;
 };
 
-/// A device made ready for a frame.
+/// A device prepared for a frame.
 struct OpenedServer {
-  std::shared_ptr<const void> kept;  // what the server refers to
+  std::shared_ptr<const void> kept;  // keeps what the server refers to
   std::shared_ptr<TileServer> server;
-  std::uint64_t scene = 0;  // hash_scene() of what it renders
+  std::uint64_t scene = 0;  // hash_scene() of its scene
 };
 
-/// Serves until told to close. `make` makes the server of an open order (loading its scene); what it throws,
-/// and what the server throws, is sent as the answer.
-/// `list` lists the devices.
+/// Serves until closed. `make` creates the server for an open order (loading its scene); exceptions from it
+/// and from the server are sent as the reply. `list` lists the devices.
 void serve_orders(Channel& channel, Orders& orders,
                   const std::function<OpenedServer(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list);

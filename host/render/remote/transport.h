@@ -1,5 +1,5 @@
-// What carries bytes between the processes of one job. The MPI one is a shared library of its own
-// (host/mpi), which only a sundog that mpirun has started loads; tests have one within a process.
+// The byte transport between the processes of a job. The MPI implementation is a separate shared library
+// (host/mpi), loaded only by a sundog started by mpirun; tests use one within a process.
 #pragma once
 #include <memory>
 #include <optional>
@@ -13,24 +13,24 @@ struct Parcel {
   std::string bytes;
 };
 
-/// Processes are numbered by rank, 0 to hosts().size() - 1. Every call, and what made it, is one thread's.
+/// Processes are numbered by rank, 0 to hosts().size() - 1. Use from the creating thread only.
 class Transport {
  public:
   virtual ~Transport() = default;
   virtual int rank() const = 0;
-  /// The name of each rank's machine.
+  /// The host name of each rank.
   virtual const std::vector<std::string>& hosts() const = 0;
-  /// Begins to send. Parcels of one rank to another arrive in order; one to a rank that is gone is lost.
+  /// Starts sending. Parcels between two ranks arrive in order; those to a dead rank are lost.
   virtual void post(int rank, std::string bytes) = 0;
-  /// What has arrived whole. Does not wait.
+  /// Returns a complete parcel, without waiting.
   virtual std::optional<Parcel> take() = 0;
-  /// The end in good order: waits for all ranks to reach it.
+  /// Ends in order: waits for all ranks.
   virtual void finish() = 0;
-  /// The end when others do not reach it: ends them too, and this process with that status.
+  /// Ends the other ranks by force, and this process with `status`.
   [[noreturn]] virtual void abort(int status) = 0;
 };
 
-/// What the library exports under open_transport_name: begins, in the calling thread.
+/// The library's export under open_transport_name: opens the transport in the calling thread.
 using OpenTransport = Transport*();
 inline constexpr const char* open_transport_name = "sundog_open_transport";
 

@@ -27,7 +27,7 @@ class WorkerChannel : public Channel {
         process_(std::move(process)),
         name_(std::move(name)) {}
   ~WorkerChannel() override {
-    socket_.reset();  // which tells it to end
+    socket_.reset();  // tells it to end
     await_end(2);
     if (end_) return;
     process_->end();
@@ -67,7 +67,7 @@ class WorkerChannel : public Channel {
     throw ChannelClosed(fmt::format("{}: its worker process {}", name_, how));
   }
 
-  /// It is stopped, or hangs as a whole: it will not end by itself.
+  /// It is stopped or hangs, so it will not end by itself.
   [[noreturn]] void throw_silent() {
     const double seconds = silence_.seconds();
     process_->end();
@@ -77,7 +77,7 @@ class WorkerChannel : public Channel {
   }
 
   Silence silence_;
-  const double limit_;  // of its silence, in seconds
+  const double limit_;  // of silence, in seconds
   std::unique_ptr<SocketChannel> socket_;
   std::unique_ptr<StartedProgram> process_;
   std::optional<ProgramEnd> end_;

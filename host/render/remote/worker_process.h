@@ -1,4 +1,4 @@
-// A process of its own for a device: what crashes or hangs there takes nothing else along.
+// Runs a device in its own process, so that crashes and hangs affect nothing else.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,10 +9,9 @@ namespace sundog {
 
 struct HostEnvironment;
 
-/// Starts a process by HostEnvironment::start_program as `sundog worker 3 NAME`, with a channel to it as its
-/// descriptor 3. The
-/// channel's errors say how the process ended; when the channel goes, the process is given two seconds to end
-/// by itself. Throws DeviceError.
+/// Starts `sundog worker 3 NAME` through HostEnvironment::start_program, with a channel as its descriptor 3.
+/// The channel's errors tell how the process ended; after the channel is destroyed, the process has two
+/// seconds to end. Throws DeviceError.
 std::unique_ptr<Channel> start_worker(const HostEnvironment& environment, const std::string& name);
 
 }  // namespace sundog

@@ -1,11 +1,11 @@
-// Beginning and end of a session, and frames that it renders to their end.
+// Start and end of a session, and frames that it renders to their end.
 #include "render/session/final_frame.h"
 #include "render/session/session_state.h"
 
 namespace sundog {
 namespace {
 
-// What a driver gets to come back from a launch when the session ends.
+// Time for a driver to return from a launch when the session ends.
 constexpr std::chrono::seconds ending_grace{10};
 
 }  // namespace
@@ -58,7 +58,7 @@ void RenderSession::State::run(const std::shared_ptr<SessionFrame>& mine, bool w
   current.reset();
   if (mine->generation == newest && state == SessionState::drawing)
     set_state(complete ? SessionState::settled : SessionState::stopped);
-  note();  // a start() that came meanwhile
+  note();  // a start() may have come meanwhile
 }
 
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {

@@ -1,4 +1,4 @@
-// A session's threads: one that compiles scenes and watches the frame in hand, and one a device.
+// A session's threads: one that compiles scenes and watches the current frame, and one per device.
 #include <algorithm>
 
 #include "base/error.h"
@@ -24,7 +24,7 @@ Picked picked_from(const TileResult& made) {
   return picked;
 }
 
-/// One ray through the middle of a pixel.
+/// Casts one ray through a pixel's centre.
 Picked pick_on(SceneServer& server, int x, int y) {
   TileRequest request;
   request.tile = {x, y, 1, 1};
@@ -33,7 +33,7 @@ Picked pick_on(SceneServer& server, int x, int y) {
   return picked_from(server.render(request, {}));
 }
 
-/// Ends a frame that has to be drawn anew, as soon as it can be.
+/// Ends a draft frame as soon as its own kernels are ready.
 void leave_draft(Frame& frame, std::size_t index) {
   const auto* server = dynamic_cast<const SceneServer*>(frame.servers[index].server.get());
   if (!server || !server->may_end_draft()) return;
@@ -78,7 +78,7 @@ std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) 
   return std::nullopt;
 }
 
-// The control thread: compiles the newest scene and watches the frame in hand.
+// The control thread: compiles the newest scene and watches the current frame.
 
 void RenderSession::State::run_control() {
   std::unique_lock lock(mutex);
@@ -93,7 +93,7 @@ void RenderSession::State::run_control() {
     if (closing) return;
     if (has_order())
       take_order(lock);
-    else if (!pending && current && !is_held())  // a frame that was rendered to its end meanwhile is gone
+    else if (!pending && current && !is_held())  // a frame rendered to its end meanwhile is gone
       look_at(lock);
   }
 }
@@ -160,7 +160,7 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
   }
   const std::weak_ptr<State> session = weak_from_this();
   const std::weak_ptr<SessionFrame> frame = made;
-  // Other kernels may be slower by far.
+  // Other kernels may be far slower.
   const bool known =
       before && before->features == made->flat->features && before->field_source == made->flat->field_source;
   made->frame = make_session_frame({made->flat, settings, std::move(servers), known ? speed : 0},
@@ -179,7 +179,7 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
   return made;
 }
 
-/// Called by a worker between two tiles.
+/// Workers call this between two tiles.
 void RenderSession::State::answer_picks(const std::shared_ptr<TileServer>& server) {
   std::unique_lock lock(mutex);
   if (picks.empty()) return;
@@ -191,7 +191,7 @@ void RenderSession::State::answer_picks(const std::shared_ptr<TileServer>& serve
   if (may_pick(*worker)) serve_pick(lock, *worker);
 }
 
-/// Ends the generation when nobody is left who could draw it.
+/// Ends the generation if nobody is left to draw it.
 void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
   const std::shared_ptr<SessionFrame> mine = current;
   lock.unlock();
@@ -238,7 +238,7 @@ void RenderSession::State::run_worker(Worker& worker) {
   try {
     if (!worker.closed) worker.server->close();
   } catch (const std::exception&) {
-    // It is let go of as well as can be.
+    // Released as well as possible.
   }
   lock.lock();
   worker.gone = true;
@@ -252,7 +252,7 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& wor
   lock.unlock();
   Frame& frame = *mine->frame;
   if (mine->flat && worker.of_scenes) worker.of_scenes->show(mine->flat, frame.options);
-  before.reset();  // without the lock
+  before.reset();  // outside the lock
   serve_frame(frame, index);
   if (mine->final) leave_frame(frame, index, mine->closes);
   double speed = 0;
@@ -277,14 +277,14 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& wor
   note();
 }
 
-/// Whether a server has drawn some of the frame as a draft. The caller holds the mutex.
+/// Whether a server has drawn part of the frame as a draft. The caller holds the mutex.
 bool RenderSession::State::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
   return std::ranges::any_of(workers, [&](const auto& worker) {
     return worker->seen == frame && worker->of_scenes && worker->of_scenes->draws_draft();
   });
 }
 
-/// Waits for the kernels that draw the frame for good, and starts it anew unless something else happens.
+/// Waits for the frame's final kernels and restarts it, unless interrupted.
 void RenderSession::State::end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
                                      const std::shared_ptr<SessionFrame>& mine) {
   const auto over = [&] {
@@ -308,7 +308,7 @@ void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker
   lock.lock();
 }
 
-/// Called by a worker that has put a tile into the frame, whose mutex it holds.
+/// Called by a worker that has added a tile to the frame, whose mutex it holds.
 void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
@@ -328,7 +328,7 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
   set_state(settled ? SessionState::settled : SessionState::drawing);
 }
 
-/// The caller holds the frame's mutex. Developed once, however many ask.
+/// Developed once for all callers, who hold the frame's mutex.
 std::shared_ptr<const Image> RenderSession::State::picture_so_far(const Frame& frame) const {
   const std::lock_guard lock(picture_mutex);
   const FramePasses& passes = *frame.passes;

@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-/// The default one, the driver's own choice, or the user's.
+/// The default, the driver's choice, or the user's size.
 struct WorkGroup {
   enum class Kind { automatic, driver, fixed } kind = Kind::automatic;
   std::size_t x = 64, y = 1;

@@ -1,4 +1,4 @@
-// A formula before it is lowered: its text, its parameters, and what else belongs to a surface of the list.
+// FormulaDefinition: a formula's text, parameters and settings, before it is lowered.
 #pragma once
 #include <array>
 #include <string>
@@ -8,29 +8,29 @@
 
 namespace sundog {
 
-/// A named number, vec3 or quat (size 1, 3, 4) that a scene can set within [minimum, maximum] for every
-/// component. whole: only integers.
+/// A named number, vec3 or quat (size 1, 3, 4) that a scene can set, each component within [minimum,
+/// maximum]. whole: integers only.
 struct FormulaParameter {
   std::string name;
   std::vector<double> value;
   double minimum = -1e6, maximum = 1e6;
   bool whole = false;
   std::string meaning = {};
-  std::string old_name = {};  // is read as well
+  std::string old_name = {};  // accepted as well
 };
 
-/// escape: the solid is what stays within the bailout radius; its distance comes from |z| and the derivative.
-/// folded: `distance` of the folded point, divided by the derivative; negative inside.
-/// direct: `distance` of p alone.
+/// escape: the solid is the set of points whose orbit stays within the bailout radius; distance from |z| and
+/// the derivative. folded: `distance` of the folded point, divided by the derivative; negative inside.
+/// direct: `distance` of p.
 enum class FormulaKind { escape, folded, direct };
 
-/// How an escape's distance is made of r = |z| and the derivative dr: r log r / (2 dr) or r / dr.
+/// Distance estimate of an escaped orbit from r = |z| and the derivative dr: r log r / (2 dr) or r / dr.
 enum class EscapeEstimate { logarithmic, linear };
 
-/// Which derivative the estimate divides by. running: one number, a bound on the growth of lengths. radial:
-/// the same with the triplex power's growth along z alone, n r^(n-1): what most programs use, faster and no
-/// bound near the poles. jacobian: all partial derivatives of z and their greatest stretch. automatic:
-/// jacobian where the rules would give away too much, else radial, or running where the map folds or is a
+/// The derivative in the estimate. running: one number that bounds the growth of lengths. radial: likewise,
+/// but a triplex power grows as along z only, n r^(n-1): common in other programs, faster, not a bound near
+/// the poles. jacobian: the largest stretch of all partial derivatives of z. automatic: jacobian if the
+/// running bound would be loose, else radial, or running for maps that fold and hybrids.
 /// hybrid's.
 enum class FormulaDerivative { automatic, running, radial, jacobian };
 
@@ -41,26 +41,25 @@ struct FormulaDefinition {
   std::string start, map, distance;  // statements; statements; one expression
   EscapeEstimate estimate = EscapeEstimate::logarithmic;
   FormulaDerivative derivative = FormulaDerivative::automatic;
-  bool normalize =
-      false;  // direct: divide by the gradient's length (the expression is no distance by itself)
+  bool normalize = false;  // direct: the expression is no distance; divide by the length of its gradient
   std::vector<FormulaParameter> parameters;
   int iterations = 8;        // 1..max_iterations
   double bailout = 16;       // radius at which an orbit has escaped, 0: never
-  double inside_radius = 2;  // escape: an orbit within it may still be inside (at most the bailout)
-  // escape: share of the depth's estimate that is taken. No proven bound: orbits inside grow faster than
-  // their derivative foretells.
+  double inside_radius = 2;  // escape: an orbit that stays within it may be inside (at most the bailout)
+  // escape: factor on the depth estimate. Not a proven bound: orbits inside grow faster than their derivative
+  // predicts.
   double inside_safety = 0.1;
-  double safety = 1;      // (0, 1]: the estimate times this is a bound, as measured by the tests
-  double exceptions = 0;  // share of the interval in which it may fail (of triplex powers: near the poles)
+  double safety = 1;      // (0, 1]: makes the estimate a bound, as measured by the tests
+  double exceptions = 0;  // fraction of the interval where that may fail (triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
-  std::string old_name = {};                                      // is read as well
-  bool smooth = false;  // a surface without detail at every scale: hits are refined
+  std::string old_name = {};                                      // accepted as well
+  bool smooth = false;  // no detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;
   static constexpr std::size_t max_parameters = 32;
 };
 
-/// A pattern: a text that ends in an expression, a number or a vec3, in `p`, the place, and `width`, how wide
-/// what is seen there is, both in the pattern's units.
+/// A pattern: text that ends in an expression, a number or a vec3, of `p`, the position, and `width`, the
+/// footprint, both in pattern units.
 struct PatternFormula {
   std::string text;
   std::vector<FormulaParameter> parameters;

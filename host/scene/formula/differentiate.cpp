@@ -1,5 +1,5 @@
-// Forward-mode automatic differentiation of a formula's graph (Wengert 1964): each node's tangent from those
-// of its operands.
+// Forward-mode automatic differentiation of a formula's graph (Wengert 1964): computes each node's tangent
+// from those of its operands.
 #include <algorithm>
 
 #include "scene/formula/graph.h"
@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-/// Tangents of the nodes seen so far; no_node is a tangent of zero.
+/// Tangents of the nodes so far; no_node is zero.
 class Tangents {
  public:
   Tangents(Graph& graph, const std::function<NodeId(int)>& of_input) : g_(graph), of_input_(of_input) {}
@@ -16,7 +16,7 @@ class Tangents {
   NodeId of(NodeId id) const { return tangents_[id]; }
 
  private:
-  // sum of k a' and m b', where no_node stands for zero
+  // k a' + m b', with no_node as zero
   NodeId sum(NodeId x, NodeId y) { return x == no_node ? y : y == no_node ? x : zero_is_none(g_.add(x, y)); }
   NodeId times(NodeId k, NodeId x) { return x == no_node ? no_node : zero_is_none(g_.mul(k, x)); }
   NodeId minus(NodeId x) { return x == no_node ? no_node : g_.neg(x); }
@@ -29,7 +29,7 @@ class Tangents {
   }
   NodeId kept_from_zero(NodeId x) { return g_.max(x, g_.constant(1e-30)); }
 
-  NodeId rule(NodeId id, Node node) {  // by value: new nodes move the graph's
+  NodeId rule(NodeId id, Node node) {  // by value: adding nodes moves the graph's
     if (node.op == Op::input) return of_input_(static_cast<int>(node.value));
     if (node.op == Op::constant) return no_node;
     const NodeId da = of(node.a), db = node.b == no_node ? no_node : of(node.b);
@@ -86,7 +86,7 @@ class Tangents {
       case Op::power:
         return of_power(node, da, db);
       default:
-        return no_node;  // round_down, conditions: constant between their jumps
+        return no_node;  // round_down and conditions are piecewise constant
     }
   }
 

@@ -1,11 +1,11 @@
-// The one error of the formula language.
+// The exception of the formula language.
 #pragma once
 #include <stdexcept>
 #include <string>
 
 namespace sundog {
 
-/// A formula is wrong at `line`, `column` (from 1; 0: no place in the text).
+/// An error at `line`, `column` (from 1; 0: not in the text).
 struct FormulaError : std::runtime_error {
   FormulaError(int line_, int column_, const std::string& what)
       : std::runtime_error(what), line(line_), column(column_) {}

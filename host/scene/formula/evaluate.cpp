@@ -7,7 +7,7 @@ namespace sundog {
 
 namespace in = formula_input;
 
-/// Inputs of the graphs at one moment of an orbit.
+/// The graphs' inputs at one point of an orbit.
 struct FormulaEvaluator::Orbit {
   glm::dvec3 p{0};
   std::vector<double> z, c, tangents, c_tangents;
@@ -36,7 +36,7 @@ struct FormulaEvaluator::Orbit {
 
 namespace {
 
-/// The greatest singular value of the Jacobian that the tangents are, by the formula of lib/sdf/sample.h.
+/// The largest singular value of the Jacobian given by `tangents`, as in lib/sdf/sample.h.
 double stretch_of(const std::vector<double>& tangents) {
   double a[3][3] = {};
   for (std::size_t row = 0; row + 2 < tangents.size(); row += 3)
@@ -115,7 +115,7 @@ const std::vector<double>& FormulaEvaluator::run(Part& part, const Orbit& orbit)
     const double argument = values[place], condition = values[place + 1];
     place += 2;
     const bool used = breach.guard.condition == no_node || condition != 0;
-    const double slack = 1e-6;  // of rounding
+    const double slack = 1e-6;  // for rounding
     if (!used || met_[index] ||
         !(argument < breach.guard.low - slack || argument > breach.guard.high + slack))
       continue;
@@ -198,7 +198,7 @@ FieldValue FormulaEvaluator::at(const glm::dvec3& p) {
     orbit.parameters = &field_.steps.back().values;
     std::fill(orbit.tangents.begin(), orbit.tangents.end(), 0);
     std::fill(orbit.c_tangents.begin(), orbit.c_tangents.end(), 0);
-    for (std::size_t axis = 0; axis < 3; ++axis) orbit.tangents[4 * axis] = 1;  // by z, not by p
+    for (std::size_t axis = 0; axis < 3; ++axis) orbit.tangents[4 * axis] = 1;  // by z, not p
     const auto& values = run(finish_, orbit);
     const double distance = values[0] / growth;
     return {distance, distance < 0, orbit.iteration, slope(values)};

@@ -1,5 +1,5 @@
-// A formula evaluated on the host, in double precision: a reference for the devices, and a probe of what a
-// user wrote.
+// Evaluates a formula on the host in double precision: a reference for devices, and a probe of users'
+// formulas.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace sundog {
 
-/// inside: an orbit that never escaped, or a negative distance. iterations: until escape.
+/// inside: the orbit never escaped, or the distance is negative. iterations: until escape.
 struct FieldValue {
   double distance = 0;
   bool inside = false;
   int iterations = 0;
-  /// How fast the formula's "distance" changes, by its derivative: per unit of length at p (direct), or of z
-  /// at the orbit's end (folded). 0 for what escapes, and where the distance is divided by its gradient.
+  /// Rate of change of the formula's "distance" by its derivative: per unit of p (direct), or of z at the
+  /// orbit's end (folded). 0 for escape formulas and if the distance is divided by its gradient.
   double slope = 0;
 };
 
-/// An argument beyond a function's domain, met at `count` of the points asked for, and the first of them.
+/// An argument outside a function's domain: at `count` of the points evaluated, and the first of them.
 struct DomainBreach {
   DomainGuard guard;
   std::string section;  // "start", "map" or "distance"
@@ -30,23 +30,23 @@ struct DomainBreach {
   glm::dvec3 at{0};
 };
 
-/// A formula or a hybrid, lowered once and evaluated at many points.
+/// A formula or hybrid, lowered once and evaluated at many points.
 class FormulaEvaluator {
  public:
   /// Throws FormulaError.
   explicit FormulaEvaluator(const FormulaField& field);
-  /// The estimate, times the field's safety; 0 inside where the formula knows no depth.
+  /// The estimate times the field's safety; 0 inside if the formula gives no depth.
   FieldValue at(const glm::dvec3& p);
-  /// Operations that an evaluation takes at most.
+  /// Maximum number of operations of an evaluation.
   std::size_t cost() const;
-  /// Of all points since the start.
+  /// Over all points so far.
   const std::vector<DomainBreach>& breaches() const { return breaches_; }
 
  private:
   struct Orbit;
   struct Part {
     GraphProgram program;
-    std::vector<std::size_t> guards;  // whose arguments and conditions are its last outputs
+    std::vector<std::size_t> guards;  // their arguments and conditions are the last outputs
   };
   Part part(const Section& section, const std::string& name, std::size_t step, std::vector<NodeId> outputs);
   const std::vector<double>& run(Part& part, const Orbit& orbit);

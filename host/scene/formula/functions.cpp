@@ -23,8 +23,8 @@ const Value& scalar(const Value& v) {
   return v;
 }
 
-/// A function of one number within [low, high]: a constant outside of it is an error, anything else is kept
-/// inside, and guarded.
+/// A function of one number in [low, high]: a constant outside is an error; other arguments are clamped and
+/// guarded.
 Value of_number(Values& v, Op op, const char* name, const Value& a, std::optional<double> low,
                 std::optional<double> high) {
   Graph& g = v.g;
@@ -43,7 +43,7 @@ Value of_number(Values& v, Op op, const char* name, const Value& a, std::optiona
 
 Value sine(Values& v, const Value& a) { return of_number(v, Op::sine, "sin", a, {}, {}); }
 Value cosine(Values& v, const Value& a) { return of_number(v, Op::cosine, "cos", a, {}, {}); }
-Value exponential(Values& v, const Value& a) {  // e^80 is the greatest that leaves room in a float
+Value exponential(Values& v, const Value& a) {  // e^80 leaves headroom in a float
   return v.each(Op::exponential, v.each(Op::minimum, scalar(a), v.number(80)));
 }
 Value hyperbolic(Values& v, const Value& a, bool subtract) {
@@ -57,7 +57,7 @@ Value sign_of(Values& v, const Value& a) {
 Value mix(Values& v, const Value& a, const Value& b, const Value& t) {
   return v.add(a, v.multiply(v.add(b, a, true), t));
 }
-/// Quadratic smooth minimum: equals min(a, b) where they differ by k or more.
+/// Quadratic smooth minimum: min(a, b) if they differ by k or more.
 Value smooth_minimum(Values& v, const Value& a, const Value& b, const Value& k) {
   const Value wide = v.each(Op::maximum, scalar(k), v.number(1e-6));
   const Value gap = v.each(Op::absolute, v.add(scalar(a), scalar(b), true));
@@ -84,7 +84,7 @@ Value make_quat(Values& v, const Arguments& a) {
   if (a.size() == 4) return v.quaternion(a[0], a[1], a[2], a[3]);
   require(a.size() == 2 && a[0].type == ValueType::vec3, "quat takes four numbers, or a vec3 and a number");
   Value r = v.quaternion(v.members(a[0], "x"), v.members(a[0], "y"), v.members(a[0], "z"), a[1]);
-  if (a[0].varies && !a[1].varies) {  // an embedding of space
+  if (a[0].varies && !a[1].varies) {  // embeds space isometrically
     r.tight = a[0].tight;
     r.slope = a[0].slope;
   }

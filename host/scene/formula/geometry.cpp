@@ -1,4 +1,4 @@
-// Lengths, products, and the folds that kaleidoscopic formulas are made of.
+// Lengths, products, and the folds of kaleidoscopic formulas.
 #include <cmath>
 #include <stdexcept>
 
@@ -67,7 +67,7 @@ Value Values::cross(const Value& a, const Value& b) {
   return r;
 }
 
-/// A fold across a diagonal plane through the origin is two comparisons.
+/// A fold across a diagonal plane through the origin needs only two comparisons.
 std::optional<Value> Values::cheap_fold(const Value& v, const Value& n, const Value& d) {
   double normal[3];
   if (!g.is_constant(d.x(), 0)) return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<Value> Values::cheap_fold(const Value& v, const Value& n, const Va
   for (std::size_t zero = 0; zero < 3; ++zero) {
     const std::size_t i = (zero + 1) % 3, j = (zero + 2) % 3;
     if (normal[zero] != 0 || normal[i] == 0 || std::abs(normal[i]) != std::abs(normal[j])) continue;
-    // With a = sign_i v_i and b = -sign_j v_j the half space a > b is kept: a' = max(a, b), b' = min(a, b).
+    // With a = sign_i v_i and b = -sign_j v_j, keep the half space a > b: a' = max(a, b), b' = min(a, b).
     const auto with_sign = [&](NodeId x, bool negative) { return negative ? g.neg(x) : x; };
     const NodeId a = with_sign(v.part[i], normal[i] < 0), b = with_sign(v.part[j], normal[j] > 0);
     Value r = isometry(v);
@@ -164,7 +164,7 @@ Value Values::wrap(const Value& v, const Value& period) {
   return r;
 }
 
-/// Rodrigues' rotation about `axis` (any length) by `angle` in radians.
+/// Rodrigues' rotation about `axis` (any length) by `angle` radians.
 Value Values::rotate(const Value& v, const Value& axis, const Value& angle) {
   require(v.type == ValueType::vec3 && axis.type == ValueType::vec3 && angle.type == ValueType::scalar,
           "rotate takes a vec3, an axis (vec3) and an angle");

@@ -1,5 +1,5 @@
-// A formula as straight-line scalar code: nodes in the order of their evaluation, each operand before its
-// use. Equal nodes are one node and constants are folded, so differentiation leaves no dead weight behind.
+// A formula as straight-line scalar code: nodes in evaluation order. Common subexpressions are shared and
+// constants folded, so differentiation leaves no dead code.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,10 +15,9 @@ namespace sundog {
 using NodeId = std::uint32_t;
 inline constexpr NodeId no_node = 0xFFFFFFFFu;
 
-/// less, less_equal, both, either and opposite give conditions; choose(condition, a, b) is a where it holds,
-/// else b. All else gives numbers. power takes a base >= 0;
-/// inverse_root is 1 / sqrt(a)^b of an a > 0 and a whole constant b; rough_inverse_root is 1 / sqrt(a) to
-/// 1e-4, for slopes.
+/// less, less_equal, both, either and opposite return conditions; choose(condition, a, b) is a if it holds,
+/// else b. All others return numbers. power takes a base >= 0; inverse_root is 1 / sqrt(a)^b of an a > 0 and
+/// a constant integer b; rough_inverse_root is 1 / sqrt(a) to 1e-4, for slopes.
 enum class Op {
   constant,
   input,
@@ -52,11 +51,10 @@ enum class Op {
 struct Node {
   Op op = Op::constant;
   NodeId a = no_node, b = no_node, c = no_node;
-  double value = 0;  // constant: its value; input: its index
+  double value = 0;  // the value of a constant or the index of an input
 };
 
-/// Throws std::domain_error when a constant expression is not a finite number, std::length_error beyond
-/// max_nodes.
+/// Throws std::domain_error if a constant expression is not finite, std::length_error beyond max_nodes.
 class Graph {
  public:
   static constexpr std::size_t max_nodes = 20000;
@@ -73,13 +71,13 @@ class Graph {
   NodeId max(NodeId a, NodeId b) { return apply(Op::maximum, a, b); }
   NodeId choose(NodeId condition, NodeId a, NodeId b) { return apply(Op::choose, condition, a, b); }
   NodeId less(NodeId a, NodeId b) { return apply(Op::less, a, b); }
-  /// a / b where |b| is kept from zero: never a division by zero on a device.
+  /// a / b with |b| kept away from zero: a device never divides by zero.
   NodeId div(NodeId a, NodeId b);
   /// Square root of max(a, 0).
   NodeId sqrt(NodeId a) { return apply(Op::square_root, is_not_negative(a) ? a : max(a, constant(0))); }
   NodeId scaled(NodeId a, double k) { return mul(a, constant(k)); }
 
-  /// Later requests for `node`'s computation give `alias` instead (a value that is known already).
+  /// Makes later requests for `node` return `alias`, an equal value that is already known.
   void alias(NodeId node, NodeId alias_) { aliases_[node] = alias_; }
 
   void mark_not_negative(NodeId id) { not_negative_.insert(id); }
@@ -99,19 +97,19 @@ class Graph {
   std::set<NodeId> not_negative_;
 };
 
-/// Values of `outputs` in double precision; input(index) gives the inputs. Conditions are 0 or 1.
+/// Values of `outputs` in double precision; input(index) supplies the inputs. Conditions are 0 or 1.
 std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> outputs,
                              const std::function<double(int)>& input);
 
-/// One operation on numbers, as the devices do it.
+/// Applies one operation as devices do.
 double evaluate(Op op, double a, double b, double c);
 
-/// The part of a graph that some outputs need, to be evaluated at many points.
+/// The part of a graph that some outputs need, for evaluation at many points.
 class GraphProgram {
  public:
   GraphProgram() = default;
   GraphProgram(const Graph& graph, const std::vector<NodeId>& outputs);
-  /// The outputs' values, in their order; valid until the next run.
+  /// The outputs' values in order; valid until the next run.
   const std::vector<double>& run(const std::function<double(int)>& input);
   std::size_t size() const { return nodes_.size(); }
 
@@ -121,8 +119,8 @@ class GraphProgram {
   std::vector<double> values_, results_;
 };
 
-/// Forward-mode differentiation: the tangents of `outputs` along one direction, where tangent(index) gives
-/// each input's tangent (a node; no_node is zero). New nodes are added to the graph.
+/// Forward-mode differentiation: tangents of `outputs` along one direction. tangent(index) gives an input's
+/// tangent (a node; no_node: zero). Adds nodes to the graph.
 std::vector<NodeId> differentiate(Graph& graph, std::span<const NodeId> outputs,
                                   const std::function<NodeId(int)>& tangent);
 

@@ -17,16 +17,16 @@ using glm::dvec3;
 
 std::string text_of(const dvec3& p) { return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", p.x, p.y, p.z); }
 
-/// To three digits, downwards: the same on every machine, whatever its last bits.
+/// Rounds down to three digits, so that last bits do not differ between machines.
 double rounded_down(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
   return std::floor(x / unit + 1e-9) * unit;
 }
 
-/// One formula or hybrid of a scene and where it stands.
+/// Judges one formula or hybrid of a scene.
 class FormulaJudge {
  public:
-  /// `whole`: it is all there is of its field.
+  /// `whole`: the formula is the whole field.
   FormulaJudge(FormulaField& field, const JsonValue& value, bool whole)
       : field_(field), value_(value), last_(field.steps.back().definition), whole_(whole) {
     const auto& json = value.json();
@@ -68,7 +68,7 @@ class FormulaJudge {
                             "where it is above 0, "
                             "there is nothing",
                             found_.greatest.value, text_of(found_.greatest.at)));
-    // Thin sheets may lie between the points; the estimate is small beside them all the same.
+    // Thin sheets may lie between the points, but the estimate is small near them.
     if (found_.inside == 0 && found_.least.value > (escapes ? 0.01 : 1e-3) * size_)
       place("distance")
           .warn(fmt::format("the interval holds no surface: the least distance found is {:.3g}, at {}",
@@ -91,7 +91,7 @@ class FormulaJudge {
     }
   }
 
-  /// The greatest safety for which nothing speaks against the estimate being a bound.
+  /// The largest safety not contradicted by the survey.
   double bearable_safety() const {
     const bool is_distance = is_own_ && !last_.normalize && found_.is_bounded && found_.steepest.value > 0;
     double safety = field_.safety;
@@ -156,7 +156,7 @@ class FormulaJudge {
   FormulaSurvey found_;
 };
 
-/// The box in the child's space that holds a box of the moved field's.
+/// The box in the child's space that contains a box in the transformed field's.
 void into_child(const SdfNode& node, dvec3& lower, dvec3& upper) {
   dvec3 low(1e30), high(-1e30);
   for (int corner = 0; corner < 8; ++corner) {
@@ -170,7 +170,7 @@ void into_child(const SdfNode& node, dvec3& lower, dvec3& upper) {
   upper = high;
 }
 
-/// Without end, or within its counts, a repeated field is asked about its own cell and half of the next.
+/// A repeated field is sampled in its own cell and half of the next.
 void into_cell(const SdfNode& node, dvec3& lower, dvec3& upper) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(node.period[axis] > 0)) continue;

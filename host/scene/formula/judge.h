@@ -1,18 +1,17 @@
-// Whether the formulas of a field are what sphere tracing takes them for, told to who wrote them.
+// Checks whether a field's formulas suit sphere tracing, and warns their author.
 #pragma once
 #include "scene/formula/sdf.h"
 #include "scene/json/value.h"
 
 namespace sundog {
 
-/// Surveys every formula under `root`, which `value` was read into, in its part of the interval. An
-/// expression that is no distance, or whose parameters make the list's safety too great, gets a safety that
-/// makes it one, unless the scene sets "safety" itself; that, and what else will not look as it was meant, is
-/// warned of (JsonContext::warnings). Throws SceneError where no picture can come of it.
+/// Surveys every formula under `root`, read from `value`, in its part of the interval. If an expression
+/// overestimates distance, or its parameters exceed the list's safety, sets a safety that corrects it, unless
+/// the scene sets "safety". Warns of this and of other likely mistakes (JsonContext::warnings). Throws
+/// SceneError if no picture is possible.
 void judge_field(SdfNode& root, const JsonValue& value, const glm::dvec3& lower, const glm::dvec3& upper);
 
-/// Warns where the solid of a formula of the user's own, which has no interval but the default one, reaches
-/// that one's boundary.
+/// Warns if the solid of a user's formula reaches the boundary of the default interval.
 void judge_cut(const FormulaField& formula, const JsonValue& value, const glm::dvec3& lower,
                const glm::dvec3& upper);
 

@@ -1,4 +1,4 @@
-// The words of the formula language.
+// Tokens of the formula language.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,7 +15,7 @@ struct Token {
   double value = 0;
 };
 
-/// The last token is `end`. A line end inside brackets does not end a statement.
+/// The last token is `end`. Newlines inside brackets do not end statements.
 std::vector<Token> tokens_of(std::string_view text);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// The list of surfaces that sundog knows by name. Each is a text in the formula language, like a user's own.
+// The built-in surfaces, written in the formula language.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,19 +10,19 @@ namespace sundog {
 /// All surfaces, in the order in which `sundog formulas` prints them.
 const std::vector<FormulaDefinition>& formula_list();
 
-/// nullptr when there is no such name.
+/// nullptr if unknown.
 const FormulaDefinition* find_formula(const std::string& name);
 
-/// One formula with its default parameters, iterations and bailout, in its default interval.
+/// A formula with default parameters, iterations, bailout and interval.
 SdfDescription default_field(const FormulaDefinition& definition);
 
-/// What puts fields together: the type in a scene file, its keys, what it does.
+/// An operation that combines fields: its type in scene files, its keys, its effect.
 struct FieldOperation {
   std::string type, keys, meaning;
 };
 const std::vector<FieldOperation>& field_operations();
 
-/// The text of `sundog formulas`: every surface with its parameters, defaults, ranges and source; then the
+/// The text of `sundog formulas`: every surface with parameters, defaults, ranges and source; then the
 /// operations and the language.
 std::string formula_list_text();
 

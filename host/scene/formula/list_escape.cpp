@@ -1,4 +1,4 @@
-// Escape-time surfaces: the boundary of the points whose orbits stay bounded.
+// Escape-time surfaces: boundaries of the sets of points with bounded orbits.
 #include "scene/formula/list_parts.h"
 
 namespace sundog {
@@ -25,7 +25,7 @@ FormulaDefinition powers(const char* name, const char* title, const char* source
 FormulaDefinition triplex(const char* name, const char* title, const char* source, const char* map,
                           double exponent) {
   FormulaDefinition d = powers(name, title, source, map, exponent);
-  d.derivative = FormulaDerivative::radial;  // as it is always shown: the proven bound has a rough look
+  d.derivative = FormulaDerivative::radial;  // as usually shown; the proven bound looks rough
   d.exceptions = 0.01;
   return d;
 }
@@ -137,7 +137,7 @@ FormulaDefinition amazing_surf() {
       "z = scale * ballfold(z, least_radius, fixed_radius) + c\n"
       "z = rotate(z, axis, radians(angle))";
   d.estimate = EscapeEstimate::linear;
-  d.exceptions = 0.01;  // |z| / dr leaves out how large the set itself is
+  d.exceptions = 0.01;  // |z| / dr ignores the size of the set itself
   d.parameters = {
       {"scale", {1.5}, -4, 4, false, ""},          {"fold_x", {1}, 0.1, 4, false, ""},
       {"fold_y", {1}, 0.1, 4, false, ""},          {"least_radius", {0.5}, 0.01, 4, false, ""},

@@ -1,5 +1,4 @@
-// Kaleidoscopic and inversive surfaces: space is folded onto one part of the solid, scaled up, and folded
-// again.
+// Kaleidoscopic and inversive surfaces: space is repeatedly folded onto one part of the solid and scaled up.
 #include <string>
 
 #include "scene/formula/list_parts.h"
@@ -69,7 +68,7 @@ FormulaDefinition octahedron_flake() {
   return d;
 }
 
-// Reflections across the coordinate planes and one more mirror, three times: every point ends in one of the
+// Reflections across the coordinate planes and another mirror, three times: every point ends up in one of the
 // 120 chambers of the icosahedral group (checked by test_formula_list.cpp).
 constexpr const char* icosahedral_folds =
     "n = vec3(-0.80901699437, -0.5, 0.30901699437)\n"
@@ -102,7 +101,7 @@ FormulaDefinition koch() {
   FormulaDefinition d =
       folded("koch", "Koch-like surface: a cube on the middle ninth of every square",
              "after H. von Koch, 1904; quadratic type 1 in three dimensions, as folds", "", "z.y");
-  // Floor, wall and top of the cube are folded onto the floor across the planes halfway between them.
+  // Fold floor, wall and top of the cube onto the floor across the bisecting planes.
   d.map =
       "z = fold(z, vec3(1, 0, 0)); z = fold(z, vec3(0, 0, 1)); z = fold(z, vec3(1, 0, -1))\n"
       "z = fold(z, vec3(1, -1, 0), -0.23570226)\n"  // the top onto the wall, at the edge (1/3, 2/3)

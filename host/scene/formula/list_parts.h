@@ -1,4 +1,4 @@
-// The parts of the list, by kind.
+// The built-in surfaces by kind.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-std::vector<FormulaDefinition> escape_formulas();  // what does not escape
+std::vector<FormulaDefinition> escape_formulas();  // sets that do not escape
 std::vector<FormulaDefinition> folded_formulas();  // kaleidoscopic and inversive
 std::vector<FormulaDefinition> solid_formulas();   // closed forms
 

@@ -59,11 +59,11 @@ FormulaDefinition torus_knot() {
 }
 
 FormulaDefinition heart() {
-  FormulaDefinition d = solid(
-      "heart", "Heart", "G. Taubin, Rasterizing algebraic curves and surfaces, IEEE CG&A 14, 1994",
-      "q = p.x * p.x + 2.25 * p.z * p.z + p.y * p.y - 1\n"  // cube roots of both sides: no flat gradient
-      "q - max(p.x * p.x + 0.1125 * p.z * p.z, 1e-6) ^ (1 / 3) * p.y",
-      {});
+  FormulaDefinition d =
+      solid("heart", "Heart", "G. Taubin, Rasterizing algebraic curves and surfaces, IEEE CG&A 14, 1994",
+            "q = p.x * p.x + 2.25 * p.z * p.z + p.y * p.y - 1\n"  // cube roots keep the gradient above 0
+            "q - max(p.x * p.x + 0.1125 * p.z * p.z, 1e-6) ^ (1 / 3) * p.y",
+            {});
   d.normalize = true;
   d.safety = 0.35;
   return d;

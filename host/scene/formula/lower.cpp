@@ -1,4 +1,4 @@
-// The parts of a formula (start, map, finish) as sections of code with tangents. See lower.h.
+// Lowers a formula's parts (start, map, finish) to sections of code with tangents. See lower.h.
 #include "scene/formula/lower.h"
 
 #include <functional>
@@ -42,7 +42,7 @@ std::vector<NodeId> parts(const Value& value) {
 
 NodeId zero_for_none(Graph& g, NodeId id) { return id == no_node ? g.constant(0) : id; }
 
-/// Tangents of `outputs` along x, y and z; constants where they are.
+/// Tangents of `outputs` along x, y and z; constants if possible.
 std::vector<std::array<NodeId, 3>> tangents(Graph& g, const std::vector<NodeId>& outputs,
                                             const std::function<NodeId(int input, int axis)>& of) {
   std::vector<std::array<NodeId, 3>> result(outputs.size());
@@ -81,7 +81,7 @@ void lower_start(LoweredFormula& out, const FormulaDefinition& d, const std::vec
   s.c_tangents = tangents(s.graph, s.c, identity);
 }
 
-/// c as the map sees it: with the start's slope and tangents where they are constants.
+/// c as seen by the map: with the start's slope and tangents if they are constant.
 Value c_input(Graph& g, const LoweredFormula& f) {
   Value c = state_input(g, in::c, f.size);
   const Graph& start = f.start.graph;
@@ -148,7 +148,7 @@ void lower_finish(LoweredFormula& out, const FormulaDefinition& d, const std::ve
   low.define("p", point_input(g));
   if (d.kind != FormulaKind::direct) {
     Value z = state_input(g, in::z, out.size);
-    z.tight = false;  // no running derivative is wanted here
+    z.tight = false;  // the running derivative is not needed
     low.define("z", z);
     low.define("c", c_input(g, out));
     low.define("r", low.v.length(z));
@@ -184,7 +184,7 @@ LoweredPattern lower_pattern(const PatternFormula& formula) {
   p.type = ValueType::vec3;
   for (int i = 0; i < 3; ++i) p.part[static_cast<std::size_t>(i)] = out.graph.input(in::p + i);
   width.part[0] = out.graph.input(in::iteration);
-  // Nobody wants a derivative.
+  // No derivative is needed.
   p.varies = width.varies = true;
   p.tight = width.tight = false;
   low.define("p", p);
@@ -216,7 +216,7 @@ LoweredFormula lower(const FormulaDefinition& definition, const std::vector<doub
     } catch (FormulaError& error) {
       error.section = name;
       throw;
-    } catch (const std::logic_error& error) {  // of the graph, while it is differentiated
+    } catch (const std::logic_error& error) {  // thrown while differentiating
       FormulaError placed(1, 1, error.what());
       placed.section = name;
       throw placed;

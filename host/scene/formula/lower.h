@@ -1,11 +1,11 @@
-// From a formula's text to checked scalar graphs, with the derivative that its distance estimate needs.
+// Compiles a formula's text to checked scalar graphs with the derivative that its distance estimate needs.
 //
-// The derivative comes in two forms (definition.h). The running one is a dual number that carries, with every
+// The derivative has two forms (definition.h). The running one is a dual number that carries, with every
 // value v(p), a bound on |v(p + h) - v(p)| / |h|: rotations, reflections and translations keep it, a scale
-// multiplies it, a power z^n turns it into the norm of its derivative times it (n r^(n-1) for quaternions, n
-// r^(n-1) max(1, |sin nt / sin t|) for triplex numbers at the angle t from their axis), sums add it. It is
-// used where no rule had to give away more than that (see Value::tight). The Jacobian is the exact derivative
-// by forward-mode differentiation of the scalar graph; the estimate divides by the most that it stretches any
+// multiplies it, a power z^n multiplies it by the norm of its derivative (n r^(n-1) for quaternions, n
+// r^(n-1) max(1, |sin nt / sin t|) for triplex numbers at angle t from their axis), sums add it. It is used
+// while these bounds are tight (see Value::tight). The Jacobian is the exact derivative by forward-mode
+// differentiation of the scalar graph; the estimate divides by its largest stretch.
 // direction.
 #pragma once
 #include <string>
@@ -17,7 +17,7 @@
 
 namespace sundog {
 
-/// Numbers of a graph's inputs.
+/// Input indices of a graph.
 namespace formula_input {
 inline constexpr int p = 0, z = 3, c = 7, derivative = 11, c_slope = 12, iteration = 13, square = 14,
                      tangent_z = 16, tangent_c = 28, parameter = 40;
@@ -26,7 +26,7 @@ constexpr int tangent_of_z(int component, int axis) { return tangent_z + compone
 constexpr int tangent_of_c(int component, int axis) { return tangent_c + component * 3 + axis; }
 }  // namespace formula_input
 
-/// Straight-line code with named results. Absent ones are empty or no_node.
+/// Straight-line code with named results; absent ones are empty or no_node.
 struct Section {
   Graph graph;
   std::vector<NodeId> z, c;                                   // 3 or 4 components
@@ -41,7 +41,7 @@ struct Section {
 /// A direct field has `finish` alone.
 struct LoweredFormula {
   int size = 3;           // components of z
-  bool jacobian = false;  // the derivative is the gradient's length; else the running one
+  bool jacobian = false;  // derivative: length of the gradient; else the running one
   bool folds = false;     // of the map: Values::folds
   Section start, map, finish;
 };

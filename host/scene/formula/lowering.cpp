@@ -44,7 +44,7 @@ Value Lowering::value_of(const Expression& e) {
         guard.condition = branch_;
       }
     return value;
-  } catch (const std::logic_error& error) {  // of a function or an operator that cannot take such operands
+  } catch (const std::logic_error& error) {  // the function or operator rejects its operands
     throw FormulaError(e.place.line, e.place.column, error.what());
   }
 }
@@ -128,7 +128,7 @@ Value Lowering::logical(const Expression& e) {
   return a;
 }
 
-// What a branch computes matters only where it is taken.
+// Domain checks in a branch apply only if it is taken.
 Value Lowering::choice(const Expression& e) {
   const Value condition = value_of(e.operands[0]);
   const NodeId outer = branch_;

@@ -1,4 +1,4 @@
-// Statements and expressions to values in a graph. Internal to lower().
+// Lowers statements and expressions to values in a graph. Internal to lower().
 #pragma once
 #include <map>
 #include <string>
@@ -11,16 +11,15 @@
 
 namespace sundog {
 
-/// Walks syntax trees and gives them their values in one graph. What is wrong is a FormulaError with its
-/// place.
+/// Walks syntax trees and emits values into one graph. Errors are FormulaErrors with the place.
 class Lowering {
  public:
-  /// Knows the definition's parameters, of these values, and pi. `values` must outlive it.
+  /// Defines pi and the definition's parameters with `values`, which must outlive this.
   Lowering(Graph& graph, const FormulaDefinition& definition, const std::vector<double>& values);
 
-  /// A name that statements may read but not set.
+  /// Defines a name that statements may read but not set.
   void define(const std::string& name, const Value& value) { fixed_[name] = value; }
-  /// A name that statements may set to another value of the same type.
+  /// Defines a variable that statements may set to another value of the same type.
   void declare(const std::string& name, const Value& value) { variables_[name] = value; }
   const Value& variable(const std::string& name) const { return variables_.at(name); }
   bool was_set(const std::string& name) const { return set_.contains(name); }
@@ -41,7 +40,7 @@ class Lowering {
 
   Graph& g;
   const std::vector<double>& parameter_values_;
-  NodeId branch_ = no_node;  // where what is being lowered is used; no_node: everywhere
+  NodeId branch_ = no_node;  // condition under which the current code runs; no_node: always
   std::map<std::string, Value> fixed_, variables_;
   std::map<std::string, bool> set_;
 };

@@ -1,6 +1,6 @@
-// Powers. A whole exponent of a triplex number or a quaternion is made of products alone: with the axis
-// part's length rho the number is u + i rho, whose n-th power A + i rho B is a polynomial in u and rho^2,
-// built by squaring. A squaring uses A^2 + rho^2 B^2 = r^(2k), so that A' = 2 A^2 - r^(2k).
+// Powers. Integer powers of triplex numbers and quaternions use products only: with the axis part's length
+// rho, the number is u + i rho and its n-th power A + i rho B, where A and B are polynomials in u and rho^2
+// built by squaring. Squaring uses A^2 + rho^2 B^2 = r^(2k), so A' = 2 A^2 - r^(2k).
 #include <cmath>
 #include <stdexcept>
 
@@ -19,7 +19,7 @@ class Powers {
     return n % 2 ? g.mul(square, x) : square;
   }
 
-  /// |v|^n from its square, roughly where n is odd; n >= 0.
+  /// v|^n, n >= 0, from |v|^2; approximate for odd n.
   NodeId length_power(NodeId square, int n) {
     if (n == 0) return g.constant(1);
     if (n % 2 == 0) return whole(square, n / 2);
@@ -40,7 +40,7 @@ class Powers {
     return {g.sub(g.mul(even.a, u), g.mul(rho_square, even.b)), g.add(even.a, g.mul(u, even.b))};
   }
 
-  /// (c + i s)^n of a number of length 1.
+  /// (c + i s)^n of a unit number.
   Pair turned(NodeId c, NodeId s, int n) {
     if (n == 1) return {c, s};
     const Pair half = turned(c, s, n / 2);
@@ -50,14 +50,14 @@ class Powers {
     return {g.sub(g.mul(even.a, c), g.mul(even.b, s)), g.add(g.mul(even.a, s), g.mul(even.b, c))};
   }
 
-  /// White and Nylander's triplex power (2009): r^n (sin nt cos nf, sin nt sin nf, cos nt), t from the z
+  /// The triplex power of White and Nylander (2009): r^n (sin nt cos nf, sin nt sin nf, cos nt), t from the z
   /// axis.
   Value triplex_whole(const Value& v, int n) {
     const NodeId square = v_.square_length(v).x();
     const NodeId rho_square = g.add(g.mul(v.x(), v.x()), g.mul(v.y(), v.y()));  // as in square_length3
     const Pair polar = imaginary(v.z(), square, rho_square, n);
     Value r = grown(v, square, n, polar.b);
-    if (n <= 8) {  // rho^(n-1) fits into a float: the shorter chain of dependent steps
+    if (n <= 8) {  // rho^(n-1) fits into a float: a shorter dependency chain
       const Pair around = imaginary(v.x(), rho_square, g.mul(v.y(), v.y()), n);
       const NodeId kept = g.max(rho_square, g.constant(1e-10));
       const NodeId factor =
@@ -112,8 +112,8 @@ class Powers {
     return g.add(g.mul(v.y(), v.y()), g.add(g.mul(v.z(), v.z()), g.mul(v.w(), v.w())));
   }
 
-  /// A value without parts whose slope is n |v|^(n-1) times v's. Around the axis a triplex power stretches by
-  /// n |sin nt / sin t| |v|^(n-1) = n `around`, which is more near the poles.
+  /// A value without components whose slope is n |v|^(n-1) times v's. Around the axis, a triplex power
+  /// stretches by n |sin nt / sin t| |v|^(n-1) = n `around`, which is larger near the poles.
   Value grown(const Value& v, NodeId square, int n, NodeId around = no_node) {
     Value r = v_.isometry(v);
     if (!v.varies || !v.tight) return r;

@@ -130,7 +130,7 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
     interval->fail("wanted each of \"min\" below its part of \"max\"");
 }
 
-/// What the field does to light besides stopping it; `size` is half its interval's diagonal.
+/// Reads the field's shading effects; `size` is half its interval's diagonal.
 void read_light(JsonObject& object, SdfDescription& field, double size) {
   field.occlusion = object.number("occlusion", 0, {.low = 0, .high = size});
   field.soft_shadow = object.number("soft_shadow", 0, {.low = 0, .high = 1e4});
@@ -147,8 +147,7 @@ double least_safety(const SdfNode& node) {
   return least;
 }
 
-/// What a field has besides its tree: where it is built, how closely it is followed, what it looks like.
-/// `root`: what its tree was read from.
+/// Reads the field's interval, precision and appearance. `root` is the JSON of its tree.
 void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root,
                 const std::array<double, 6>& bounds) {
   const bool is_leaf = field.root.kind == SdfNode::Kind::formula;
@@ -176,7 +175,7 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   } catch (const FormulaError& error) {
     fail_formula(root, error);
   }
-  if (!has_limit)  // shorter steps, more of them
+  if (!has_limit)  // shorter steps need more of them
     field.step_limit = static_cast<int>(std::clamp(128 / least_safety(field.root), 512.0, 8192.0));
 }
 

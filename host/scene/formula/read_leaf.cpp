@@ -34,7 +34,7 @@ std::string read_text(JsonObject& object, std::string_view key) {
 
 namespace {
 
-/// A parameter's value: a number, or an array of as many as it has components.
+/// A parameter's value: a number, or an array of its components.
 std::vector<double> read_components(const JsonValue& value, std::size_t size, const Range& range) {
   if (size == 1) return {value.number(range)};
   const auto items = value.items(fmt::format("{} numbers", size));
@@ -49,7 +49,7 @@ void require_whole(const JsonValue& value, const std::vector<double>& values) {
     if (v != std::floor(v)) value.wanted("a whole number");
 }
 
-/// Sets the parameters of a listed formula.
+/// Sets the parameters of a built-in formula.
 void read_arguments(JsonObject& object, FormulaDefinition& d) {
   const auto given = object.find("parameters");
   if (!given) return;
@@ -77,7 +77,7 @@ std::size_t component_count(const JsonValue& value) {
   return value.json().size();
 }
 
-/// A parameter that a user's formula declares: its value, or {value, min, max, whole}.
+/// A parameter declared by a user's formula: its value, or {value, min, max, whole}.
 FormulaParameter read_declaration(const std::string& name, const JsonValue& value) {
   FormulaParameter p;
   p.name = name;
@@ -114,7 +114,7 @@ FormulaDerivative read_derivative(JsonObject& object, FormulaDerivative fallback
   return object.choose("derivative", fallback, derivatives);
 }
 
-/// A formula of the user's own.
+/// Reads a user's formula.
 FormulaDefinition read_definition(JsonObject& object) {
   FormulaDefinition d;
   d.name = object.text("name", "formula");
@@ -131,7 +131,7 @@ FormulaDefinition read_definition(JsonObject& object) {
                                 : FormulaKind::folded;
   d.estimate = object.choice("estimate", "logarithmic", estimates) == "linear" ? EscapeEstimate::linear
                                                                                : EscapeEstimate::logarithmic;
-  if (d.estimate == EscapeEstimate::linear) {  // r / dr leaves out how large the set itself is
+  if (d.estimate == EscapeEstimate::linear) {  // r / dr ignores the size of the set itself
     d.bailout = 1000;
     d.inside_radius = 1e9;
     d.inside_safety = 0.5;
@@ -163,14 +163,14 @@ FormulaDefinition read_listed(JsonObject& object) {
   return d;
 }
 
-/// A map with the running derivative and no fold takes the radial one, as listed powers do: without a triplex
-/// power both are the same.
+/// Whether a map with the running derivative takes the radial one, as built-in powers do: it must not fold.
+/// Without a triplex power both are equal.
 bool suits_radial(const FormulaDefinition& d, const LoweredFormula& lowered) {
   return d.derivative == FormulaDerivative::automatic && d.kind == FormulaKind::escape &&
          d.estimate == EscapeEstimate::logarithmic && !lowered.jacobian && !lowered.folds;
 }
 
-/// The keys that say how far orbits are followed; checks the formula by lowering it.
+/// Reads iterations, bailout and safety; checks the formula by lowering it.
 FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   FormulaLeaf leaf{{}, d.bounds};
   leaf.field.iterations = object.integer("iterations", d.iterations, 1, FormulaDefinition::max_iterations);
@@ -187,8 +187,8 @@ FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   return leaf;
 }
 
-/// A sequence with a power in it escapes as the power does: by its estimate and, so that no power of what is
-/// escaping overflows, within its bailout.
+/// A sequence that contains a power escapes like the power: by its estimate and, to avoid overflow of
+/// escaping orbits, with its bailout.
 double bailout_of(std::vector<FormulaStep>& steps) {
   FormulaDefinition& last = steps.back().definition;
   double bailout = last.bailout;
@@ -236,7 +236,7 @@ FormulaLeaf read_hybrid(JsonObject& object) {
         item.fail(fmt::format("{} is no iteration and cannot be a step", d.name));
       if (!all.field.steps.empty() && d.quaternion != all.field.steps[0].definition.quaternion)
         item.fail("formulas of points and of quaternions cannot follow each other");
-      // Near its poles the radial derivative is too small; folds would bring the poles everywhere.
+      // The radial derivative is too small near its poles, which folds would copy everywhere.
       if (d.derivative == FormulaDerivative::radial && !item.json().contains("derivative"))
         d.derivative = FormulaDerivative::running;
       const int times = step.integer("times", 1, 1, 100);

@@ -10,7 +10,7 @@
 namespace sundog {
 namespace {
 
-/// The even factor of `matrix`; nothing where it mirrors or scales unevenly.
+/// The uniform scale of `matrix`; nothing if it mirrors or scales unevenly.
 std::optional<double> scale_of(const glm::dmat3& matrix) {
   const double scale = glm::length(matrix[0]);
   const glm::dmat3 square = glm::transpose(matrix) * matrix;

@@ -1,4 +1,4 @@
-// Exact solids as operands of fields: the distance field of the same shape, moved to its place.
+// Exact solids as operands of fields: their distance fields, transformed.
 #pragma once
 #include <string_view>
 
@@ -7,8 +7,8 @@
 
 namespace sundog {
 
-/// Reads the keys of a solid ("sphere", "box", ...) and its "transform", which may move, turn and scale it
-/// evenly. Throws SceneError for others, and for a solid without an inside.
+/// Reads a solid ("sphere", "box", ...) and its "transform", which may translate, rotate and scale uniformly.
+/// Throws SceneError for other transforms, and for a solid without an inside.
 SdfNode read_solid_field(JsonObject& object, std::string_view type);
 
 }  // namespace sundog

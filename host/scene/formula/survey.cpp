@@ -45,8 +45,7 @@ class Surveyor {
     constexpr std::size_t operations = 200000;
     found_.points = static_cast<int>(std::clamp<std::size_t>(operations / (evaluator_.cost() + 1), 64, 1024));
     for (int i = 0; i < found_.points; ++i) {
-      // Points of an additive sequence with the plastic number's powers (M. Roberts, 2018), which leave no
-      // gaps.
+      // An additive sequence with powers of the plastic number (M. Roberts, 2018), which leaves no gaps.
       const double n = i + 0.5;
       const dvec3 place = glm::fract(n * dvec3(0.8191725134, 0.6710436067, 0.5497004779));
       const dvec3 p = glm::mix(lower_, upper_, place);
@@ -67,7 +66,7 @@ class Surveyor {
 
   double spacing() const { return size_ / std::cbrt(static_cast<double>(found_.points)); }
 
-  /// Upwards along the axes, by steps that are halved where none leads higher.
+  /// Hill climbing along the axes; the step halves when no direction improves.
   PlacedValue climb(const std::function<double(const dvec3&)>& f, const dvec3& from, double value) {
     PlacedValue best{value, from};
     double step = 0.5 * spacing();
@@ -100,10 +99,10 @@ class Surveyor {
           climb([&](const dvec3& p) { return evaluator_.at(p).slope; }, steep[i].p, steep[i].value.slope);
       if (top.value > found_.steepest.value) found_.steepest = top;
     }
-    found_.is_bounded = found_.steepest.value < 8 * sampled;  // it grows ever on towards a pole
+    found_.is_bounded = found_.steepest.value < 8 * sampled;  // near a pole it grows without bound
   }
 
-  /// Between a point inside and one outside.
+  /// Bisects between a point inside and one outside.
   dvec3 surface_between(dvec3 inside, dvec3 outside) {
     for (int i = 0; i < 24; ++i) {
       const dvec3 middle = 0.5 * (inside + outside);
@@ -126,7 +125,7 @@ class Surveyor {
       const dvec3 from = outside[i * 7 % outside.size()].p;  // a copy: more are added below
       const dvec3 at = surface_between(inside[i % inside.size()], from);
       surface.push_back(at);
-      for (const double away : {1e-4, 1e-3, 0.01, 0.05}) {  // and close by, where marches end
+      for (const double away : {1e-4, 1e-3, 0.01, 0.05}) {  // also nearby, where marches end
         const dvec3 p = at + away * size_ * glm::normalize(from - at);
         if (glm::any(glm::lessThan(p, lower_)) || glm::any(glm::greaterThan(p, upper_))) continue;
         outside.push_back({p, evaluator_.at(p)});

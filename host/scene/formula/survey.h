@@ -1,5 +1,4 @@
-// What a formula does all over its interval: whether it gives numbers, has an inside, and is the distance
-// that sphere tracing takes it for.
+// Samples a formula over its interval: whether it is finite, has an inside, and never overestimates distance.
 #pragma once
 #include <glm/glm.hpp>
 #include <vector>
@@ -8,7 +7,7 @@
 
 namespace sundog {
 
-/// A value and the point that it was found at.
+/// A value and where it was found.
 struct PlacedValue {
   double value = 0;
   glm::dvec3 at{0};
@@ -16,18 +15,18 @@ struct PlacedValue {
 
 struct FormulaSurvey {
   int points = 0, finite = 0, inside = 0;
-  glm::dvec3 lost{0};           // a point without a finite number, where finite < points
-  PlacedValue least, greatest;  // of the estimates; searched beyond the points
-  PlacedValue steepest;         // of the slopes (FieldValue), likewise
-  bool is_bounded = true;       // the search for the steepest slope came to an end
-  /// The least ratio, 1 at most, of the way to a point of the surface and the estimate: found, so that the
-  /// estimate is too long by at least as much.
+  glm::dvec3 lost{0};           // a point without a finite value, if finite < points
+  PlacedValue least, greatest;  // estimates; searched beyond the points
+  PlacedValue steepest;         // slopes (FieldValue); searched likewise
+  bool is_bounded = true;       // the search for the steepest slope converged
+  /// The smallest ratio, at most 1, of true distance to estimate that was found; the estimate is too long by
+  /// at least its inverse.
   PlacedValue reach{1, glm::dvec3(0)};
   std::vector<DomainBreach> breaches;
 };
 
-/// The same for the same formula and interval; some ten thousand operations a point, up to a thousand points.
-/// `closely`: with the search for the steepest slope, and the reach. Throws FormulaError.
+/// Deterministic; about ten thousand operations a point, up to a thousand points. `closely`: also finds the
+/// steepest slope and the reach. Throws FormulaError.
 FormulaSurvey survey_formula(const FormulaField& field, const glm::dvec3& lower, const glm::dvec3& upper,
                              bool closely);
 

@@ -1,4 +1,4 @@
-// A recursive-descent parser for the formula language; its depth is bounded by FormulaLimits::nesting.
+// Recursive-descent parser of the formula language; FormulaLimits::nesting bounds its depth.
 #include "scene/formula/syntax.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class Parser {
   }
 
  private:
-  struct Nested {  // counts the depth of the recursion
+  struct Nested {  // counts recursion depth
     explicit Nested(Parser& parser) : parser_(parser) {
       if (++parser_.depth_ > FormulaLimits::nesting)
         fail(parser_.here(), "nested deeper than " + std::to_string(FormulaLimits::nesting) + " levels");
@@ -68,7 +68,7 @@ class Parser {
     return tokens_[at_++].text;
   }
 
-  /// "name =" or "name.x =" comes next.
+  /// Whether "name =" or "name.x =" comes next.
   bool starts_statement() const {
     const auto sign_at = [&](std::size_t i, std::string_view sign) {
       return i < tokens_.size() && tokens_[i].kind == Token::Kind::sign && tokens_[i].text == sign;
@@ -223,7 +223,7 @@ bool is_reserved_word(std::string_view word) {
   for (const std::string_view reserved : words)
     if (word == reserved) return true;
   if (word.starts_with("__") || word.starts_with("get_global") || word.starts_with("get_local")) return true;
-  // int4, float16 and the like
+  // int4, float16 and so on
   const auto digits = word.find_first_of("0123456789");
   return digits != std::string_view::npos && digits > 0 &&
          word.find_first_not_of("0123456789", digits) == std::string_view::npos &&

@@ -1,5 +1,5 @@
-// The formula language's text as a tree. Statements "name = expression", parted by ';' or line ends; # is not
-// a comment, // is.
+// Parses the formula language to a tree. Statements "name = expression" end with ';' or a newline; comments
+// start with //, not #.
 //
 //     t = abs(z)                       z, c, p: points (vec3, or quat); r = |z|; i: the iteration's number
 //     z = t ^ power + c                ^ binds closest and to the right, then unary -, * /, + -, comparisons,
@@ -26,7 +26,7 @@ struct Expression {
   std::string text;
   double value = 0;
   std::vector<Expression> operands;
-  int depth = 1;  // of the tree under it, at most FormulaLimits::tree_depth
+  int depth = 1;  // depth of this tree, at most FormulaLimits::tree_depth
 };
 
 struct Statement {
@@ -44,14 +44,14 @@ struct FormulaLimits {
 /// Throws FormulaError with line and column.
 std::vector<Statement> parse_statements(std::string_view text);
 
-/// Statements and, at the end, the expression they lead to.
+/// Statements and a final expression.
 struct FormulaBody {
   std::vector<Statement> statements;
   Expression result;
 };
 FormulaBody parse_body(std::string_view text);
 
-/// True for a word that OpenCL C or C keeps to itself, or that a formula uses for something else.
+/// Whether a word is reserved by C, OpenCL C or the formula language.
 bool is_reserved_word(std::string_view word);
 
 }  // namespace sundog

@@ -24,7 +24,7 @@ void Values::require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
 }
 
-/// A value computed from others: it varies when one of them does, and then has no tight slope until a rule
+/// A value computed from others: it varies if one of them does, and then has no tight slope until a rule
 /// gives it one.
 Value Values::result(ValueType type, std::initializer_list<const Value*> from) {
   Value r;
@@ -110,7 +110,7 @@ Value Values::add(const Value& a, const Value& b, bool subtract) {
             "a " + name_of(a.type) + " and a " + name_of(b.type) + " cannot be added");
     Value& scalar = a.type == ValueType::scalar ? left : right;
     const ValueType type = a.type == ValueType::scalar ? b.type : a.type;
-    if (type == ValueType::quat)  // a number is a quaternion's real part
+    if (type == ValueType::quat)  // a number becomes a quaternion's real part
       scalar = quaternion(scalar, number(0), number(0), number(0));
     else
       scalar = widened(scalar, type);

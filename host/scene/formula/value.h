@@ -1,4 +1,4 @@
-// The typed values of the formula language over a scalar graph, with the rules of the running derivative
+// Typed values of the formula language over a scalar graph, with the rules of the running derivative
 // (lower.h).
 #pragma once
 #include <array>
@@ -14,14 +14,13 @@ enum class ValueType { condition, scalar, vec3, quat };
 
 std::string name_of(ValueType type);
 
-/// A value and a bound `slope` on how fast it changes with p, relative to lengths. The slope means nothing
-/// unless `tight`: a value for which the rules would have to give away too much is differentiated exactly
-/// instead.
+/// A value and a bound `slope` on its rate of change with p. The bound is valid only if `tight`; otherwise it
+/// would be too loose, and exact differentiation replaces it.
 struct Value {
   ValueType type = ValueType::scalar;
   std::array<NodeId, 4> part{no_node, no_node, no_node, no_node};
   bool varies = false;     // changes with p
-  bool depends_z = false;  // by way of z
+  bool depends_z = false;  // through z
   bool tight = true;
   NodeId slope = no_node;
 
@@ -32,8 +31,8 @@ struct Value {
   NodeId w() const { return part[3]; }
 };
 
-/// An argument that a function keeps within its domain [low, high]: beyond it the formula means nothing.
-/// `condition`, when there is one, says where the argument is used at all.
+/// A function's argument that must lie in its domain [low, high]. `condition`, if any, tells whether the
+/// argument is used.
 struct DomainGuard {
   NodeId argument = no_node, condition = no_node;
   double low = 0, high = 0;
@@ -41,8 +40,7 @@ struct DomainGuard {
   int line = 0, column = 0;
 };
 
-/// Operations on values. Those that do not fit their operands' types throw std::invalid_argument with the
-/// reason.
+/// Operations on values. Throw std::invalid_argument with the reason if operand types do not fit.
 class Values {
  public:
   explicit Values(Graph& graph) : g(graph) {}
@@ -57,7 +55,7 @@ class Values {
   Value multiply(const Value& a, const Value& b);
   Value divide(const Value& a, const Value& b);
   Value negate(const Value& a);
-  /// `whole`: the exponent's value where it is known to be a whole number.
+  /// `whole`: the exponent if it is a known integer.
   Value power(const Value& base, const Value& exponent, std::optional<int> whole);
   Value compare(const std::string& sign, const Value& a, const Value& b);
   Value choose(const Value& condition, const Value& a, const Value& b);
@@ -68,22 +66,23 @@ class Values {
   Value conjugate(const Value& v);
   Value bicomplex_product(const Value& a, const Value& b);
   Value cross(const Value& a, const Value& b);
-  /// Reflected to the side of the plane n.v = d that n points to.
+  /// Reflects to the side of the plane n.v = d that n points to.
   Value fold(const Value& v, const Value& n, const Value& d);
   Value box_fold(const Value& v, const Value& limit);
   Value ball_fold(const Value& v, const Value& least, const Value& fixed);
   Value invert(const Value& v, const Value& square_radius);
   Value wrap(const Value& v, const Value& period);
   Value rotate(const Value& v, const Value& axis, const Value& angle);
-  /// op on every component, scalars widened to the other operand's type. Lengths grow by `growth` at most.
+  /// Applies op per component, widening scalars to the other operand's type. Lengths grow by at most
+  /// `growth`.
   Value each(Op op, const Value& a);
   Value each(Op op, const Value& a, const Value& b);
   Value clamped(const Value& v, const Value& low, const Value& high);
 
   Graph& g;
   std::vector<DomainGuard> guards;
-  bool radial = false;  // a triplex power's slope is the one along z alone
-  bool folds = false;   // a fold, an inversion or a repetition was met; |z| folds too
+  bool radial = false;  // triplex powers use the slope along z only
+  bool folds = false;   // a fold, inversion or repetition was used; |z| is a fold
 
  private:
   friend class Powers;

@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-/// The place behind a string's last quote, of which `at` is behind the first.
+/// The position after a string's closing quote; `at` is after the opening one.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   while (true) {
     at = text.find_first_of("\"\\", at);
@@ -19,7 +19,7 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
   }
 }
 
-/// The place behind a comment that begins at `at`, or behind the slash that is none.
+/// The position after the comment that begins at `at`, or after a lone slash.
 std::size_t end_of_comment(std::string_view text, std::size_t at) {
   const std::string_view begin = text.substr(at, 2);
   const std::string_view end = begin == "//" ? "\n" : begin == "/*" ? "*/" : "";
@@ -52,9 +52,9 @@ JsonCounts count_json(std::string_view text) {
 }
 
 std::uint64_t json_bytes(const JsonCounts& counts) {
-  constexpr std::uint64_t a_value = 24;               // 16, in vectors that grow
-  constexpr std::uint64_t a_container = 48;           // the vector or the tree, and what it is allocated with
-  constexpr std::uint64_t a_string = 40, a_key = 40;  // a short string; a node of a tree
+  constexpr std::uint64_t a_value = 24;               // 16, in growing vectors
+  constexpr std::uint64_t a_container = 48;           // the vector or tree, and its allocation
+  constexpr std::uint64_t a_string = 40, a_key = 40;  // a short string; a tree node
   return a_value * counts.values + a_container * counts.containers + a_string * counts.strings +
          a_key * counts.keys;
 }

@@ -1,4 +1,4 @@
-// What a JSON text takes as values, told from the text: a short one can take forty times its length.
+// Estimates the memory that a JSON text needs when parsed: up to forty times its length.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -6,20 +6,20 @@
 
 namespace sundog {
 
-/// How many of each a text has.
+/// Number of values in a text, by type.
 struct JsonCounts {
   std::uint64_t containers = 0;  // arrays and objects
   std::uint64_t keys = 0;
-  std::uint64_t strings = 0;  // keys among them
-  std::uint64_t values = 0;   // as many as there are at most
+  std::uint64_t strings = 0;  // including keys
+  std::uint64_t values = 0;   // upper bound
 };
 JsonCounts count_json(std::string_view text);
 
-/// The bytes that these values take in memory, about.
+/// Approximate memory of these values in bytes.
 std::uint64_t json_bytes(const JsonCounts& counts);
 
-/// Throws SceneError, before anything is built, for a text whose values take more memory than any scene or
-/// model of its length has use for, or than there is.
+/// Throws SceneError, before parsing, for a text whose values need more memory than is plausible for its
+/// length or than is available.
 void check_json_memory(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace sundog

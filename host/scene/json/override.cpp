@@ -55,7 +55,7 @@ json parse_value(std::string_view text, const fs::path& file) {
   }
 }
 
-/// One step along a pointer: the child of `parent`, added if it may be.
+/// One step along a pointer: the child of `parent`, created if allowed.
 class Step {
  public:
   Step(const std::vector<std::string>& tokens, std::string_view setting, const fs::path& file)
@@ -89,8 +89,7 @@ class Step {
     return &array[*index];
   }
 
-  /// Adds an object, unless the next step is into an array or this one names a thing that would have to be
-  /// there.
+  /// Adds an object, unless the next token indexes an array or this one names a thing that must exist.
   void may_add(json& parent, std::size_t depth) const {
     const std::string& token = tokens_[depth];
     const bool named = depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" ||

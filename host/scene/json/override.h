@@ -1,4 +1,4 @@
-// Overrides: "/camera/fov=30" changes one value of a JSON document.
+// Command-line overrides: "/camera/fov=30" changes one value of a JSON document.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>

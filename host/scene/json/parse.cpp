@@ -1,4 +1,4 @@
-// A SAX handler that builds the document and knows at every moment where in it the text stands.
+// A SAX handler that builds the document and tracks the current JSON pointer.
 #include "scene/json/parse.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-/// The library's message without its own tag and place: "[json.exception...] parse error at line 1, column 2:
+/// The library's message without its tag and position: "[json.exception...] parse error at line 1, column 2:
 /// what".
 std::string bare_message(std::string message) {
   if (const auto tag = message.find("] "); message.starts_with('[') && tag != std::string::npos)
@@ -39,7 +39,7 @@ std::string bare_message(std::string message) {
   return message;
 }
 
-/// Bytes of a well-formed UTF-8 sequence at `at`, 0 if it is ill-formed (RFC 3629: no surrogates, no overlong
+/// Length of a well-formed UTF-8 sequence at `at`; 0 if ill-formed (RFC 3629: no surrogates, no overlong
 /// forms).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
@@ -111,7 +111,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   }
 
  private:
-  /// The place of the value that comes next.
+  /// The pointer of the next value.
   std::string pointer() const {
     std::string result;
     for (std::size_t i = 0; i + 1 < open_.size(); ++i) result = join_pointer(result, tokens_[i + 1]);
@@ -159,10 +159,10 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   std::string_view text_;
   const fs::path& file_;
   json root_;
-  std::vector<json*> open_;          // the containers around the place, outermost first
+  std::vector<json*> open_;          // open containers, outermost first
   std::vector<std::string> tokens_;  // tokens_[i] leads from open_[i - 1] to open_[i]
   std::string key_;                  // the latest key of the innermost object
-  json* member_ = nullptr;           // its value
+  json* member_ = nullptr;           // the value of key_
 };
 
 }  // namespace

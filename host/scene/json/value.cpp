@@ -1,4 +1,4 @@
-// The strict reader: see value.h.
+// The strict reader; see value.h.
 #include "scene/json/value.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ std::string describe(const json& value) {
       const auto& text = value.get_ref<const std::string&>();
       if (text.empty()) return "an empty string";
       std::size_t length = std::min<std::size_t>(text.size(), 60);
-      // Not in the middle of a UTF-8 sequence.
+      // Do not split a UTF-8 sequence.
       while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
       return fmt::format("the string {}{}", json(text.substr(0, length)).dump(),
                          length < text.size() ? "..." : "");
@@ -247,7 +247,7 @@ std::string JsonObject::one_of(Names keys) {
   for (const std::string_view key : keys)
     if (has(key)) found.push_back(key);
   if (found.size() == 1) return std::string(found.front());
-  for (const auto& [name, value] : value_.json().items())  // a misspelt key says more than a missing one
+  for (const auto& [name, value] : value_.json().items())  // a misspelt key explains a missing one
     if (const auto near = nearest_name(name, {keys.begin(), keys.end()}); found.empty() && near)
       value_.child(name, value)
           .fail(fmt::format("unknown key {}: did you mean \"{}\"?", json(name).dump(), *near));

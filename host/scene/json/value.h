@@ -1,5 +1,5 @@
-// Reading JSON strictly: a JsonValue is a value with its place (file and JSON pointer), so that every error
-// names both; a JsonObject remembers the keys it was asked for, and refuses all others when it has been read.
+// Strict JSON reading: a JsonValue knows its place (file and JSON pointer) for error messages; a JsonObject
+// records the keys it was asked for and rejects all others at the end.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace sundog {
 
-/// The numbers a place accepts. The outermost limits keep every square finite as a float.
+/// Allowed numbers. The default limits keep every square finite as a float.
 struct Range {
   double low = -1e18, high = 1e18;
   bool low_open = false, high_open = false;
@@ -42,13 +42,13 @@ struct JsonContext {
   bool outside_files = false;  // a scene may name files outside its folder
 };
 
-/// Keys or choices; pass a static array of them.
+/// Allowed keys or choices, in a static array.
 using Names = std::span<const std::string_view>;
 
 class JsonItems;
 class JsonObject;
 
-/// A JSON value and where it stands. Refers to the document and the context, which must outlive it.
+/// A JSON value and its place. The document and the context must outlive it.
 class JsonValue {
  public:
   JsonValue(const nlohmann::json& json, const JsonContext& context, std::string pointer = "")
@@ -60,7 +60,7 @@ class JsonValue {
 
   /// Throws SceneError at this place.
   [[noreturn]] void fail(std::string_view reason) const;
-  /// Warns of this place, in one line like an error's.
+  /// Adds a one-line warning with this place.
   void warn(std::string_view reason) const;
   /// Throws "wanted `what`, found <this value, shortened>".
   [[noreturn]] void wanted(std::string_view what) const;
@@ -68,33 +68,32 @@ class JsonValue {
   double number(const Range& range = any_number) const;
   int integer(int low, int high) const;
   bool boolean() const;
-  /// A string that is not empty.
+  /// A non-empty string.
   std::string text() const;
-  /// Which of `names` the string is.
+  /// The string, which must be one of `names`.
   std::string choice(std::span<const std::string_view> names) const;
-  /// The value of the row that the string names.
+  /// The value of the table row that the string names.
   template <class Row, std::size_t N>
   auto choose(const std::array<Row, N>& table) const {
     return std::ranges::find(table, choice(names_of(table)), &Row::name)->value;
   }
   glm::dvec3 vec3(const Range& each = any_number) const;
-  /// [x, y, z] that is not all zero; returned with length 1.
+  /// A nonzero [x, y, z], normalised.
   glm::dvec3 direction() const;
   /// Linear [r, g, b], each from 0.
   glm::dvec3 color(const Range& each = color_range) const;
 
-  /// The items of an array; `what` completes "wanted an array of ...".
+  /// Items of an array; `what` completes "wanted an array of ...".
   JsonItems items(std::string_view what) const;
-  /// The members of an object whose keys are free names.
+  /// Members of an object with arbitrary keys.
   std::vector<std::pair<std::string, JsonValue>> members(std::string_view what) const;
-  /// One member of an object, by a key that must be there (but not recorded as asked for): to find out its
-  /// type first.
+  /// A required member, not recorded as asked for; used to look at an object's type before reading it.
   JsonValue member(std::string_view key, std::string_view what) const;
-  /// The same where `names` are wanted.
+  /// Likewise; the error lists `names`.
   JsonValue member(std::string_view key, Names names) const;
 
-  /// Hands this value, which must be an object, to `read(JsonObject&)`, and then refuses keys it did not ask
-  /// for. `kind` is the object's name in the JSON Schema's $defs.
+  /// Passes this value, which must be an object, to `read(JsonObject&)`, then rejects unread keys. `kind` is
+  /// the object's name in the JSON Schema's $defs.
   template <class Read>
   auto object(std::string_view kind, Read read) const;
 
@@ -108,8 +107,8 @@ class JsonValue {
   std::string pointer_;
 };
 
-/// The items of an array. Each is made when it is asked for: the first bad one of millions is found without
-/// memory for the others.
+/// Items of an array, created on access, so that the first bad one of millions is found without memory for
+/// the others.
 class JsonItems {
  public:
   explicit JsonItems(JsonValue array) : array_(std::move(array)) {}
@@ -139,14 +138,14 @@ class JsonItems {
   JsonValue array_;
 };
 
-/// A JSON object of which every key must be asked for. Made by JsonValue::object().
+/// A JSON object whose keys must all be read. Created by JsonValue::object().
 class JsonObject {
  public:
   const JsonValue& value() const { return value_; }
 
-  /// The value of a key that may be missing.
+  /// An optional key's value.
   std::optional<JsonValue> find(std::string_view key);
-  /// The value of a key that must be there; `what` completes "missing key: wanted ...".
+  /// A required key's value; `what` completes "missing key: wanted ...".
   JsonValue at(std::string_view key, std::string_view what);
   bool has(std::string_view key) { return find(key).has_value(); }
 
@@ -164,9 +163,9 @@ class JsonObject {
   glm::dvec3 vec3(std::string_view key, const glm::dvec3& fallback, const Range& each = any_number);
   glm::dvec3 color(std::string_view key, const glm::dvec3& fallback, const Range& each = color_range);
 
-  /// Exactly one of `keys` must be there; says which.
+  /// Returns which of `keys` is present; exactly one must be.
   std::string one_of(std::span<const std::string_view> keys);
-  /// Refuses `second` beside `first`.
+  /// Rejects `second` if `first` is present.
   void not_both(std::string_view first, std::string_view second);
 
  private:
@@ -177,13 +176,13 @@ class JsonObject {
 
   JsonValue value_;
   std::string kind_;
-  std::vector<std::string> asked_;  // as often as they were asked for
+  std::vector<std::string> asked_;  // may repeat
 };
 
 /// "a, b or c", each in quotes.
 std::string list_names(Names names, std::string_view conjunction = "or");
 
-/// `pointer` with one more reference token, escaped by RFC 6901.
+/// Appends a reference token to `pointer`, escaped by RFC 6901.
 std::string join_pointer(std::string_view pointer, std::string_view key);
 
 template <class Read>

@@ -1,4 +1,4 @@
-// Materials that integrators which follow paths have otherwise than the others.
+// Materials that differ between path tracing and the classical integrator.
 #pragma once
 #include <memory>
 
@@ -7,14 +7,14 @@
 
 namespace sundog {
 
-/// A material of the scene as its integrator has it.
+/// The variant of a material for the scene's integrator.
 inline const MaterialDescription& surface_for(const SceneDescription& scene,
                                               const MaterialDescription& material) {
   const bool other = material.by_paths && traces_paths(scene.render.integrator);
   return other ? *material.by_paths : material;
 }
 
-/// Calls change(material) for a material as every integrator has it.
+/// Calls change(material) for every variant of a material.
 template <class Change>
 void change_all(MaterialDescription& material, const Change& change) {
   change(material);

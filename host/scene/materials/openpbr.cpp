@@ -43,7 +43,7 @@ bool set_openpbr(const OpenPbr& values, MaterialDescription& material, MediumDes
         -glm::log(glm::max(values.transmission_color, dvec3(1e-6))) / values.transmission_depth + 0.0;
     inside.scattering = values.transmission_scatter / values.transmission_depth;
     inside.anisotropy = values.transmission_scatter_anisotropy;
-    // More may be scattered of a colour than is lost in all: then all colours lose as much more.
+    // If more of a colour is scattered than lost in total, all colours lose the excess.
     const dvec3 rest = lost - inside.scattering;
     inside.absorption = rest - std::min({rest.x, rest.y, rest.z, 0.0});
   }

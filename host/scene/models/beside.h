@@ -1,4 +1,4 @@
-// Files that a model names, as far as its own folder has them.
+// Finds files that a model names, usually inside its own folder.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,14 +9,13 @@
 
 namespace sundog::models {
 
-/// The file that `model` means by `name`, from `folder` on: by the name as it stands, else with the slashes
-/// of Windows turned, else by what stands after the last slash, because programs write down where the file
-/// was on the machine of its author. Quotes around a name are no part of it, nor is a comment behind it,
-/// where no file is called so. Leaves the model's folder only where that is allowed.
+/// Finds the file that `model` names, relative to `folder`: by the name as written, else with backslashes as
+/// slashes, else by its last component, because programs write paths of their author's machine. Strips
+/// quotes, and a trailing comment if no such file exists. Leaves the model's folder only if allowed.
 std::optional<std::filesystem::path> find_beside(const Source& model, const std::filesystem::path& folder,
                                                  std::string_view name);
 
-/// Why there is no such file, for a warning.
+/// The reason why the file was not found, for a warning.
 std::string why_not_beside(const Source& model, const std::filesystem::path& folder, std::string_view name);
 
 }  // namespace sundog::models

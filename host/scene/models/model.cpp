@@ -1,4 +1,4 @@
-// load_model(): one reader for each format.
+// load_model(): selects one reader per format.
 #include "scene/model.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ void add_mesh(Model& model, Mesh mesh, const dvec3& origin) {
 }
 
 void leave_unread(Model& model, const std::string& feature) {
-  constexpr std::size_t most = 100;  // names of unknown extensions are the file's
+  constexpr std::size_t most = 100;  // a file may use any number of unknown extensions
   const bool known = std::ranges::count(model.unread, feature) > 0;
   if (!known && model.unread.size() < most) model.unread.push_back(feature);
 }
@@ -62,7 +62,7 @@ Model load(const models::Source& source, const std::string& extension, const Mod
   return models::load_gltf(source, options);
 }
 
-/// Beyond it a camera that sees the model cannot be written down, nor squares be computed.
+/// Beyond this, the camera's position cannot be written, and squares overflow.
 constexpr double farthest = 1e17;
 
 void check_extent(const models::Source& source, const Model& model) {

@@ -1,5 +1,5 @@
-// MTL material libraries (Wavefront, "MTL material format", 1995). Colours are taken as they stand, as linear
-// ones. In: a library's text. Out: phong materials, dielectrics and their media.
+// Reads MTL material libraries (Wavefront, "MTL material format", 1995). Colours are taken as linear. In: a
+// library's text. Out: phong materials, dielectrics and their media.
 #include "scene/models/mtl.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ struct MtlStatements {
 
 namespace {
 
-// "Kd r g b", or "Kd r" for grey. Spectral files and CIE XYZ are left at the default.
+// "Kd r g b", or "Kd r" for grey. Spectral files and CIE XYZ keep the default.
 std::optional<dvec3> read_color(TextReader& text) {
   TextReader peek = text;
   const std::string_view form = peek.word();
@@ -42,7 +42,7 @@ std::optional<dvec3> read_color(TextReader& text) {
   return glm::max(dvec3(red, green, blue), dvec3(0));
 }
 
-/// Statements that would change the picture.
+/// Statements that affect the picture.
 constexpr std::string_view read_maps[] = {"map_kd", "map_ka", "map_ks", "map_ke",   "map_d", "map_bump",
                                           "bump",   "norm",   "map_kn", "map_disp", "disp",  "map_ns"};
 constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_tr", "alpha of textures"},
@@ -58,7 +58,7 @@ constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_
                                                                           {"pc", "clearcoat"},
                                                                           {"aniso", "anisotropy"}};
 
-/// Numbers of 0 say that the feature is not used.
+/// Zeros mean that the feature is unused.
 void note_unread(TextReader text, std::string_view key, MtlStatements& m) {
   const auto all_zero = [&] {
     while (!text.at_line_end())
@@ -76,7 +76,7 @@ double read_opacity(TextReader& text) {
   return std::clamp(text.number("d"), 0.0, 1.0);
 }
 
-/// `key` is in lower case: programs differ in how they write it.
+/// `key` is in lower case, since programs differ.
 void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
   if (key == "ka") m.ambient = read_color(text);
   if (key == "kd") m.diffuse = read_color(text);
@@ -93,11 +93,11 @@ void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
-/// Some programs write under Tr what belongs under d, which is the format's own.
+/// Some programs write Tr for d, the format's own keyword.
 double opacity_of(const MtlStatements& m) { return m.opacity.value_or(1 - m.transparency.value_or(0)); }
 
-/// Displacement: with -bm true displacement by so many of the model's units, else heights for the shading, as
-/// of a bump map: files rarely say how high they are.
+/// With -bm, true displacement by that many model units; otherwise a bump map, because files rarely give a
+/// height.
 void add_displacement(const MtlStatements& m, const Source& obj, MtlTextures& textures,
                       MaterialDescription& out) {
   for (const char* key : {"map_disp", "disp"})
@@ -118,8 +118,8 @@ void add_displacement(const MtlStatements& m, const Source& obj, MtlTextures& te
     }
 }
 
-/// Heights and normals. The format gives heights no unit: here a height of 1 is a hundredth of a unit of u
-/// and v, times -bm.
+/// Bump and normal maps. The format gives heights no unit: a height of 1 is a hundredth of a unit of u and v,
+/// times -bm.
 void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures,
                      MaterialDescription& out) {
   for (const char* key : {"norm", "map_kn"})
@@ -135,7 +135,7 @@ void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& tex
     }
 }
 
-/// The textures of a material; what has one and no colour of its own is white.
+/// The textures of a material; a term with a texture and no colour is white.
 void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, MaterialDescription& out) {
   const auto use = [&](const char* key) {
     const auto found = m.maps.find(key);
@@ -162,7 +162,7 @@ void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, 
   to.opacity = textures.use(map, of_color, obj, m.library);
 }
 
-// Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 have Fresnel's equations.
+// Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 use Fresnel's equations.
 MaterialDescription make_material(const MtlStatements& m, Model& model) {
   const int illum = m.illumination;
   const double opacity = opacity_of(m);
@@ -196,7 +196,7 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
   return out;
 }
 
-// An mtllib line holds one name with blanks, or several names: those end in ".mtl".
+// An mtllib line holds one name, perhaps with blanks, or several names that end in ".mtl".
 std::vector<std::string> split_names(std::string_view names) {
   std::vector<std::string> parts;
   while (!names.empty()) {
@@ -224,7 +224,7 @@ void MaterialLibrary::load(const Source& obj, const TextReader& line, std::strin
                                             line.line(), why_not_beside(obj, folder, name)));
 }
 
-// The first material of a name counts.
+// The first definition of a name counts.
 void MaterialLibrary::read(const fs::path& path) {
   const Source source = read_source(path);
   TextReader text(source, {});
@@ -249,7 +249,7 @@ void MaterialLibrary::read(const fs::path& path) {
   }
 }
 
-// One warning for all of them: without its library a file has none of its materials.
+// One warning for all: without its library, a file lacks all materials.
 void MaterialLibrary::warn_undefined(std::string_view name) {
   constexpr std::size_t shown = 5;
   if (++undefined_ == 1) {

@@ -1,4 +1,4 @@
-// MTL material libraries.
+// Reads MTL material libraries.
 #pragma once
 #include <map>
 #include <string>
@@ -10,21 +10,21 @@
 
 namespace sundog::models {
 
-/// A material as a library states it (mtl.cpp).
+/// A material's statements in a library (mtl.cpp).
 struct MtlStatements;
 
-/// The materials that an OBJ file has at hand, by name.
+/// The materials available to an OBJ file, by name.
 class MaterialLibrary {
  public:
   explicit MaterialLibrary(Model& model);
   ~MaterialLibrary();
 
-  /// Reads the files that an mtllib statement names, beside `obj`. One that is missing, or that leaves the
-  /// folder of `obj` where that may not be, leaves a warning. Throws SceneError with the MTL file's line.
+  /// Reads the files that an mtllib statement names, beside `obj`. Warns of files that are missing or outside
+  /// the folder of `obj` without permission. Throws SceneError with the MTL file's line.
   void load(const Source& obj, const TextReader& line, std::string_view names);
 
-  /// The index of the material, which the model has from its first use on; for an unknown name -1, and one
-  /// warning that names all of these.
+  /// The material's index, added to the model at its first use; -1 for an unknown name, and one warning for
+  /// all of these.
   int find(const Source& obj, std::string_view name);
 
  private:
@@ -36,8 +36,8 @@ class MaterialLibrary {
   MtlTextures textures_;
   std::map<std::string, MtlStatements, std::less<>> stated_;
   std::map<std::string, int, std::less<>> index_;
-  std::size_t undefined_ = 0, warning_ = 0;  // how many materials; the warning's place among the model's
-  std::string names_;                        // of the first ones
+  std::size_t undefined_ = 0, warning_ = 0;  // undefined materials; index of the warning about them
+  std::string names_;                        // the first few
 };
 
 }  // namespace sundog::models

@@ -18,7 +18,7 @@ bool is_number(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-/// One to three numbers; those that are missing stay as they are.
+/// One to three numbers; missing ones keep their values.
 void read_numbers(TextReader& text, glm::dvec3& values) {
   for (int i = 0; i < 3; ++i) {
     TextReader ahead = text;
@@ -33,7 +33,7 @@ int channel_of(std::string_view name) {
   return at == names.npos ? -1 : static_cast<int>(at);
 }
 
-/// One option, its word is taken already.
+/// Reads an option's values; its keyword has been consumed.
 void read_option(TextReader& text, std::string_view option, MtlMap& map) {
   glm::dvec3 values(option == "-s" ? 1 : 0);
   if (option == "-o" || option == "-s" || option == "-t") {

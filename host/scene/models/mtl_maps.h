@@ -1,4 +1,4 @@
-// The texture statements of MTL libraries (map_Kd and its like) with their options.
+// Reads the texture statements of MTL libraries (map_Kd and others) with their options.
 #pragma once
 #include <map>
 #include <optional>
@@ -10,19 +10,19 @@
 
 namespace sundog::models {
 
-/// What follows a map's keyword.
+/// A map statement.
 struct MtlMap {
   std::string file;
-  glm::dvec2 offset{0}, scale{1};  // -o, -s: texture coordinates times scale plus offset
+  glm::dvec2 offset{0}, scale{1};  // -o, -s: texture coordinates * scale + offset
   bool clamp = false;              // -clamp
   double bump = 1;                 // -bm
-  bool has_bump = false;           // it is there
+  bool has_bump = false;           // -bm is present
   int channel = -1;                // -imfchan
   std::size_t line = 0;
 };
 
-/// Reads options and the file's name, which may hold blanks; nothing without one. Throws SceneError with the
-/// line.
+/// Reads options and the file's name, which may contain blanks; nothing without a name. Throws SceneError
+/// with the line.
 std::optional<MtlMap> read_mtl_map(TextReader& text);
 
 /// The textures of one model's libraries.
@@ -30,8 +30,8 @@ class MtlTextures {
  public:
   explicit MtlTextures(Model& model) : model_(model) {}
 
-  /// Adds a texture whose file lies beside `library`; -1, and a warning, where the file is missing or leaves
-  /// the folder of `obj` where that may not be.
+  /// Adds a texture whose file lies beside `library`; -1, with a warning, if the file is missing or, if not
+  /// allowed, outside the folder of `obj`.
   int use(const MtlMap& map, bool srgb, const Source& obj, const std::filesystem::path& library);
 
  private:

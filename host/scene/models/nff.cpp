@@ -1,7 +1,7 @@
-// NFF, the Standard Procedural Databases' format (E. Haines, "Neutral File Format", version 3.9, 1996).
+// Reads NFF, the Standard Procedural Databases' format (E. Haines, "Neutral File Format", version 3.9, 1996).
 // Spheres, cones and cylinders stay exact solids (cones and cylinders open, as the format says); the polygons
-// and patches of one fill are one mesh. Negative radii, for surfaces seen from inside alone, count as their
-// amount: surfaces have two sides here.
+// and patches of a fill form one mesh. Negative radii, for surfaces visible from inside only, lose their
+// sign, since surfaces have two sides here.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -104,8 +104,8 @@ class NffReader {
     model_.lights.push_back(light);
   }
 
-  // f red green blue Kd Ks Shine T ior. Ks is the highlight's and the mirror's coefficient, as Whitted's
-  // formula has it.
+  // f red green blue Kd Ks Shine T ior. Ks is the coefficient of the highlight and the mirror, as in
+  // Whitted's formula.
   void read_fill() {
     finish_fill();
     MaterialDescription fill;
@@ -170,7 +170,7 @@ class NffReader {
     }
   }
 
-  // The frame whose y axis runs from `base` to `apex`, with its origin halfway.
+  // The frame whose y axis points from `base` to `apex`, with its origin halfway.
   static dmat4 along(dvec3 base, dvec3 apex) {
     const dvec3 y = glm::normalize(apex - base);
     const dvec3 x = glm::normalize(glm::cross(y, std::abs(y.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 0, 1)));
@@ -195,7 +195,7 @@ class NffReader {
     for (const glm::uvec3 t : pieces_) mesh_.triangles.push_back(t + first);
   }
 
-  // A fill's polygons end with the next fill.
+  // A fill's polygons end at the next fill.
   void finish_fill() {
     if (mesh_.triangles.empty()) return;
     const int material = fill();
@@ -208,7 +208,7 @@ class NffReader {
     has_normal_.clear();
   }
 
-  // SPD's formula for a relative intensity, for each light and for the ambient component.
+  // SPD's relative intensity, for each light and the ambient one.
   void finish_lights() {
     const auto count = static_cast<double>(model_.lights.size());
     if (model_.lights.empty()) return;
@@ -219,9 +219,9 @@ class NffReader {
   }
 
   TextReader text_;
-  std::string entity_;  // the place of the entity at hand
+  std::string entity_;  // the current entity's place
   Model model_;
-  Mesh mesh_;  // of the fill at hand
+  Mesh mesh_;  // of the current fill
   std::vector<bool> has_normal_;
   std::vector<glm::uvec3> pieces_;
 };

@@ -1,5 +1,5 @@
-// Angle-weighted vertex normals (Thürmer and Wüthrich 1998) with creases.
-// In: triangles, perhaps some normals. Out: parallel normals, vertices split along creases.
+// Angle-weighted vertex normals (Thürmer and Wüthrich 1998) with creases. In: triangles, perhaps some
+// normals. Out: normals, with vertices split along creases; computed in parallel.
 #include "scene/models/normals.h"
 
 #include <tbb/blocked_range.h>
@@ -22,8 +22,7 @@ namespace {
 
 using std::uint32_t;
 
-// More faces than this at one edge are no surface: all its edges are creases (and comparing all pairs would
-// be slow).
+// An edge with more faces than this is treated as a crease (comparing all pairs would be slow).
 constexpr std::size_t most_faces_at_edge = 16;
 constexpr std::size_t most_triangles = std::size_t{1} << 30;  // corners are counted in 32 bits
 const glm::vec3 any_direction{0, 1, 0};
@@ -46,7 +45,7 @@ void in_parallel(std::size_t count, const Body& body) {
   });
 }
 
-/// Unit, or 0 for a face without area.
+/// Unit length, or 0 for a degenerate face.
 std::vector<glm::vec3> face_normals(const Mesh& mesh) {
   std::vector<glm::vec3> normals(mesh.triangles.size());
   in_parallel(normals.size(), [&](std::size_t i) {
@@ -57,7 +56,7 @@ std::vector<glm::vec3> face_normals(const Mesh& mesh) {
   return normals;
 }
 
-/// The corners that want a normal, gathered by point, in their order: corners[first[p] .. first[p + 1]).
+/// The corners that need a normal, grouped by point, in order: corners[first[p] .. first[p + 1]).
 struct CornersByPoint {
   std::vector<uint32_t> first, corners;
 
@@ -67,12 +66,12 @@ struct CornersByPoint {
   }
 };
 
-/// What all points share, while their normals are made.
+/// Inputs shared by all points.
 struct Surroundings {
   const Mesh& mesh;
-  const std::vector<uint32_t>& points;  // of vertices; empty: each is a point
+  const std::vector<uint32_t>& points;  // of vertices; empty: each vertex is a point
   const std::vector<uint32_t>& groups;  // of faces; empty: the crease decides
-  double cosine;                        // of the crease
+  double cosine;                        // of the crease angle
   std::vector<glm::vec3> face_normals;
 
   uint32_t point(uint32_t vertex) const { return points.empty() ? vertex : points[vertex]; }
@@ -92,19 +91,19 @@ struct Surroundings {
   }
 };
 
-/// A vertex of the result. The first fan of a vertex keeps it; each further one gets a copy.
+/// A vertex of the result. A vertex's first fan keeps it; each further one gets a copy.
 struct FanVertex {
   uint32_t vertex;
   bool copied;
   glm::vec3 normal;
 };
 
-/// The corners around one point, joined into smooth fans.
+/// The corners around one point, grouped into smooth fans.
 class PointFans {
  public:
   explicit PointFans(const Surroundings& shared) : shared_(shared) {}
 
-  /// Appends the vertices around a point to `vertices`, and says for each corner which of them it gets.
+  /// Appends the vertices around a point to `vertices`, and sets the one of each corner.
   void add(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices, uint32_t* vertex_of) {
     join_across_edges(corners);
     sum_fans(corners);
@@ -113,7 +112,7 @@ class PointFans {
 
  private:
   struct Spoke {
-    uint32_t to, corner;  // the edge's other point; a number in `corners`
+    uint32_t to, corner;  // the edge's other point; an index into `corners`
   };
 
   uint32_t root(uint32_t i) {
@@ -127,7 +126,7 @@ class PointFans {
     fan_[std::max(first, second)] = std::min(first, second);
   }
 
-  // The same for few corners, whose pairs are sooner compared than sorted.
+  // join_across_edges() for few corners, where comparing pairs beats sorting.
   void join_pairs(std::span<const uint32_t> corners) {
     std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends;
     for (uint32_t i = 0; i < corners.size(); ++i) {
@@ -170,7 +169,7 @@ class PointFans {
         sums_[root(i)] += shared_.angle(corners[i]) * dvec3(shared_.face_normals[corners[i] / 3]);
   }
 
-  // Of one vertex, as nearly everywhere.
+  // The common case: one vertex and one fan.
   bool is_one_fan(std::span<const uint32_t> corners) {
     for (uint32_t i = 0; i < corners.size(); ++i)
       if (corner_vertex(shared_.mesh, corners[i]) != corner_vertex(shared_.mesh, corners[0]) ||
@@ -179,8 +178,8 @@ class PointFans {
     return !corners.empty();
   }
 
-  // Each (vertex, fan) is one vertex of the result. Faces without area, sorted last, take what the fan before
-  // them got.
+  // Each (vertex, fan) becomes a vertex of the result. Degenerate faces, sorted last, join the fan before
+  // them.
   void claim_vertices(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices,
                       uint32_t* vertex_of) {
     if (is_one_fan(corners)) {
@@ -210,12 +209,12 @@ class PointFans {
 
   static constexpr uint32_t no_fan = std::numeric_limits<uint32_t>::max();
   struct Claim {
-    uint32_t vertex, fan, corner;  // a number in `corners`
+    uint32_t vertex, fan, corner;  // an index into `corners`
     auto operator<=>(const Claim&) const = default;
   };
 
   const Surroundings& shared_;
-  std::vector<uint32_t> fan_;  // union-find over the corners at hand
+  std::vector<uint32_t> fan_;  // union-find over the current corners
   std::vector<Spoke> spokes_;
   std::vector<dvec3> sums_;
   std::vector<Claim> claims_;
@@ -237,7 +236,7 @@ CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
   });
   std::exclusive_scan(first.begin(), first.end(), first.begin(), 0u);
   by_point.corners.resize(first.back());
-  // Each point's place moves to its end, which is where the next one begins.
+  // Each start advances to its end, which is the next start.
   in_parallel(corner_count, [&](std::size_t c) {
     of_wanting(c, [&](uint32_t point) {
       by_point.corners[std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed)] =
@@ -252,7 +251,7 @@ CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
   return by_point;
 }
 
-/// The points [first, last), whose corners are in a row.
+/// The points [first, last), whose corners are contiguous.
 struct Block {
   std::size_t first, last;
   std::vector<FanVertex> vertices;
@@ -286,7 +285,7 @@ void append_copies(Mesh& mesh, const std::vector<Block>& blocks) {
   again(mesh.alphas);
 }
 
-/// Gives a block's vertices their places, normals and corners; copies stand from `next_copy` on.
+/// Stores a block's vertices, normals and corners; copies start at `next_copy`.
 void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, const Block& block,
                  const CornersByPoint& around, const std::vector<uint32_t>& vertex_of,
                  std::size_t next_copy) {
@@ -304,7 +303,7 @@ void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, 
 
 void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degrees,
                   const std::vector<uint32_t>& points, const std::vector<uint32_t>& groups) {
-  std::vector<uint32_t> vertex_of(around.corners.size());  // for each of these its vertex of the block
+  std::vector<uint32_t> vertex_of(around.corners.size());  // for each corner, its vertex in the block
   std::vector<Block> blocks = make_blocks(around.points());
   {
     const Surroundings shared{mesh, points, groups, std::cos(crease_degrees * std::numbers::pi / 180),
@@ -347,7 +346,7 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
     return;
   }
   for (std::size_t i = 0; i < has_normal.size(); ++i)
-    if (!has_normal[i]) mesh.normals[i] = any_direction;  // a vertex of no triangle keeps it
+    if (!has_normal[i]) mesh.normals[i] = any_direction;  // for vertices without a triangle
   give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex, groups);
 }
 

@@ -1,5 +1,5 @@
-// Wavefront OBJ: polygons with texture coordinates, normals, vertex colours and MTL materials, as one mesh.
-// Lines, points, curves and surfaces are left aside; so are objects and groups, which are names alone.
+// Reads Wavefront OBJ: polygons with texture coordinates, normals, vertex colours and MTL materials, as one
+// mesh. Ignores lines, points, curves and surfaces, and names of objects and groups.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Corner {
   bool operator==(const Corner&) const = default;
 };
 
-/// Statements that would change the picture.
+/// Statements that affect the picture.
 constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"l", "lines"},
                                                                           {"p", "points"},
                                                                           {"curv", "curves"},
@@ -54,7 +54,7 @@ class ObjReader {
     settle_lost_normals();
   }
 
-  // The mesh, its positions counted from origin().
+  // The mesh, with positions relative to origin().
   Mesh take_mesh(std::optional<double> crease_degrees) {
     origin_ = near_origin(positions_);
     if (origin_ != dvec3(0))
@@ -99,7 +99,7 @@ class ObjReader {
     }
   }
 
-  // Edges between faces of one smoothing group are smooth, those of group 0 ("off") and between groups sharp.
+  // Edges within a smoothing group are smooth; those of group 0 ("off") and between groups are sharp.
   void read_group() {
     any_group_ = true;
     const std::string group = text_.keyword();
@@ -107,7 +107,7 @@ class ObjReader {
     std::from_chars(group.data(), group.data() + group.size(), group_);
   }
 
-  // "v x y z", "v x y z w", or "v x y z r g b". What is no number is an error where a face uses it.
+  // "v x y z", "v x y z w", or "v x y z r g b". NaN is an error if a face uses it.
   void read_position() {
     dvec3 position;
     for (int axis = 0; axis < 3; ++axis) position[axis] = text_.bounded_or_nan(axis_names[axis]);
@@ -131,7 +131,7 @@ class ObjReader {
     newest_.push_back(none);
   }
 
-  // Indices of normals before the file has defined any.
+  // References to normals that the file has not defined.
   struct Lost {
     std::size_t count = 0;
     std::string place, what;  // of the first
@@ -143,7 +143,7 @@ class ObjReader {
           fmt::format("{}: {} that are no numbers are {} ({} in all)", lost.place, what, mend, lost.count));
   }
 
-  // Some programs number normals that they do not write.
+  // Some programs reference normals that they do not write.
   void settle_lost_normals() {
     warn_of_no_numbers("normals", "made up", normals_of_no_number_);
     warn_of_no_numbers("texture coordinates", "taken as 0", uvs_of_no_number_);
@@ -153,7 +153,7 @@ class ObjReader {
         fmt::format("{}: faces name normals, but the file has none: they are made up", lost_normals_.place));
   }
 
-  // One index: 1 is the first, -1 the newest.
+  // Resolves an index: 1 is the first, -1 the latest.
   std::uint32_t resolve(std::string_view digits, std::size_t count, std::string_view what,
                         Lost* lost = nullptr) {
     std::int64_t index = 0;
@@ -202,7 +202,7 @@ class ObjReader {
       ++model_.dropped_polygons;
       return;
     }
-    constexpr double few_bits = 4096;  // so many sizes away floats hold too little of a polygon's shape
+    constexpr double few_bits = 4096;  // beyond this many sizes, floats hold too little of a polygon's shape
     const dvec3 origin = corners_.size() > 3 ? near_origin(outline_, few_bits) : dvec3(0);
     for (const dvec3& p : outline_) places_.emplace_back(p - origin);
     if (!triangulate(places_, pieces_))
@@ -223,8 +223,8 @@ class ObjReader {
     return Vector(0);
   }
 
-  // The mesh's vertex for a corner: an earlier one of the same three indices, else a new one. The search is
-  // bounded, so that a file cannot make it quadratic; a vertex too many does no harm.
+  // The mesh's vertex for a corner: an existing one with equal indices, else a new one. The search is bounded
+  // to avoid quadratic time; duplicates are harmless.
   std::uint32_t vertex(const Corner& corner) {
     constexpr int most_steps = 32;
     std::uint32_t at = newest_[corner.position];
@@ -248,7 +248,7 @@ class ObjReader {
     return created;
   }
 
-  // Triangles without a material get an added default one, unless no triangle has any; vertex colours want
+  // Triangles without a material get an added default one, unless no triangle has any; vertex colours require
   // materials that use them.
   void settle_materials() {
     const bool some =
@@ -273,22 +273,22 @@ class ObjReader {
   Model& model_;
   MaterialLibrary library_;
   int material_ = -1;
-  std::vector<dvec3> positions_;  // as the file lists them
+  std::vector<dvec3> positions_;  // in the file's order
   std::vector<glm::vec3> normals_, colors_;
   std::vector<glm::vec2> uvs_;
   Mesh mesh_;
   dvec3 origin_{0};
   std::vector<Corner> made_;                   // per mesh vertex: its indices in the file
-  std::vector<std::uint32_t> newest_, older_;  // chains of mesh vertices: by file vertex, by mesh vertex
+  std::vector<std::uint32_t> newest_, older_;  // lists: heads by file vertex, links by mesh vertex
   std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
   std::vector<bool> has_normal_;
   bool any_uv_ = false, any_color_ = false;
   Lost lost_normals_, normals_of_no_number_, uvs_of_no_number_;
-  std::map<std::size_t, std::size_t> lines_of_no_number_;  // by position: where it is stated
+  std::map<std::size_t, std::size_t> lines_of_no_number_;  // by position: the line that defines it
   std::vector<std::uint32_t> groups_;                      // per triangle
   std::uint32_t group_ = 0;
   bool any_group_ = false;
-  std::vector<Corner> corners_;  // of the face at hand
+  std::vector<Corner> corners_;  // of the current face
   std::vector<dvec3> outline_;
   std::vector<glm::vec3> places_;
   std::vector<glm::uvec3> pieces_;

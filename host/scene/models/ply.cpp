@@ -1,5 +1,5 @@
-// PLY, ASCII and binary in both byte orders: vertices with normals, texture coordinates and colours; faces,
-// with colours of their own, or triangle strips.
+// Reads PLY, ASCII and binary in both byte orders: vertices with normals, texture coordinates and colours;
+// faces, with optional colours, or triangle strips.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,21 +25,21 @@ bool faces_come_first(const PlyHeader& header) {
   return false;
 }
 
-// What the file's elements become, while they are read.
+// The result so far.
 struct Content {
   Mesh mesh;
-  dvec3 origin{0};                     // of its positions
-  std::vector<glm::vec3> face_colors;  // per triangle, when faces have colours and vertices have none
+  dvec3 origin{0};                     // of the positions
+  std::vector<glm::vec3> face_colors;  // per triangle, if faces have colours and vertices have none
   std::size_t dropped = 0;
   std::size_t normals_of_no_number = 0, uvs_of_no_number = 0;
-  std::set<std::uint32_t> lost;  // positions of no number
+  std::set<std::uint32_t> lost;  // NaN positions
   std::vector<std::string> unread;
 };
 
 template <class Cursor>
 class DataReader {
  public:
-  /// With the vertices in `known`, as read_vertices() gives them, faces may come before them.
+  /// With `known` vertices from read_vertices(), faces may come before the vertices.
   DataReader(const Source& source, const PlyHeader& header, Content known = {})
       : header_(header), cursor_(source, header), content_(std::move(known)) {}
 
@@ -76,7 +76,7 @@ class DataReader {
     return 0;
   }
 
-  // Before anything is allocated: the bytes that are left must be able to hold that many.
+  // Checks before allocating: the remaining bytes must be able to hold that many.
   void check_count(const PlyElement& element) const {
     std::size_t least = 0;
     for (const PlyProperty& p : element.properties)
@@ -95,7 +95,7 @@ class DataReader {
   }
   float narrow(double value) const { return static_cast<float>(bounded(value)); }
 
-  // Reads one element's scalars into `values`; hands each list's items to `item(property number, value)`.
+  // Reads an element's scalars into `values` and passes list items to `item(property number, value)`.
   template <class Item>
   void read_element(const PlyElement& element, const Layout& layout, Values& values, Item item) {
     cursor_.begin_element(element.name);
@@ -121,7 +121,7 @@ class DataReader {
       read_element(element, layout, values, [](std::size_t, double) {});
   }
 
-  // One of no number is an error where a face uses it; until then it lies where the one before does.
+  // A NaN position is an error if a face uses it; until then it repeats the one before.
   dvec3 position_of(const Values& v, const std::vector<dvec3>& before) {
     const dvec3 position(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
     if (std::isfinite(glm::dot(position, dvec3(0)))) return position;
@@ -240,8 +240,8 @@ class DataReader {
   std::vector<glm::uvec3> pieces_;
 };
 
-// Faces' colours become vertices' colours: a vertex is split between faces of different colour.
-// Returns each vertex's original, so that normals still smooth across the split.
+// Converts face colours to vertex colours: splits vertices between faces of different colours. Returns each
+// vertex's original, so that normals are still smoothed across the split.
 std::vector<std::uint32_t> paint_faces(Mesh& mesh, const std::vector<glm::vec3>& face_colors) {
   std::vector<std::uint32_t> original(mesh.positions.size());
   for (std::uint32_t i = 0; i < original.size(); ++i) original[i] = i;

@@ -1,5 +1,5 @@
-// PLY's data, value by value: one cursor for text and one for both byte orders, with the same members. Values
-// that are infinite or no number are NaN.
+// Reads PLY's data value by value: one cursor for text and one for both byte orders, with the same interface.
+// Non-finite values become NaN.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -15,7 +15,7 @@
 
 namespace sundog::models {
 
-/// One element a line; lines that begin with "comment" are skipped.
+/// One element per line; skips lines that begin with "comment".
 class AsciiPlyCursor {
  public:
   AsciiPlyCursor(const Source& source, const PlyHeader& header)
@@ -35,9 +35,9 @@ class AsciiPlyCursor {
     return number;
   }
   void end_element(std::string_view element) { text_.expect_line_end(element); }
-  /// The fewest bytes that a value can take: a digit and a blank.
+  /// Minimum bytes of a value: a digit and a blank.
   static std::size_t least_bytes(PlyType) { return 2; }
-  std::size_t bytes_left() const { return text_.bytes_left() + 1; }  // the last line may lack its end
+  std::size_t bytes_left() const { return text_.bytes_left() + 1; }  // the last line may lack its newline
   [[noreturn]] void fail(const std::string& what) const { text_.fail(what); }
 
  private:

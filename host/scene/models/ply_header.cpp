@@ -1,4 +1,4 @@
-// PLY's header, line by line (G. Turk, "The PLY polygon file format", 1994).
+// Reads PLY's header (G. Turk, "The PLY polygon file format", 1994).
 #include "scene/models/ply_header.h"
 
 #include <fmt/format.h>

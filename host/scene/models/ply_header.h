@@ -1,4 +1,4 @@
-// PLY's header: which elements follow, with which properties.
+// PLY's header: the elements and their properties.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;
-  std::optional<PlyType> count_type;  // set: a list, led by its length
+  std::optional<PlyType> count_type;  // set for a list: the type of its length
 };
 
 struct PlyElement {

@@ -1,4 +1,4 @@
-// Which properties of a PLY's elements are read: their places among an element's values.
+// Maps the properties of a PLY's elements to the ones that are read.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@ enum Slot { px, py, pz, nx, ny, nz, tu, tv, red, green, blue, alpha, slot_count,
 
 Slot slot_of(std::string_view name);
 
-// Where an element's properties go, and which slots it fills.
+// The slot of each property of an element, and the slots present.
 struct Layout {
   std::vector<Slot> slots;
   std::array<bool, slot_count + 1> has{};
@@ -32,10 +32,10 @@ struct Layout {
 
 using Values = std::array<double, slot_count + 1>;
 
-/// A property's value: colours are linear, alpha is from 0 to 1.
+/// Converts a property's value: colours to linear, alpha to 0..1.
 double slot_value(Slot slot, PlyType type, double value);
 
-/// White where it is no number.
+/// White if NaN.
 glm::vec3 color_of(const Values& values);
 
 }  // namespace sundog::models::ply

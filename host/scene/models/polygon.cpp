@@ -1,6 +1,5 @@
-// Polygons become triangles: a fan where that is right, else ear clipping
-// (G. H. Meisters, "Polygons have ears", 1975), quadratic because a clipped ear changes its two neighbours
-// alone.
+// Triangulates polygons: as a fan if possible, else by ear clipping (G. H. Meisters, "Polygons have ears",
+// 1975), which is quadratic because clipping an ear affects only its two neighbours.
 #include "scene/models/polygon.h"
 
 #include <algorithm>
@@ -14,7 +13,7 @@ using glm::dvec3;
 
 double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-// Twice the area as a vector (Newell): the direction from which the polygon turns left.
+// Twice the area as a vector (Newell); it points to where the polygon appears counterclockwise.
 dvec3 area_vector(std::span<const glm::vec3> corners) {
   const dvec3 origin = corners[0];
   dvec3 sum{0};
@@ -23,7 +22,7 @@ dvec3 area_vector(std::span<const glm::vec3> corners) {
   return sum;
 }
 
-// The polygon in its plane: the axis that its normal is nearest to is dropped.
+// Projects the polygon by dropping the axis closest to its normal.
 std::vector<dvec2> flatten(std::span<const glm::vec3> corners, dvec3 normal) {
   const dvec3 size = glm::abs(normal);
   int dropped = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -36,8 +35,8 @@ std::vector<dvec2> flatten(std::span<const glm::vec3> corners, dvec3 normal) {
   return points;
 }
 
-// The smallest of the fan's triangles (twice its area): above 0, the fan covers the polygon once; at 0 it
-// does, too, but with triangles that have no area.
+// Twice the area of the fan's smallest triangle: above 0, the fan covers the polygon once; at 0 too, but with
+// degenerate triangles.
 double least_in_fan(const std::vector<dvec2>& points) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
@@ -82,7 +81,7 @@ class EarClipper {
     return cross(points_[i] - points_[ring_[i].before], points_[ring_[i].after] - points_[i]);
   }
 
-  // Convex, and no reflex corner lies in the triangle it would cut off.
+  // Convex, and its triangle contains no reflex corner.
   bool is_ear(unsigned i) const {
     if (ring_[i].reflex) return false;
     const dvec2 a = points_[ring_[i].before], b = points_[i], c = points_[ring_[i].after];
@@ -99,7 +98,7 @@ class EarClipper {
     ring_[i].ear = is_ear(i);
   }
 
-  // The next ear from `at` on; a ring without one crosses itself, and then any convex corner is cut.
+  // The next ear from `at` on; a ring without one crosses itself, so any convex corner is clipped.
   unsigned next_ear(unsigned at, std::size_t left) const {
     unsigned i = at, convex = at;
     for (std::size_t step = 0; step < left; ++step, i = ring_[i].after) {

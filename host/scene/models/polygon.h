@@ -1,4 +1,4 @@
-// Polygons become triangles.
+// Triangulates polygons.
 #pragma once
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -7,14 +7,13 @@
 
 namespace sundog::models {
 
-/// A concave polygon may have this many corners (ear clipping is quadratic); convex ones any number.
+/// Limit for concave polygons (ear clipping is quadratic); convex ones may have any number of corners.
 inline constexpr std::size_t most_concave_corners = 8192;
 
-/// Appends corners.size() - 2 triangles of corner numbers, wound as the polygon is: a fan where the polygon
-/// is seen whole from its first corner (as a convex one is), else by ear clipping in the polygon's plane.
-/// Corners on one line and crossing edges make triangles without area or overlapping ones, never fewer.
-/// Returns false, and appends nothing, for a polygon with fewer than three corners or a concave one above
-/// `most_concave_corners`.
+/// Appends corners.size() - 2 triangles of corner indices with the polygon's winding: a fan if the polygon is
+/// visible from its first corner (as a convex one is), else by ear clipping in its plane. Collinear corners
+/// and crossing edges give degenerate or overlapping triangles, never fewer. Returns false and appends
+/// nothing for fewer than three corners, or a concave polygon above `most_concave_corners`.
 bool triangulate(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
 
 }  // namespace sundog::models

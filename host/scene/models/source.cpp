@@ -1,4 +1,4 @@
-// A model file's bytes: read whole, unpacked where gzipped, within a bound.
+// Reads a model file, decompressing gzip within a limit.
 #include "scene/models/source.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
-// Text of vertices packs to a tenth or a third; gzip can pack nothing at all to a thousandth.
+// Vertex text compresses to between a tenth and a third; gzip reaches a thousandth.
 constexpr std::size_t most_growth = 100, grows_freely = std::size_t{64} << 20;
 
 std::string lower_extension(const fs::path& path) {
@@ -27,12 +27,12 @@ std::string lower_extension(const fs::path& path) {
 
 class Inflater {
  public:
-  Inflater() { ready_ = inflateInit2(&stream_, 15 + 16) == Z_OK; }  // + 16: a gzip header
+  Inflater() { ready_ = inflateInit2(&stream_, 15 + 16) == Z_OK; }  // + 16: expect a gzip header
   ~Inflater() { inflateEnd(&stream_); }
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  // Several members may follow each other, as `cat a.gz b.gz` makes them.
+  // Several members may follow each other, as in `cat a.gz b.gz`.
   std::string unpack(const std::string& packed, const fs::path& path) {
     const auto broken = [&](const char* why) {
       return SceneError(path.string(), fmt::format("byte {}", packed.size() - stream_.avail_in),
@@ -40,7 +40,7 @@ class Inflater {
     };
     if (!ready_) throw broken("zlib did not start");
     if (packed.size() > most_bytes) throw broken("more than 2 GiB");
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib reads it only
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib only reads it
     stream_.avail_in = static_cast<uInt>(packed.size());
     const std::size_t bound = std::max(grows_freely, most_growth * packed.size());
     std::string out;

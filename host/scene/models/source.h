@@ -1,4 +1,4 @@
-// A model file's bytes, unpacked, and the errors that point into them.
+// A model file's bytes, decompressed, and errors with a place in them.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -12,7 +12,7 @@ inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 struct Source {
   std::filesystem::path path;
   std::string bytes;           // after gunzip
-  bool outside_files = false;  // files that it names may lie outside its folder
+  bool outside_files = false;  // may name files outside its folder
 };
 
 /// The file's bytes, of all but STL and glTF without a byte order mark; a name that ends in .gz is unpacked

@@ -1,5 +1,5 @@
-// STL, ASCII and binary. Its facet normals are left aside: the corners' order says the same, and is always
-// there.
+// Reads STL, ASCII and binary. Ignores facet normals, because the order of corners gives the same and is
+// always present.
 #include <fmt/format.h>
 
 #include <bit>
@@ -33,7 +33,7 @@ TextReader text_of(const Source& source) {
           source.bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0};
 }
 
-// Binary files may begin with "solid" too; a size that fits the facet count decides.
+// Binary files may begin with "solid" too, so the size decides.
 bool is_binary(const Source& source) {
   const std::size_t size = source.bytes.size();
   if (size >= header_bytes && size == header_bytes + facet_bytes * binary_facets(source)) return true;
@@ -76,7 +76,7 @@ dvec3 read_corner(TextReader& text) {
   return {x, y, z};
 }
 
-/// Returns where the mesh's positions count from.
+/// Returns the origin of the mesh's positions.
 dvec3 read_ascii(const Source& source, Mesh& mesh) {
   TextReader text = text_of(source);
   std::vector<dvec3> positions;

@@ -1,4 +1,4 @@
-// Words and numbers of a text format, each error with its line.
+// Reads words and numbers of text formats; errors give the line.
 #include "scene/models/text.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ std::from_chars_result convert(std::string_view word, Number& value) {
              : std::from_chars_result{result.ptr, std::errc::invalid_argument};
 }
 
-// A word as it may stand in a message: short and printable.
+// A word shortened to printable characters for a message.
 std::string shown(std::string_view word) {
   std::string text;
   for (const char c : word.substr(0, 40)) text += c >= ' ' && c < 127 ? c : '?';
@@ -73,7 +73,7 @@ std::string_view TextReader::word() {
   if (at_line_end()) return {};
   std::size_t end = std::min(text_.find_first_of(blanks), text_.size());
   if (const std::size_t comment = text_.find('#'); syntax_.hash_comments && comment < end)
-    if (text_[comment - 1] != '.') end = comment;  // not that of 1.#QNAN
+    if (text_[comment - 1] != '.') end = comment;  // not the one in 1.#QNAN
   const std::string_view word = text_.substr(0, end);
   text_.remove_prefix(end);
   return word;
@@ -96,7 +96,7 @@ double TextReader::number(std::string_view what) {
   const std::string_view found = word();
   double value = 0;
   const auto [end, code] = convert(found, value);
-  // An exponent too small for double is as good as 0; one too large is not a number we can hold.
+  // Underflow is 0; overflow is an error.
   if (code == std::errc::result_out_of_range &&
       (found.find("e-") != found.npos || found.find("E-") != found.npos))
     return 0;

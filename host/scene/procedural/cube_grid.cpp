@@ -9,7 +9,7 @@ namespace sundog::procedural {
 
 namespace {
 
-// Grid points by their whole coordinates, so that neighbouring faces share those on their common edge.
+// Grid points keyed by integer coordinates, so that adjacent faces share their edge.
 class Points {
  public:
   Points(int cells, const glm::dvec3& stretch) : cells_(cells), stretch_(stretch) {}
@@ -50,7 +50,7 @@ CubeGrid make_cube_grid(int cells, const glm::dvec3& stretch) {
         };
         unsigned a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
         if (!far_side) std::swap(b, d);
-        // Diagonals alternate, so that no direction of the grid shows in the shape.
+        // Alternate diagonals to avoid directional bias.
         if ((i + j) % 2 == 0) {
           grid.triangles.push_back({a, b, c});
           grid.triangles.push_back({a, c, d});

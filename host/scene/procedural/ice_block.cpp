@@ -21,7 +21,7 @@ struct Shell {
   std::vector<double> outer, cavity;  // cavity is empty for a solid block
 };
 
-constexpr double least_wall = 0.02;  // as a share of the distance to the outside
+constexpr double least_wall = 0.02;  // relative to the distance to the outside
 
 SoftSolid cavity_solid(const IceBlock& block) { return make_soft_solid(block.cavity, block.seed * 2 + 1); }
 
@@ -52,7 +52,7 @@ Shell make_shell(const IceBlock& block) {
   return shell;
 }
 
-// Adds a surface to the mesh; `inward` turns its triangles round.
+// Adds a surface to the mesh; `inward` reverses its triangles.
 void append_surface(Mesh& mesh, const CubeGrid& grid, const std::vector<dvec3>& points, bool inward) {
   const auto first = static_cast<unsigned>(mesh.positions.size());
   for (const dvec3& p : points) mesh.positions.emplace_back(p);
@@ -69,7 +69,7 @@ std::vector<dvec3> surface_points(const CubeGrid& grid, const std::vector<double
   return points;
 }
 
-// The mean of the neighbouring triangles' normals, weighted by their areas.
+// Area-weighted means of the adjacent triangles' normals.
 void add_smooth_normals(Mesh& mesh) {
   std::vector<dvec3> sums(mesh.positions.size(), dvec3{0, 0, 0});
   for (const glm::uvec3& t : mesh.triangles) {
@@ -82,8 +82,7 @@ void add_smooth_normals(Mesh& mesh) {
   for (const dvec3& sum : sums) mesh.normals.emplace_back(length(sum) > 0 ? normalized(sum) : dvec3{0, 1, 0});
 }
 
-// Moves what lies above the plane down to it, towards `pole`, from which the body's whole surface can be
-// seen.
+// Moves points above the plane down to it, towards `pole`, which sees the body's whole surface.
 void cut_at_level(std::vector<dvec3>& points, double level, const dvec3& pole) {
   for (dvec3& p : points) {
     if (p.y <= level) continue;

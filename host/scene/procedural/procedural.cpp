@@ -1,4 +1,4 @@
-// Recipes of generated meshes: reads their parameters and calls the generator of their type.
+// Reads recipes of generated meshes and calls their generators.
 #include "scene/procedural/procedural.h"
 
 #include "scene/procedural/ice_block.h"
@@ -18,7 +18,7 @@ IceSurface read_surface(JsonObject& object, IceSurface surface) {
 }
 
 IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
-  // Without a word on it the cavity is like the outside, a little more than half its size.
+  // By default the cavity is like the outside, at 0.6 of its size.
   IceSurface cavity = outer;
   cavity.size *= 0.6;
   cavity = read_surface(object, cavity);

@@ -1,14 +1,14 @@
-// Meshes that sundog makes itself from a recipe in the scene file: "meshes": {"ice": {"generate": {...}}}.
+// Generates meshes from a recipe in the scene file: "meshes": {"ice": {"generate": {...}}}.
 #pragma once
 #include "scene/description.h"
 #include "scene/json/value.h"
 
 namespace sundog {
 
-/// The mesh of a recipe: an object with a "type" and that type's parameters. The same recipe gives the same
-/// mesh, to the bit, on every machine. Read the parameters through `recipe.object("generate_<type>", ...)`:
-/// bad ones then throw SceneError with the pointer, and scenes/scene.schema.json must hold the same keys
-/// under $defs/generate_<type>.
+/// Generates the mesh of a recipe: an object with "type" and that type's parameters. Equal recipes give equal
+/// meshes, to the bit, on every machine. Read parameters through `recipe.object("generate_<type>", ...)`,
+/// which throws SceneError with the pointer; scenes/scene.schema.json must list the same keys under
+/// $defs/generate_<type>.
 Mesh generate_mesh(const JsonValue& recipe);
 
 }  // namespace sundog

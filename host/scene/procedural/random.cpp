@@ -1,4 +1,4 @@
-// See random.h. glm's own length and normalize are avoided: their instructions may differ between builds.
+// See random.h. Avoids glm's length and normalize, whose instructions may differ between builds.
 #include "scene/procedural/random.h"
 
 #include <cmath>
@@ -20,12 +20,12 @@ double mix(double a, double b, double t) { return a + (b - a) * t; }
 
 double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// A slope of each lattice point, in the cube [-1, 1]^3.
+// The gradient of a lattice point, in the cube [-1, 1]^3.
 glm::dvec3 lattice_slope(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t z) {
   std::uint64_t h = scrambled(seed + static_cast<std::uint64_t>(x));
   h = scrambled(h + static_cast<std::uint64_t>(y));
   h = scrambled(h + static_cast<std::uint64_t>(z));
-  constexpr double scale = 1.0 / 1048576.0;  // 21 bits an axis
+  constexpr double scale = 1.0 / 1048576.0;  // 21 bits per axis
   const auto part = [&](int shift) { return static_cast<double>((h >> shift) & 0x1FFFFFu) * scale - 1.0; };
   return {part(0), part(21), part(42)};
 }
@@ -44,7 +44,7 @@ glm::dvec3 normalized(const glm::dvec3& v) {
 }
 
 glm::dvec3 Sequence::direction() {
-  // By rejection from the cube: trigonometric functions differ in their last bits between C libraries.
+  // Rejection sampling in the cube: trigonometric functions differ in the last bits between C libraries.
   for (;;) {
     const double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
     const double squared = x * x + y * y + z * z;

@@ -1,4 +1,4 @@
-// Seeded numbers and smooth noise from integer hashes and + - * / sqrt alone: the same bits on every machine.
+// Seeded numbers and smooth noise from integer hashes and + - * / sqrt only: the same bits on every machine.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,7 +8,7 @@ namespace sundog::procedural {
 /// A number in [0, 1) for (seed, index); neighbouring indices are unrelated.
 double uniform(std::uint64_t seed, std::uint64_t index);
 
-/// Numbers of one seed in turn: each call uses the next index.
+/// Successive numbers of one seed.
 class Sequence {
  public:
   explicit Sequence(std::uint64_t seed) : seed_(seed) {}
@@ -21,8 +21,7 @@ class Sequence {
   std::uint64_t seed_, index_ = 0;
 };
 
-/// Gradient noise (Perlin 1985, with the quintic fade of Perlin 2002) about 0, within [-1, 1]; its features
-/// are about 1 apart.
+/// Gradient noise (Perlin 1985, with the quintic fade of Perlin 2002) in [-1, 1]; features are about 1 apart.
 double gradient_noise(std::uint64_t seed, const glm::dvec3& point);
 
 double length(const glm::dvec3& v);

@@ -14,7 +14,7 @@ using glm::dvec3;
 
 double dot(const dvec3& a, const dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// The six sides, each leaning a little and moved in by up to a twelfth.
+// Adds the six sides, each slightly tilted and moved in by up to a twelfth.
 void add_sides(SoftSolid& solid, const dvec3& half, double tilt, Sequence& random) {
   for (int axis = 0; axis < 3; axis++) {
     for (const double side : {-1.0, 1.0}) {
@@ -25,12 +25,12 @@ void add_sides(SoftSolid& solid, const dvec3& half, double tilt, Sequence& rando
   }
 }
 
-// How far the box reaches along a direction.
+// Support of the box in a direction.
 double box_reach(const dvec3& half, const dvec3& direction) {
   return std::abs(direction.x) * half.x + std::abs(direction.y) * half.y + std::abs(direction.z) * half.z;
 }
 
-// Planes across edges and corners: a normal along an axis would only shrink the block.
+// Cuts off edges and corners: a plane along an axis would only shrink the block.
 void add_chips(SoftSolid& solid, const dvec3& half, int count, Sequence& random) {
   for (int made = 0; made < count;) {
     const dvec3 normal = random.direction();
@@ -43,14 +43,14 @@ void add_chips(SoftSolid& solid, const dvec3& half, int count, Sequence& random)
   }
 }
 
-// Where the half spaces alone end: the innermost plane along a direction.
+// The inverse distance of the nearest plane along a direction.
 double innermost(const SoftSolid& solid, const dvec3& direction) {
   double inverse = 0;
   for (const Cut& cut : solid.cuts) inverse = std::max(inverse, dot(cut.normal, direction) / cut.distance);
   return 1 / inverse;
 }
 
-// Balls outside the block that dip into it by a few hundredths, as where two cubes were broken apart.
+// Balls outside the block that dip into it by a few hundredths, as where two cubes broke apart.
 void add_dents(SoftSolid& solid, int count, Sequence& random) {
   for (int i = 0; i < count; i++) {
     const dvec3 direction = random.direction();
@@ -61,7 +61,7 @@ void add_dents(SoftSolid& solid, int count, Sequence& random) {
   }
 }
 
-// Distance along a unit direction to the near side of the ball; 0 when it is missed.
+// Distance along a unit direction to the near side of the ball; 0 if missed.
 double scoop_distance(const Scoop& scoop, const dvec3& direction) {
   const double along = dot(scoop.center, direction);
   const double under = along * along - dot(scoop.center, scoop.center) + scoop.radius * scoop.radius;

@@ -1,4 +1,4 @@
-// A softened, star-shaped solid: how far its surface is from the origin in each direction.
+// A softened star-shaped solid: the distance of its surface from the origin in each direction.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,21 +7,21 @@
 
 namespace sundog::procedural {
 
-/// Points with dot(normal, p) <= distance are inside; distance > 0.
+/// Keeps points with dot(normal, p) <= distance; distance > 0.
 struct Cut {
   glm::dvec3 normal;
   double distance;
 };
 
-/// A ball that is taken away; the origin is outside it.
+/// A ball that is removed; it must not contain the origin.
 struct Scoop {
   glm::dvec3 center;
   double radius;
 };
 
-/// The intersection of half spaces less some balls. With g_i(d) the inverse of the distance along d to
-/// surface i, the solid ends at 1 / (sum g_i^q)^(1/q): a norm whose exponent q = 2^doublings says how sharp
-/// the edges are.
+/// The intersection of half spaces minus some balls. With g_i(d) the inverse distance along d to surface i,
+/// the solid ends at 1 / (sum g_i^q)^(1/q): a norm whose exponent q = 2^doublings sets the sharpness of the
+/// edges.
 struct SoftSolid {
   std::vector<Cut> cuts;
   std::vector<Scoop> scoops;
@@ -31,7 +31,7 @@ struct SoftSolid {
   std::uint64_t seed = 0;
 };
 
-/// Throws GenerateError when the origin is not well inside.
+/// Throws GenerateError if the origin is not well inside.
 SoftSolid make_soft_solid(const IceSurface& surface, std::uint64_t seed);
 
 /// Distance from the origin to the surface along the unit vector `direction`; > 0.

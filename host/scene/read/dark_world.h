@@ -1,11 +1,10 @@
-// What fills the world without end takes all light from infinitely far away.
+// Detects world media that absorb all light from infinity.
 #pragma once
 #include "scene/description.h"
 
 namespace sundog {
 
-/// Adds a warning, with the mend, where the world's medium or fog leaves nothing of a sun, a sky or a
-/// directional light.
+/// Warns, with the remedy, if the world's medium or fog absorbs all light of a sun, sky or directional light.
 void warn_of_dark_world(SceneDescription& scene);
 
 }  // namespace sundog

@@ -25,7 +25,7 @@ void shift_textures(MaterialDescription& material, int by) {
   shift(material.displaced_by, by);
 }
 
-/// The same file by whatever path it is named.
+/// Equal for all paths to a file.
 std::string file_key(const fs::path& file) {
   std::error_code ignored;
   const fs::path canonical = fs::weakly_canonical(file, ignored);

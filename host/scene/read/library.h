@@ -1,5 +1,4 @@
-// The meshes and models that a scene places: each is read once, added to the scene's tables, and placed any
-// number of times.
+// The meshes and models that a scene places: each is read once and placed any number of times.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -20,7 +19,7 @@ struct Placement {
   std::string name, place;
   dvec3 moves_by{0};
   std::vector<TurnDescription> turns;
-  bool turns_about_middle = false;  // its own turn does, the last one
+  bool turns_about_middle = false;  // the last turn, its own, is about its middle
 };
 
 class ModelLibrary {
@@ -28,18 +27,17 @@ class ModelLibrary {
   /// Adds to `scene`, which must outlive the library.
   explicit ModelLibrary(SceneDescription& scene) : scene_(scene) {}
 
-  /// What a model becomes in the scene's tables: objects with the scene's indices, placed in the model's
-  /// space.
+  /// A model in the scene's tables: objects with the scene's indices, in model space.
   using Parts = std::vector<Object>;
 
-  /// Adds a model; `name` goes before its materials' and media's names.
+  /// Adds a model; `name` prefixes its materials' and media's names.
   Parts add(Model model, const std::string& name);
   /// Reads and adds a model file, or finds what was added before. Throws what load_model() throws.
   const Parts& load(const std::filesystem::path& file, const ModelOptions& options = {});
   /// Adds a model that has been read already, for load() to find.
   void keep(const std::filesystem::path& file, Model model);
 
-  /// Puts each part of a model into the scene.
+  /// Adds each part of a model to the scene's objects.
   void place(const Parts& parts, const Placement& placement);
 
  private:

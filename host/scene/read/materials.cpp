@@ -1,4 +1,4 @@
-// Media and materials.
+// Reads media and materials.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -28,12 +28,12 @@ dvec3 read_absorption(const JsonValue& value) {
   return value.object("absorption", [](JsonObject& object) {
     const dvec3 left =
         object.at("color", "a colour [r, g, b]").color({.low = 0, .high = 1, .low_open = true});
-    // + 0.0: a colour of 1 gives 0, not -0
+    // + 0.0 turns the -0 of a colour of 1 into 0
     return -glm::log(left) / object.at("distance", "a length").number(above_0) + 0.0;
   });
 }
 
-/// Checks that a formula has an index at every wavelength that a path may carry.
+/// Checks that a dispersion formula gives a valid index at every visible wavelength.
 void check_indices(const JsonValue& value, MediumDescription& medium) {
   for (double wavelength = 380; wavelength <= 780; wavelength += 5) {
     const double index = index_at(medium.dispersion, medium.ior, wavelength);
@@ -52,7 +52,7 @@ Dispersion read_substance(const JsonValue& value) {
   value.wanted(fmt::format("an index of refraction or one of \"{}\"", fmt::join(known, "\", \"")));
 }
 
-/// Cauchy's three coefficients, or Sellmeier's pairs.
+/// Two or three Cauchy coefficients, or pairs for Sellmeier.
 Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
   const bool cauchy = kind == DispersionKind::cauchy;
   const auto items = value.items(cauchy ? "2 or 3 numbers" : "2, 4, 6 or 8 numbers");
@@ -65,7 +65,7 @@ Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
   return dispersion;
 }
 
-/// "ior", a number or the name of a substance, and with a number "abbe".
+/// "ior", a number or a substance; a number may have "abbe" beside it.
 void read_ior(JsonObject& object, MediumDescription& medium) {
   const auto ior = object.find("ior"), abbe = object.find("abbe");
   if (abbe && !ior) abbe->fail("wanted an \"ior\" beside it: the index of refraction at 587.6 nm");
@@ -82,7 +82,7 @@ void read_ior(JsonObject& object, MediumDescription& medium) {
   check_indices(*abbe, medium);
 }
 
-/// "ior" as above, or "cauchy", or "sellmeier".
+/// "ior" as above, "cauchy", or "sellmeier".
 void read_index(JsonObject& object, MediumDescription& medium) {
   object.not_both("ior", "cauchy");
   object.not_both("ior", "sellmeier");
@@ -97,7 +97,7 @@ void read_index(JsonObject& object, MediumDescription& medium) {
     }
 }
 
-/// Other programs' files have {"texture": NAME} where a scene has the name.
+/// Other programs write {"texture": NAME} instead of the name.
 void refuse_texture_object(const JsonValue& value) {
   if (value.json().is_object() && value.json().contains("texture"))
     value.fail("a texture is taken by its name alone: wanted the name of one of /textures as a string");
@@ -121,17 +121,17 @@ double read_number(const JsonValue& value, TextureLibrary& textures, const Range
 
 namespace {
 
-/// What a term has when its object leaves it out, and where it puts an exponent.
+/// Defaults of a shading term, and where to store an exponent.
 struct TermRules {
   Pattern color;
-  double coefficient = 1;  // of an object or a texture that gives none
+  double coefficient = 1;  // for an object or a texture without one
   Range range = color_range;
   double* exponent = nullptr;
   int* exponent_texture = nullptr;
 };
 
-/// One term of the shading: a coefficient on the material's colour, the name of a texture, or {"color",
-/// "coefficient"} (and for specular "exponent").
+/// A shading term: a coefficient on the material's colour, a texture's name, or {"color", "coefficient"}
+/// (specular: also "exponent").
 Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRules& rules) {
   refuse_texture_object(value);
   if (value.json().is_number()) return scale(rules.color, value.number(rules.range));
@@ -230,7 +230,7 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
   }
 }
 
-/// {"texture": name, KEY: number}, or the name alone.
+/// {"texture": name, KEY: number}, or the name only.
 int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
                 const char* key, double* number, const Range& range = {.low = -1e6, .high = 1e6}) {
   if (value.json().is_string()) return textures.use(value, use);

@@ -7,7 +7,7 @@ namespace {
 constexpr Range turned_degrees{.low = -36000, .high = 36000};
 constexpr Range grown_sizes{.low = 1e-3, .high = 1e3};
 
-/// Returns whether it says where the turn's point is.
+/// Returns whether the turn's centre is given.
 bool read_turn(const JsonValue& value, const dmat4& world_from_parent, TurnDescription& turn) {
   return value.object("turns_by", [&](JsonObject& object) {
     turn.axis = object.at("axis", "a direction [x, y, z]").direction();

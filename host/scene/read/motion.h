@@ -1,15 +1,15 @@
-// How objects and groups move while the shutter is open.
+// Reads the motion of objects and groups while the shutter is open.
 #pragma once
 #include "scene/json/value.h"
 #include "scene/read/library.h"
 
 namespace sundog {
 
-/// Adds the keys "moves_by", "turns_by" and "grows_to" of an object to what its groups do. What turns about
-/// its own middle turns about its origin, until turn_about_middle() knows better.
+/// Combines the keys "moves_by", "turns_by" and "grows_to" of an object with its groups' motion. A turn about
+/// the object's middle is about its origin until turn_about_middle() corrects it.
 void read_motion(JsonObject& object, const dmat4& world_from_parent, Placement& placement);
 
-/// A solid's own turn is about the middle of its shape, which it places there, unless it says where.
+/// Makes a solid's own turn one about the middle of its shape, unless the scene gives a point.
 void turn_about_middle(const dmat4& world_from_object, Placement& placement);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Materials by the names of OpenPBR 1.1.
+// Reads materials of the type "openpbr" (OpenPBR 1.1).
 #include <nlohmann/json.hpp>
 
 #include "scene/read/surface_terms.h"

@@ -1,4 +1,4 @@
-// The document's sections in the order of what they refer to: media, textures, materials, meshes, objects.
+// Reads the document's sections in order of dependency: media, textures, materials, meshes, objects.
 #include "scene/read/scene_reader.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ class SceneReader {
       }
   }
 
-  /// A file named in the scene, by a path from the scene's own folder.
+  /// A file named in the scene, relative to the scene's folder.
   fs::path find_file(const JsonValue& value) const {
     const fs::path file = scene_.file.parent_path() / value.text();
     if (file != scene_.file && !root_.context().outside_files && leads_outside(scene_.file, file))

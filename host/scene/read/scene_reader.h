@@ -1,4 +1,4 @@
-// A whole scene from its JSON document.
+// Reads a whole scene from its JSON document.
 #pragma once
 #include <optional>
 
@@ -8,9 +8,9 @@
 
 namespace sundog {
 
-/// Reads a scene document; meshes are looked for beside `root.context().file`. `known`, when set, is the
-/// content of that file itself, which the document then places (a model as a scene by itself). `made` are
-/// further meshes, beside the document's. Throws SceneError.
+/// Reads a scene document; mesh files are relative to `root.context().file`. `known`, if set, is the content
+/// of that file, which the document places (a model as a scene). `made` are additional meshes. Throws
+/// SceneError.
 SceneDescription read_scene(const JsonValue& root, std::optional<Model> known = std::nullopt,
                             const NamedMeshes& made = {});
 

@@ -1,4 +1,4 @@
-// The camera, the image, the render settings and the lights.
+// Reads the camera, the image, the render settings and the lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,13 +69,13 @@ void read_sun(const JsonValue& value, EnvironmentDescription& e) {
 void read_filter(JsonObject& object, RenderSettings& render) {
   render.filter = object.choose("filter", render.filter, filters);
   render.filter_radius = object.number("filter_radius", 0, {.low = 0, .high = 16});
-  constexpr int least = 8;  // fewer may all lie in the lobes below zero
+  constexpr int least = 8;  // with fewer, all may lie in the negative lobes
   if (render.filter == Filter::mitchell && render.samples < least)
     object.value().fail(fmt::format("wanted at least {} \"samples\" with the filter mitchell, found {}",
                                     least, render.samples));
 }
 
-constexpr std::size_t most_guides = 64;  // each costs every surface of a path
+constexpr std::size_t most_guides = 64;  // each costs time at every surface of a path
 
 Guide read_guide(const JsonValue& value) {
   return value.object("guide", [](JsonObject& object) {
@@ -106,7 +106,7 @@ void read_adaptive(JsonObject& object, Sampling& sampling) {
 
 void read_sampling(JsonObject& object, RenderSettings& render) {
   Sampling& sampling = render.sampling;
-  constexpr int least_paths = 4;  // of one or two paths often all find no light, where there is some
+  constexpr int least_paths = 4;  // one or two paths often find no light even if there is some
   if (const auto adaptive = object.find("adaptive"))
     adaptive->object("adaptive", [&](JsonObject& inner) {
       read_adaptive(inner, sampling);

@@ -1,5 +1,5 @@
-// The exact solids: each in its own units about the origin, y its axis, the shorthands that place it, and its
-// distance field for operations on fields.
+// Reads the exact solids: each in its own units about the origin with axis y, the transform of its
+// shorthands, and its distance field for field operations.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 dmat4 read_center(JsonObject& object) { return glm::translate(dmat4(1), object.vec3("center", dvec3(0))); }
 
-/// The rotation that takes +y to the direction under `key`.
+/// The rotation from +y to the direction under `key`.
 dmat4 read_axis(JsonObject& object, std::string_view key) {
   const auto axis = object.find(key);
   return axis ? rotation_from_y(axis->direction()) : dmat4(1);
@@ -41,8 +41,7 @@ dvec3 read_half(const JsonValue& value) {
   return value.vec3(above_0);
 }
 
-/// A box's half sizes, from "half" (and "center") or from the corners "min" and "max"; moves it to where it
-/// is.
+/// A box's half sizes, from "half" (and "center") or from the corners "min" and "max"; moves it into place.
 dvec3 read_extent(JsonObject& object, dmat4& placed) {
   object.not_both("half", "min");
   object.not_both("half", "max");
@@ -137,7 +136,7 @@ PlacedShape read_shape(TorusShape torus, JsonObject& object) {
   return {torus, read_center(object) * read_axis(object, "axis")};
 }
 
-// The distance field of each solid that may have an inside.
+// Distance fields of the solids that may have an inside.
 FormulaField make_field(const FormulaDefinition& definition, std::vector<double> values) {
   FormulaField field;
   field.steps.push_back({definition, std::move(values), 1});
@@ -165,14 +164,14 @@ FormulaField field_of(const SphereShape& s) { return listed("sphere", {s.radius}
 FormulaField field_of(const PlaneShape&) { return closed_form("plane", "p.y", {}); }
 FormulaField field_of(const BoxShape& s) { return listed("box", {s.half.x, s.half.y, s.half.z}); }
 FormulaField field_of(const CylinderShape& s) { return listed("cylinder", {s.radius, s.half_height}); }
-std::optional<FormulaField> field_of(const DiskShape&) { return std::nullopt; }  // it has no inside
+std::optional<FormulaField> field_of(const DiskShape&) { return std::nullopt; }  // no inside
 std::optional<FormulaField> field_of(const RectangleShape&) { return std::nullopt; }
 FormulaField field_of(const TorusShape& s) { return listed("torus", {s.major_radius, s.minor_radius}); }
 FormulaField field_of(const RoundBoxShape& s) {
   return listed("rounded_box", {s.half.x, s.half.y, s.half.z, s.radius});
 }
 
-/// I. Quilez, Distance functions: a capped cone about y.
+/// A capped cone about y (I. Quilez, Distance functions).
 FormulaField field_of(const ConeShape& cone) {
   return closed_form(
       "cone",

@@ -1,10 +1,10 @@
-// What the readers of materials share.
+// Shared parts of the material readers.
 #pragma once
 #include "scene/read/parts.h"
 
 namespace sundog {
 
-/// What colours a surface: one colour, two in a checkerboard, or a texture (a factor on both).
+/// A surface's colour: plain, a checkerboard of two, or a texture (a factor on both).
 struct Pattern {
   dvec3 even{1}, odd{1};
   int texture = -1;
@@ -12,14 +12,14 @@ struct Pattern {
 
 inline constexpr Range ior_range{.low = 0.01, .high = 100};
 
-/// A colour, or the name of a texture.
+/// Reads a colour, or the name of a texture.
 Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range = color_range);
-/// A number, or the name of a texture that is a factor on 1.
+/// Reads a number, or the name of a texture (a factor on 1).
 double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture);
-/// The keys of a surface's relief, its sides, what it does to rays of light and whether vertices colour it.
+/// Reads a surface's relief, sides, treatment of shadow rays and use of vertex colours.
 void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures);
 
-/// A material of the type "openpbr".
+/// Reads a material of the type "openpbr".
 MaterialDescription read_openpbr(const JsonValue& value, std::string name,
                                  std::vector<MediumDescription>& media, TextureLibrary& textures);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> sections{"media", "world", "textures", "materials"};
 
-/// The world gets a copy of its medium that gives way to all others, whatever the named one's priority.
+/// The world gets a copy of its medium with the lowest priority, whatever the named one's.
 void read_world(const JsonValue& value, const NameTable& media, SceneDescription& scene) {
   value.object("world", [&](JsonObject& object) {
     if (const auto name = object.find("medium")) {
@@ -27,7 +27,7 @@ void read_world(const JsonValue& value, const NameTable& media, SceneDescription
   });
 }
 
-/// A document's own surfaces; in a scene they stand before those of models.
+/// A document's own surfaces, which precede those of models in a scene.
 struct Head {
   SceneDescription scene;
   SurfaceNames names;
@@ -65,7 +65,7 @@ void shift(int& index, std::size_t from, std::size_t to) {
   if (index >= static_cast<int>(from)) index += static_cast<int>(to) - static_cast<int>(from);
 }
 
-/// The rows of `now`, then those of `table` that stand behind the first `before`.
+/// Replaces the first `before` rows of `table` by `now`.
 template <class Row>
 void replace_head(std::vector<Row>& table, std::size_t before, std::vector<Row> now) {
   now.insert(now.end(), std::make_move_iterator(table.begin() + static_cast<std::ptrdiff_t>(before)),
@@ -73,7 +73,7 @@ void replace_head(std::vector<Row>& table, std::size_t before, std::vector<Row> 
   table = std::move(now);
 }
 
-/// Indices that rows behind the document's own have.
+/// Adjusts the indices in rows after the document's own.
 void shift_rest(SceneDescription& scene, const SceneDescription& from, const SceneDescription& to) {
   for (std::size_t i = from.textures.size(); i < scene.textures.size(); ++i) {
     shift(scene.textures[i].image, from.images.size(), to.images.size());

@@ -1,5 +1,5 @@
-// What surfaces are made of: the media, the world's medium and fog, the textures and materials of a scene
-// file, in the order in which they refer to each other.
+// Reads media, the world's medium and fog, textures and materials of a scene file, in order of their
+// dependencies.
 #pragma once
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -9,14 +9,14 @@
 
 namespace sundog {
 
-/// What fills a world that says nothing of it: it gives way to all other media.
+/// The default world medium; every other medium displaces it.
 inline MediumDescription outer_vacuum() { return {.name = "vacuum", .priority = world_priority}; }
 
 struct SurfaceNames {
   NameTable media, materials;
 };
 
-/// A section of the document, where it is there.
+/// Returns a section of the document, if present.
 using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
 
 /// Reads them, and the presets that the document `root` uses, into `scene`, whose only medium so far is the
@@ -24,12 +24,12 @@ using FindSection = std::function<std::optional<JsonValue>(std::string_view key)
 SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find, SceneDescription& scene,
                            TextureLibrary& textures);
 
-/// The sections that read_surfaces() asks for.
+/// The sections that read_surfaces() reads.
 Names surface_sections();
 
-/// Puts what read_surfaces() makes of the document `after` in the place of what it made of `before`; what
-/// models have brought stays. No file is read. False, and `scene` as it was, where that cannot be done: other
-/// names, other images, or meshes that a texture has displaced. Throws SceneError.
+/// Replaces the result of read_surfaces() for `before` by that for `after`; keeps what models have added.
+/// Reads no file. Returns false, with `scene` unchanged, if names or images differ or a texture displaces
+/// meshes. Throws SceneError.
 bool change_surfaces(SceneDescription& scene, const nlohmann::json& before, const nlohmann::json& after,
                      const JsonContext& context);
 

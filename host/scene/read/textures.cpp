@@ -23,7 +23,7 @@ namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-/// The kinds that mix two colours.
+/// Kinds that mix two colours.
 constexpr std::array<std::string_view, 9> pattern_types{"checker", "stripes", "gradient", "brick",  "noise",
                                                         "cells",   "marble",  "wood",     "formula"};
 
@@ -36,8 +36,8 @@ glm::dvec2 read_pair(const JsonValue& value, const Range& range) {
   return {items[0].number(range), items[1].number(range)};
 }
 
-/// From the mapping's u and v to the texture's: the picture is scaled, turned and moved, so coordinates go
-/// the other way.
+/// From the mapping's u and v to the texture's. The scene scales, rotates and moves the picture, so
+/// coordinates are transformed inversely.
 glm::dmat3 read_uv(JsonObject& object) {
   glm::dvec2 offset(0), scale(1);
   if (const auto found = object.find("offset")) offset = read_pair(*found, {.low = -1e6, .high = 1e6});
@@ -73,7 +73,7 @@ void read_wraps(JsonObject& object, TextureDescription& texture) {
   for (std::size_t i = 0; i < 2; ++i) texture.wrap[i] = read_wrap(items[i]);
 }
 
-/// An image file named in the scene, by a path from the scene's own folder.
+/// An image file named in the scene, relative to the scene's folder.
 fs::path find_image(const JsonValue& value) {
   const fs::path scene = value.context().file, file = scene.parent_path() / value.text();
   if (!value.context().outside_files && leads_outside(scene, file))
@@ -130,7 +130,7 @@ std::string TextureLibrary::named(const JsonValue& name) const {
   return name.text();
 }
 
-/// A pattern's own numbers: how many octaves, and the like.
+/// Reads a pattern's parameters, such as its octaves.
 static void read_parameters(JsonObject& object, const std::string& type, TextureDescription& texture) {
   double* to = texture.parameter;
   if (type == "stripes") to[0] = object.number("share", 0.5, zero_to_one);
@@ -147,7 +147,7 @@ static void read_parameters(JsonObject& object, const std::string& type, Texture
   if (type == "wood") to[2] = object.number("turbulence", 0.3, {.low = 0, .high = 1e3});
 }
 
-/// A formula, which is lowered to check it. Whether it gives colours, which nothing mixes.
+/// Reads a formula and lowers it as a check. Returns whether it gives colours, which are not mixed.
 static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
   object.at("formula", "a text of the formula language");
   formula.text = read_text(object, "formula");
@@ -161,7 +161,7 @@ static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
   }
 }
 
-/// What a texture's coordinates are made from, and how it lies there.
+/// Reads a texture's projection and placement.
 static void read_mapping(JsonObject& object, Mapping standard, TextureDescription& texture) {
   static constexpr std::array projections = {
       NamedValue<Mapping>{"uv", Mapping::uv}, NamedValue<Mapping>{"object", Mapping::object},
@@ -215,7 +215,7 @@ std::string TextureLibrary::add_color(const dvec3& color) {
   Entry entry;
   entry.texture.offset = glm::dvec4(color, 1);
   entry.made = true;
-  const std::string name = fmt::format("\x01{}", entries_.size());  // no name that one writes
+  const std::string name = fmt::format("\x01{}", entries_.size());  // cannot occur in a scene
   entries_.emplace(name, entry);
   return name;
 }

@@ -1,4 +1,4 @@
-// The textures of a scene file: named, and used by materials in place of colours and numbers.
+// Reads a scene file's textures: named, and used by materials in place of colours and numbers.
 #pragma once
 #include <map>
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace sundog {
 
-/// What a texture is wanted for: colours (its images are sRGB), or numbers (its images are data; the first
-/// channel unless the texture says which), or data of several channels (normals).
+/// The use of a texture: colours (sRGB images), a number (data images; the first channel unless the texture
+/// selects one), or several channels of data (normals).
 enum class TextureUse { color, number, data };
 
 class TextureLibrary {
  public:
-  /// Adds to `scene`, which must outlive the library. With `known` images it reads no file: what is not among
-  /// them is lacking.
+  /// Adds to `scene`, which must outlive this. With `known` images it reads no file; images not among them
+  /// are missing.
   explicit TextureLibrary(SceneDescription& scene, const std::vector<ImageDescription>* known = nullptr)
       : scene_(scene), known_(known) {}
 
   /// Reads an entry of `textures`. Throws SceneError.
   void read(const JsonValue& value, const std::string& name);
 
-  /// After all have been read: whether the names that they use are there. Throws SceneError.
+  /// Call after reading all: checks that the names they use exist. Throws SceneError.
   void check_names() const;
 
-  /// The index in the scene of a texture that `name` names. Throws SceneError.
+  /// The scene's index of the texture `name`. Throws SceneError.
   int use(const JsonValue& name, TextureUse use);
 
-  /// Of known images: whether one was wanted that is not among them.
+  /// Whether an image was not among the known ones.
   bool lacks_images() const { return lacks_images_; }
 
  private:
@@ -37,8 +37,8 @@ class TextureLibrary {
     TextureDescription texture;
     std::string file;  // of an image
     std::string place;
-    std::string of[2];  // textures that it works on
-    bool made = false;  // for a colour
+    std::string of[2];  // texture operands
+    bool made = false;  // generated for a colour
     enum class Encoding { by_use, srgb, linear } encoding = Encoding::by_use;
   };
   Entry read_image(JsonObject& object) const;
@@ -46,12 +46,12 @@ class TextureLibrary {
   Entry read_pattern(JsonObject& object, const std::string& type);
   Entry read_ramp(JsonObject& object);
   Entry read_product(JsonObject& object);
-  /// A name in a texture, to be checked later.
+  /// A texture name inside a texture, checked later.
   std::string refer(const JsonValue& name);
   void check_depth(const std::string& name, unsigned depth) const;
   /// The name of a texture that has been read.
   std::string named(const JsonValue& name) const;
-  /// The name of a texture of one colour.
+  /// The name of a generated single-colour texture.
   std::string add_color(const dvec3& color);
   int use(const std::string& name, TextureUse use);
   int use_image(const Entry& entry, bool srgb);

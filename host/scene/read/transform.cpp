@@ -1,4 +1,4 @@
-// Lists of transforms, and the checks that keep them invertible.
+// Reads lists of transforms and checks that they are invertible.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
@@ -50,7 +50,7 @@ dmat4 read_step(const JsonValue& step) {
   return matrix;
 }
 
-/// Volume of the box that three vectors span over that of a right-angled one: 1 orthogonal, 0 flat.
+/// Volume of the parallelepiped of three vectors relative to a box: 1 orthogonal, 0 flat.
 double openness(const dvec3& a, const dvec3& b, const dvec3& c) {
   return std::abs(glm::dot(glm::normalize(a), glm::cross(glm::normalize(b), glm::normalize(c))));
 }
@@ -67,7 +67,7 @@ void check_transform(const dmat4& matrix, const JsonValue& place) {
   for (int i = 0; i < 3; ++i)
     if (glm::length(linear[i]) < 1e-15 || glm::length(rows[i]) < 1e-15)
       place.fail("singular transform: wanted one that can be inverted, found one that flattens space");
-  // Uneven scales make either the rows or the columns look flat; a singular matrix makes both.
+  // Uneven scales flatten either the rows or the columns; a singular matrix flattens both.
   if (std::max(openness(linear[0], linear[1], linear[2]), openness(rows[0], rows[1], rows[2])) < 1e-10)
     place.fail("singular transform: wanted one that can be inverted, found one that flattens space");
 }
@@ -80,8 +80,7 @@ dmat4 read_transform(const JsonValue& list) {
 }
 
 dmat4 rotation_from_y(const dvec3& axis) {
-  // The formula divides by 1 + cos(angle): for a downward axis go to the opposite one, and turn half round
-  // first.
+  // The formula divides by 1 + cos(angle): for a downward axis, go to the opposite one after a half turn.
   const bool down = axis.y < 0;
   const dvec3 a = down ? -axis : axis;
   const double k = 1 / (1 + a.y);

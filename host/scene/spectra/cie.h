@@ -1,5 +1,5 @@
-// The eye and daylight: CIE 1931 colour matching functions of 2 degrees and the illuminant D65 (CIE
-// 15:2004), and what wavelengths add to linear sRGB.
+// CIE 1931 2-degree colour matching functions and illuminant D65 (CIE 15:2004), and the contribution of
+// wavelengths to linear sRGB.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
@@ -19,13 +19,13 @@ struct CieRow {
 /// At the wavelengths of shared/spectra.h.
 std::span<const CieRow, SPECTRUM_ROWS> cie_rows();
 
-/// What D65 of unit luminance adds to linear RGB per nm at each of these wavelengths: between them linear,
-/// and integrated from the first to the last exactly (1, 1, 1). Spectra of colours are factors on D65, so
-/// that white is 1 at every wavelength. Pure wavelengths lie outside of sRGB: some weights are below 0.
+/// Linear RGB per nm that D65 of unit luminance contributes at each of these wavelengths; linear in between,
+/// and integrating to exactly (1, 1, 1). Colour spectra are factors on D65, so white is 1 at every
+/// wavelength. Pure wavelengths lie outside sRGB, hence some negative weights.
 using RgbWeights = std::array<dvec3, SPECTRUM_ROWS>;
 const RgbWeights& rgb_weights();
 
-/// The same at any wavelength in nm; 0 outside of the table.
+/// At any wavelength in nm; 0 outside the table.
 dvec3 rgb_weight(double wavelength);
 
 /// Linear RGB of a black body of that temperature in kelvin (Planck's law), of the luminance 1; what lies

@@ -21,7 +21,7 @@ constexpr Substance catalogue[] = {
     {"water", sellmeier({0.5684027565, 0.005101829712, 0.1726177391, 0.01821153936, 0.02086189578,
                          0.02620722293, 0.1130748688, 10.69792721})},
     // Warren and Brandt, Optical constants of ice, J. Geophys. Res. 113, 2008: two terms fitted to the table
-    // from 390 to 780 nm, whose four decimals they meet to 6e-5.
+    // from 390 to 780 nm within 6e-5, at its four decimals.
     {"ice", sellmeier({0.70032496, 0.00907062, 0.04337053, 4.29321779})},
     // Peter, Ueber Brechungsindizes und Absorptionskonstanten des Diamanten, Z. Phys. 15, 1923.
     {"diamond", sellmeier({0.3306, 0.030625, 4.3356, 0.011236})},

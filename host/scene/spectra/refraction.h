@@ -1,4 +1,4 @@
-// How the index of refraction depends on the wavelength, and a catalogue of substances.
+// Dispersion: the refractive index by wavelength, and a catalogue of substances.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,11 +21,11 @@ struct Dispersion {
   bool operator==(const Dispersion&) const = default;
 };
 
-/// The index of refraction at a wavelength in nm; `ior` without dispersion. May be infinite, or no number,
-/// where Sellmeier's formula has a pole or a negative square.
+/// The refractive index at a wavelength in nm; `ior` without dispersion. May be infinite or NaN at a pole or
+/// negative square of Sellmeier's formula.
 double index_at(const Dispersion& dispersion, double ior, double wavelength);
 
-/// Cauchy's formula with two terms, from the index at the d line and Abbe's number (n_d - 1) / (n_F - n_C).
+/// Two-term Cauchy from the index at the d line and the Abbe number (n_d - 1) / (n_F - n_C).
 Dispersion cauchy_of_abbe(double index_d, double abbe);
 
 /// A substance of the catalogue.
@@ -34,7 +34,7 @@ struct Substance {
   Dispersion dispersion;
 };
 
-/// BK7, SF10, F2, fused_silica, water, ice, diamond: see refraction.cpp for the sources.
+/// BK7, SF10, F2, fused_silica, water, ice, diamond; sources in refraction.cpp.
 std::span<const Substance> substances();
 std::optional<Dispersion> find_substance(std::string_view name);
 

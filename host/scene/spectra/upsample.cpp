@@ -12,7 +12,7 @@ constexpr std::size_t unknowns = 6;
 using Vector = std::array<double, unknowns>;
 using Matrix = std::array<Vector, unknowns>;
 
-/// The parts for two quadratic polynomials, of red and of blue; green's is 0.
+/// The basis for the quadratic exponents of red and blue; green's exponent is 0.
 SpectralBasis basis_of(const Vector& p) {
   SpectralBasis basis;
   for (std::size_t i = 0; i < basis.size(); ++i) {
@@ -25,7 +25,7 @@ SpectralBasis basis_of(const Vector& p) {
   return basis;
 }
 
-/// The integral of the product of two functions that are linear between the rows.
+/// The integral of the product of two piecewise linear functions.
 template <class First, class Second>
 dvec3 integrate(const First& first, const Second& second) {
   dvec3 sum(0);
@@ -34,7 +34,7 @@ dvec3 integrate(const First& first, const Second& second) {
   return sum * (static_cast<double>(SPECTRUM_STEP) / 6);
 }
 
-/// How far red and blue are from coming back; green then does, because white is the sum of all.
+/// Residual of the round trip for red and blue; green follows, because white is the sum of all.
 Vector miss_of(const Vector& p) {
   const SpectralBasis basis = basis_of(p);
   std::array<double, SPECTRUM_ROWS> red{}, blue{};
@@ -43,7 +43,7 @@ Vector miss_of(const Vector& p) {
   return {seen_red.x - 1, seen_red.y, seen_red.z, seen_blue.x, seen_blue.y, seen_blue.z - 1};
 }
 
-/// The solution x of m x = b by elimination with the greatest pivots.
+/// Solves m x = b by elimination with partial pivoting.
 Vector solve(Matrix m, Vector b) {
   for (std::size_t k = 0; k < unknowns; ++k) {
     std::size_t best = k;
@@ -77,7 +77,7 @@ Vector newton_step(const Vector& p) {
   return solve(slopes, miss);
 }
 
-/// Newton's method from smooth steps near 590 and 490 nm, from where it finds its way.
+/// Newton's method from smooth steps near 590 and 490 nm, where it converges.
 SpectralBasis fit_basis() {
   Vector p{-1.8, 27.9, 51.4, -3.5, 8.9, 35.7};
   for (int i = 0; i < 12; ++i) {

@@ -1,9 +1,9 @@
-// A work-item's ray counts added to the launch's: integer atomics, so the order does not matter.
+// Adds a work-item's ray counts to the launch's with integer atomics, so the order does not matter.
 #ifndef SUNDOG_LIB_COUNTERS_CL
 #define SUNDOG_LIB_COUNTERS_CL
 #include "shared/scene.h"
 
-// The block that the item counts in.
+// The block of counters that the item uses.
 static inline __global u32* counters_of(__global u32* counters, u32 item) {
   return counters + item / COUNTER_ITEMS % COUNTER_BLOCKS * COUNTER_BLOCK;
 }
@@ -13,10 +13,9 @@ static inline void add_counts(__global u32* restrict counters, const u32* counts
     if (counts[i]) atomic_add(counters + i, counts[i]);
 }
 
-// A work-item's last act: adds what it has finished, in two rounds. A driver may end all loops of a work-item
-// once they have run too often, without a word (Mesa's llvmpipe after 65,535 rounds altogether), and then
-// this one ends after a single round. `step`, 1 or more, is any number that the compiler cannot know, so that
-// it keeps the loop.
+// A work-item's last act: adds its finished samples twice, in a loop. A driver may silently end all loops of
+// a work-item after too many iterations (Mesa's llvmpipe after 65,535 in total), and then this one ends after
+// a single iteration. `step`, at least 1, is unknown to the compiler, so that it keeps the loop.
 static inline void add_finished(__global u32* restrict counters, u32 amount, u32 step) {
   for (u32 i = 0; i <= step; i += step) atomic_add(counters + COUNT_FINISHED, amount);
 }

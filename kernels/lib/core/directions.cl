@@ -1,10 +1,10 @@
-// Directions about an axis and points in a disk. A lane each.
+// Directions about an axis and points in a disk, one per lane.
 #ifndef SUNDOG_LIB_DIRECTIONS_CL
 #define SUNDOG_LIB_DIRECTIONS_CL
 #include "lib/core/lanes.h"
 
-// Sine and cosine of the share `turn` of a circle, both to 1.2e-7 (polynomials on Chebyshev's nodes). Unlike
-// the library's they have the same bits on every device.
+// Sine and cosine of a fraction `turn` of a circle, both to 1.2e-7 (polynomials at Chebyshev nodes). Unlike
+// the library's, they have the same bits on every device.
 static inline void sincos_of_turn(REAL turn, REAL* sine, REAL* cosine) {
   const REAL quarters = 4.0f * turn, nearest = rint(quarters);
   const REAL x = quarters - nearest, z = x * x;
@@ -17,7 +17,7 @@ static inline void sincos_of_turn(REAL turn, REAL* sine, REAL* cosine) {
   *cosine = AS_REAL(AS_MASK(select(c, s, odd)) ^ (((quarter + 1) & 2) << 30));
 }
 
-// The arc cosine of x in [-1, 1], to 3e-7: that of the smaller of x and the sine of the half angle.
+// The arc cosine of x in [-1, 1], to 3e-7, from the smaller of x and the sine of the half angle.
 static inline REAL real_acos(REAL x) {
   const REAL size = fabs(x);
   const MASK steep = MASK_OF(size > 0.5f);
@@ -30,8 +30,8 @@ static inline REAL real_acos(REAL x) {
   return select(angle, M_PI_F - angle, MASK_OF(x < 0.0f));
 }
 
-// Two vectors at right angles to the unit vector n and to each other (Duff and others 2017, "Building an
-// Orthonormal Basis, Revisited").
+// Completes the unit vector n to an orthonormal basis (Duff and others 2017, "Building an Orthonormal Basis,
+// Revisited").
 static inline void tangent_frame(REAL3 n, REAL3* s, REAL3* t) {
   const REAL sign = copysign((REAL)(1.0f), n.z);
   const REAL a = -1.0f / (sign + n.z), b = n.x * n.y * a;
@@ -39,7 +39,7 @@ static inline void tangent_frame(REAL3 n, REAL3* s, REAL3* t) {
   *t = real3(b, sign + n.y * n.y * a, -n.y);
 }
 
-// The direction at the cosine and sine to the unit axis, turned about it by the share `turn` of a circle.
+// The direction with this cosine and sine to the unit axis, at the azimuth `turn` (fraction of a circle).
 static inline REAL3 direction_at(REAL3 axis, REAL cosine, REAL sine, REAL turn) {
   REAL3 s, t;
   REAL across, along;
@@ -48,13 +48,13 @@ static inline REAL3 direction_at(REAL3 axis, REAL cosine, REAL sine, REAL turn) 
   return add3(scale3(axis, cosine), add3(scale3(s, sine * along), scale3(t, sine * across)));
 }
 
-// The same by the cosine alone.
+// direction_at() with the cosine only.
 static inline REAL3 direction_about(REAL3 axis, REAL c, REAL turn) {
   return direction_at(axis, c, real_sqrt(real_max(1.0f - c * c, (REAL)(0.0f))), turn);
 }
 
-// A point of the unit disk, uniform in area (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
-// Square").
+// A uniformly distributed point of the unit disk (Shirley and Chiu 1997, "A Low Distortion Map Between Disk
+// and Square").
 static inline void place_in_disk(REAL u_x, REAL u_y, REAL* x, REAL* y) {
   const REAL a = fma(u_x, (REAL)(2.0f), (REAL)(-1.0f)), b = fma(u_y, (REAL)(2.0f), (REAL)(-1.0f));
   const MASK wide = MASK_OF(fabs(a) > fabs(b));

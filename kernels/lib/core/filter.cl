@@ -1,11 +1,10 @@
-// Reconstruction filters: where camera samples lie about their pixels' centres (shared/filter.h).
+// Reconstruction filters: offsets of camera samples from pixel centres (shared/filter.h).
 #ifndef SUNDOG_LIB_FILTER_CL
 #define SUNDOG_LIB_FILTER_CL
 #include "shared/filter.h"
 #include "shared/types.h"
 
-// How far along an axis from the centre the sample value u in [0, 1) lies. `sign` is multiplied by the sign
-// of the filter there.
+// The offset along an axis for the sample value u in [0, 1). Multiplies `sign` by the filter's sign there.
 static inline float filter_offset(__global const float* restrict table, float u, float* sign) {
   const float below = table[0];
   const bool lobe = u < below;
@@ -17,8 +16,8 @@ static inline float filter_offset(__global const float* restrict table, float u,
   return copysign(distances[0] + (at - (float)step) * (distances[1] - distances[0]), side);
 }
 
-// Takes the place (*x, *y) in a pixel's square to one in the reach of the filter; 1.0 or -1.0 is what a
-// sample there counts.
+// Maps the place (*x, *y) in a pixel's square to the filter's support; returns the sample's weight, 1.0 or
+// -1.0.
 static inline float filter_place(__global const float* restrict table, u32 samples, float* x, float* y) {
   float sign = 1.0f;
   if (HAS_FILTER && samples > 1u) {

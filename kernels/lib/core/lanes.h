@@ -1,8 +1,7 @@
-// One source for every number of lanes: REAL is a float or a vector of LANES floats, UINTS one of words, MASK
-// an int or a vector of ints whose lanes are 0 or -1 (all bits set) for scalars too, so that select(), any()
-// and the bit operators mean the same for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b).
-// Everything here gives the same bits for every number of lanes. Included once a program: LANES is a
-// definition of the whole build.
+// One source for any number of lanes: REAL is a float or a vector of LANES floats, UINTS one of words, MASK
+// an int or a vector of ints whose lanes are 0 or -1 (all bits set), even for scalars, so that select(),
+// any() and bit operators work alike for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b). All
+// functions give the same bits for any number of lanes. LANES is defined once for the whole program.
 #ifndef SUNDOG_LIB_LANES_H
 #define SUNDOG_LIB_LANES_H
 #include "lib/core/config.h"
@@ -76,8 +75,8 @@ typedef uint16 UINTS;
 #define ALL_LANES ((MASK)(-1))
 #define LANES_IF(condition) ((condition) ? ALL_LANES : NO_LANES)
 
-// True when some lane of the mask is set: one instruction where there is one; OpenCL's any() is a chain of
-// branches in PoCL.
+// Whether any lane of the mask is set: a single instruction if available, because OpenCL's any() is a chain
+// of branches in PoCL.
 static inline int any_lane(MASK m) {
 #if LANES == 1
   return m;
@@ -103,7 +102,7 @@ static inline int any_lane(MASK m) {
 #endif
 }
 
-// Bit i of the result is set where lane i of the mask is, and the other way round.
+// Converts between a mask and bits: bit i is set if lane i is.
 static inline u32 lane_bits(MASK m) {
 #if LANES == 1
   return (u32)m & 1u;
@@ -126,12 +125,12 @@ static inline MASK lanes_of(u32 bits) {
 }
 static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
 
-// Lane i of a private REAL or MASK variable, to read or to write.
+// Lane i of a private REAL or MASK variable, as an lvalue.
 #define REAL_LANE(variable, i) (((float*)&(variable))[i])
 #define MASK_LANE(variable, i) (((int*)&(variable))[i])
 
-// Takes the lanes that have the same index as the first one out of `left`, bits of lanes, which holds some: a
-// table's entry is then read once for all of them.
+// Removes from `left`, a nonzero set of lanes, those with the same index as its first lane, so that a table's
+// entry is read once for all of them.
 static inline MASK take_alike(MASK index, u32* left, u32* value) {
   *value = (u32)MASK_LANE(index, lowest_bit(*left));
   const u32 alike = *left & lane_bits(MASK_OF(index == (MASK)((int)*value)));
@@ -139,7 +138,7 @@ static inline MASK take_alike(MASK index, u32* left, u32* value) {
   return lanes_of(alike);
 }
 
-// Writes the lanes of the mask one after another. Up to LANES - 1 values behind them may be overwritten.
+// Writes the lanes of the mask contiguously. May overwrite up to LANES - 1 values after them.
 static inline void write_packed(float* to, REAL v, MASK m) {
 #if LANES == 1
   *to = v;
@@ -213,7 +212,7 @@ static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
 
 static inline REAL3 multiply3(REAL3 a, REAL3 b) { return real3(a.x * b.x, a.y * b.y, a.z * b.z); }
 static inline REAL3 divide3(REAL3 a, REAL3 b) { return real3(a.x / b.x, a.y / b.y, a.z / b.z); }
-// The same vector in every lane; lane i of vectors, to read or to write.
+// The same vector in all lanes; lane i of vectors, to read or write.
 static inline REAL3 all3(float3 a) { return real3((REAL)(a.x), (REAL)(a.y), (REAL)(a.z)); }
 static inline float3 get3(const REAL3* a, u32 i) {
   return (float3)(REAL_LANE(a->x, i), REAL_LANE(a->y, i), REAL_LANE(a->z, i));
@@ -229,9 +228,9 @@ static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)
 static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }
 static inline REAL real_clamp(REAL a, REAL low, REAL high) { return real_min(real_max(a, low), high); }
 
-// 1 / sqrt(x) and 1 / x: the rough ones to 1e-4, for the scale of an estimate; the others to 2 ulp for x > 0
-// that are normal and below 1e37. AVX-512 starts from estimates of 14 bits, of the same bits in registers of
-// every width, in a quarter of the time that exact roots and quotients take; elsewhere these are used.
+// 1 / sqrt(x) and 1 / x: the rough ones to 1e-4, for scaling an estimate; the others to 2 ulp for normal x >
+// 0 below 1e37. AVX-512 starts from 14-bit estimates, equal in registers of any width, in a quarter of the
+// time of exact roots and quotients, which other processors use.
 #if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
 #if LANES == 16
 #define ROUGHLY(what, x) __builtin_ia32_##what##14ps512_mask(x, x, (ushort)0xFFFFu)
@@ -253,7 +252,7 @@ static inline REAL real_inverse(REAL x) {
   const REAL y = rough_inverse(x);
   return fma(y, fma(-x, y, (REAL)(1.0f)), y);
 }
-// 1 / x as division rounds it, for the same x; 1 ulp off where all bits of x's mantissa are set (Markstein
+// 1 / x as rounded by division, for the same x; 1 ulp off if all bits of the mantissa are set (Markstein
 // 1990, "Computation of Elementary Functions on the IBM RISC System/6000 Processor").
 static inline REAL rounded_inverse(REAL x) {
   const REAL y = real_inverse(x);
@@ -266,7 +265,7 @@ static inline REAL real_rsqrt(REAL x) { return 1.0f / sqrt(x); }
 static inline REAL real_inverse(REAL x) { return 1.0f / x; }
 static inline REAL rounded_inverse(REAL x) { return 1.0f / x; }
 #endif
-// x^(-n/2), n constant; n ulp. With y the rough root and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
+// x^(-n/2), n constant; n ulp. With the rough root y and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
 static inline REAL inverse_root_power(REAL x, int n) {
   const REAL y = rough_rsqrt(x);
   REAL square = y * y, power = n & 1 ? y : (REAL)(1.0f);
@@ -282,7 +281,7 @@ static inline REAL real_sqrt(REAL x) { return sqrt(x); }
 static inline REAL greatest3(REAL3 a) { return real_max(a.x, real_max(a.y, a.z)); }
 static inline REAL length3(REAL3 a) { return real_sqrt(dot3(a, a)); }
 
-// Unit length; a vector without a direction gives +x.
+// Normalises; a vector without a direction gives +x.
 static inline REAL3 unit3(REAL3 a) {
   const REAL square = dot3(a, a);
   const MASK good = MASK_OF(square > 0.0f) & MASK_OF(square < INFINITY);
@@ -290,26 +289,25 @@ static inline REAL3 unit3(REAL3 a) {
   return select3(real3((REAL)(1.0f), (REAL)(0.0f), (REAL)(0.0f)), scale3(a, inverse), good);
 }
 
-// Unit length for vectors of any length: a scene may be in nanometres or light years, and the square of a
-// length has no room for that. A power of two takes the greatest component to [1, 2) first. Zero stays,
-// infinity too.
+// Normalises vectors of any length: scenes may be in nanometres or light years, and the squared length would
+// overflow. A power of two first scales the largest component to [1, 2). Zero and infinity are unchanged.
 static inline REAL3 safe_unit3(REAL3 a) {
   const REAL size = real_max(fabs(a.x), real_max(fabs(a.y), fabs(a.z)));
   const REAL scale = AS_REAL(max(0x7f000000 - (AS_MASK(size) & 0x7f800000), (MASK)(0x00800000)));
   const REAL3 b = scale3(a, scale);
   return select3(a, scale3(b, real_rsqrt(dot3(b, b))), MASK_OF(size > 0.0f) & MASK_OF(size < INFINITY));
 }
-// For moderate lengths, such as of a sum of unit vectors.
+// Normalises vectors of moderate length, such as a sum of unit vectors.
 static inline REAL3 renormalized3(REAL3 a) { return scale3(a, real_rsqrt(dot3(a, a))); }
 
-// b where it is far enough from zero to divide by, else the nearest such number.
+// b if its magnitude suffices for a divisor, else the nearest such number.
 static inline REAL nonzero(REAL b) {
   return select(b, copysign((REAL)(1e-30f), b), MASK_OF(fabs(b) < 1e-30f));
 }
 
-// Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute where that is more. Unlike the
-// library's it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y - y^2/2
-// + y^3 p(y) in y = m - 1, p fitted on Chebyshev's nodes (error of the logarithm 7e-9). No division.
+// Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute, whichever is larger. Unlike the
+// library's, it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y -
+// y^2/2 + y^3 p(y) in y = m - 1, with p fitted at Chebyshev nodes (error of the logarithm 7e-9). No division.
 static inline REAL real_log(REAL x) {
   const MASK bits = AS_MASK(x) - 0x3f3504f3;  // of sqrt(1/2)
   const REAL e = TO_REAL(bits >> 23);
@@ -323,7 +321,7 @@ static inline REAL real_log(REAL x) {
   return fma(e, (REAL)(0.693145752f), y + fma((REAL)(-0.5f), z, tail));
 }
 
-// e^x to 3 ulp; 0 below e^-87, and above e^88 that.
+// e^x to 3 ulp; 0 below e^-87, clamped above e^88.
 static inline REAL real_exp(REAL x) {
   const REAL y = real_clamp(x, (REAL)(-87.0f), (REAL)(88.0f));
   const REAL n = fma(y, (REAL)(1.44269504f), (REAL)(12582912.0f)) - 12582912.0f;  // to the nearest integer
@@ -342,7 +340,7 @@ static inline int8 gather_eight(__global const u32* from, int8 index, int8 lanes
 }
 #endif
 
-// Words at the indices of `lanes`, which count from `from`; the others are 0.
+// Words at the indices of `lanes`, relative to `from`; 0 in other lanes.
 static inline MASK gather_words(__global const u32* from, MASK index, MASK lanes) {
 #if LANES == 1
   return lanes ? (int)from[index] : 0;

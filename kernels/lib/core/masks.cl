@@ -1,4 +1,4 @@
-// Eight-lane helpers: masks of lanes and the order of floats.
+// Eight-lane helpers: masks and ordering of floats.
 #ifndef SUNDOG_LIB_MASKS_CL
 #define SUNDOG_LIB_MASKS_CL
 #include "lib/core/config.h"
@@ -9,13 +9,13 @@ static inline u32 lane_mask(int8 lanes) {
 #if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
   return (u32)__builtin_ia32_movmskps256(as_float8(lanes));
 #else
-  // One byte a lane keeps one bit; the product gathers the eight of them in its top byte.
+  // Keep one bit per byte; the product gathers the eight bits in its top byte.
   const ulong bits = as_ulong(convert_char8(lanes >> 31)) & 0x8040201008040201UL;
   return (u32)((bits * 0x0101010101010101UL) >> 56);
 #endif
 }
 
-// Index of the lowest bit set; mask is not 0.
+// Index of the lowest set bit; mask is not 0.
 static inline u32 lowest_bit(u32 mask) {
 #if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
   return (u32)__builtin_ctz(mask);
@@ -24,7 +24,7 @@ static inline u32 lowest_bit(u32 mask) {
 #endif
 }
 
-// Not fmin and fmax: those treat NaN apart, which costs instructions.
+// Not fmin and fmax, whose handling of NaN costs instructions.
 static inline float8 least8(float8 a, float8 b) { return select(b, a, a < b); }
 static inline float8 greatest8(float8 a, float8 b) { return select(b, a, a > b); }
 

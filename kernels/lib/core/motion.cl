@@ -1,14 +1,14 @@
-// Things that move while the shutter is open: a ray of time t, in [0, 1), meets each where it is then. The
-// world is moved about the ray to where the thing was when the shutter opened: shifted by its row of the
-// table `moves` times t, then turned and shrunk about points by its rows of `turns`. Its transform and bounds
-// in its own space stay as they are.
+// Objects that move while the shutter is open: a ray of time t, in [0, 1), meets each at its position then.
+// The ray is transformed to when the shutter opened: shifted by the object's row of the table `moves` times
+// t, then rotated and scaled about points by its rows of `turns`. The object's transform and bounds are
+// unchanged.
 #ifndef SUNDOG_LIB_MOTION_CL
 #define SUNDOG_LIB_MOTION_CL
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 #include "lib/core/turns.cl"
 
-// Points of the world at these times where instance `index` would have had them when the shutter opened.
+// World points at these times, moved with instance `index` back to when the shutter opened.
 #if HAS_TURNS
 static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) {
   return unturned_points(scene->turns, scene->moves[index], p, time);
@@ -29,9 +29,8 @@ static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL ti
 static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) { return p; }
 #endif
 
-// The same for directions; and back, from when the shutter opened to these times, for normals and for vectors
-// along surfaces. How many times its first size the instance then has, and the greatest coordinate that its
-// points round at.
+// Moves directions back likewise; moves normals and surface vectors forward from when the shutter opened; the
+// instance's scale at the time, and the largest coordinate that limits its points' precision.
 #if HAS_TURNS
 static inline REAL3 still_vectors(const Scene* scene, u32 index, REAL3 d, REAL time) {
   return unturned_vectors(scene->turns, scene->moves[index], d, time);

@@ -1,10 +1,10 @@
-// Snell and Fresnel for smooth interfaces, unpolarised light, a ray a lane.
+// Snell and Fresnel for smooth interfaces and unpolarised light, one ray per lane.
 #ifndef SUNDOG_LIB_OPTICS_CL
 #define SUNDOG_LIB_OPTICS_CL
 #include "lib/core/lanes.h"
 
-// Cosine of the refracted angle, 0 under total internal reflection. `eta` is the index of the medium that
-// transmits over that of the incident one, cos_i the cosine of incidence in [0, 1].
+// Cosine of the refracted angle, 0 under total internal reflection. `eta` is the transmitted over the
+// incident index, cos_i the cosine of incidence in [0, 1].
 static inline REAL refracted_cosine(REAL cos_i, REAL eta) {
   const REAL square = 1.0f - (1.0f - cos_i * cos_i) / (eta * eta);
   return real_sqrt(real_max(square, (REAL)(0.0f)));
@@ -19,7 +19,7 @@ static inline REAL fresnel_reflectance(REAL cos_i, REAL cos_t, REAL eta) {
   return select(select(f, (REAL)(1.0f), MASK_OF(cos_t <= 0.0f)), (REAL)(0.0f), MASK_OF(eta == 1.0f));
 }
 
-// d unit, n unit and against d.
+// d is unit; n is unit and against d.
 static inline REAL3 reflect_direction(REAL3 d, REAL3 n) {
   return renormalized3(along3(d, -2.0f * dot3(d, n), n));
 }

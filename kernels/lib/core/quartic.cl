@@ -1,19 +1,18 @@
-// Real roots of the depressed quartic x^4 + a2 x^2 + a1 x + a0 in an interval, by the extrema of its
-// derivatives (Yuksel 2022, "High-Performance Polynomial Root Finding for Graphics"): between two
-// neighbouring extrema a polynomial is monotone, so each root is bracketed and none is missed but a double
-// one within rounding.
+// Real roots of the depressed quartic x^4 + a2 x^2 + a1 x + a0 in an interval, through the extrema of its
+// derivatives (Yuksel 2022, "High-Performance Polynomial Root Finding for Graphics"): a polynomial is
+// monotone between neighbouring extrema, so every root is bracketed and none is missed, except double roots
+// within rounding.
 #ifndef SUNDOG_LIB_QUARTIC_CL
 #define SUNDOG_LIB_QUARTIC_CL
 #include "lib/core/config.h"
 #include "shared/types.h"
 
-// x^4 coefficient in s[4] ... constant in s[0]; lower degrees carry zeros above.
+// Coefficients from s[4] (x^4) to s[0] (constant); lower degrees have leading zeros.
 static inline float polynomial(const float* c, float x) {
   return fma(fma(fma(fma(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
 }
 
-// The root in [low, high], over which the polynomial is monotone and changes its sign: bisection with Newton
-// steps.
+// The root in [low, high], where the polynomial is monotone and changes sign: bisection with Newton steps.
 static inline float bracketed_root(const float* c, const float* derivative, float low, float high) {
   const bool rising = polynomial(c, high) > polynomial(c, low);
   float x = 0.5f * (low + high);
@@ -34,7 +33,7 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
   return x;
 }
 
-// Roots between the `count` ascending extrema and the ends; returns how many, ascending.
+// Roots between the ends and `count` ascending extrema; returns their number; ascending.
 static inline u32 roots_between(const float* c, const float* derivative, float low, float high,
                                 const float* extrema, u32 count, float* roots) {
   u32 found = 0;

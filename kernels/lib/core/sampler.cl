@@ -1,11 +1,10 @@
-// Sample values of one sample: pure functions of pixel, sample and dimension. shared/sampler.h lists the
-// dimensions.
+// Sample values of one sample: pure functions of pixel, sample and dimension (listed in shared/sampler.h).
 #ifndef SUNDOG_LIB_SAMPLER_CL
 #define SUNDOG_LIB_SAMPLER_CL
 #include "shared/sampler.h"
 #include "shared/types.h"
 
-// Where samples lie in their pixels: a SAMPLER_* constant.
+// Distribution of samples in pixels: a SAMPLER_* constant.
 #ifndef SAMPLER
 #define SAMPLER SAMPLER_AUTO
 #endif
@@ -17,8 +16,7 @@
 // [0, 1), 24 bits.
 static inline float unit_float(u32 bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
-// The cell of sample `sample` in a grid of `samples` cells that is as square as they allow; `in_cell` is the
-// place in it.
+// The cell of sample `sample` in a nearly square grid of `samples` cells; `in_cell` is the position in it.
 static inline float2 grid_cell(u32 sample, u32 samples, float2 in_cell) {
   u32 columns = (u32)sqrt((float)samples + 0.5f);
   while (samples % columns) --columns;
@@ -27,7 +25,7 @@ static inline float2 grid_cell(u32 sample, u32 samples, float2 in_cell) {
   return fmin(at / (float2)((float)columns, (float)rows), (float2)(0x1.fffffep-1f));
 }
 
-// Where the samplers with a grid put a camera sample in its pixel, in [0, 1) each way.
+// The position of a camera sample in its pixel, in [0, 1)^2, for samplers with a grid.
 static inline float2 place_in_grid(uint2 pixel, u32 sample, u32 samples, u32 frame_seed) {
   if (SAMPLER == SAMPLER_REGULAR) return grid_cell(sample, samples, (float2)(0.5f));
   const u32 seed = hash_pixel(pixel.x, pixel.y, DIMENSION_PIXEL + frame_seed);

@@ -1,5 +1,5 @@
-// The sample values of shared/sampler.h for a pixel's sample a lane: the same bits, several at once. Pure
-// functions of pixel, sample and dimension.
+// The sample values of shared/sampler.h for one pixel sample per lane, with the same bits. Pure functions of
+// pixel, sample and dimension.
 #ifndef SUNDOG_LIB_SAMPLER_LANES_CL
 #define SUNDOG_LIB_SAMPLER_LANES_CL
 #include "lib/core/lanes.h"
@@ -44,7 +44,7 @@ static inline LANE_U32 owen_lanes(LANE_U32 x, LANE_U32 seed) {
 // unit_float() of bits: 24 of them are an int above 0.
 static inline REAL unit_lanes(LANE_U32 bits) { return TO_REAL(AS_MASK(bits >> 8)) * 0x1p-24f; }
 
-// A sum of four columns by looking it up among the sixteen, where vectors can.
+// A sum of four columns, looked up among the sixteen if vectors allow.
 #if LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
 #define SUMS_OF_FOUR(a, b, c, d)                                                                    \
   (int16)(0, a, b, a ^ b, c, a ^ c, b ^ c, a ^ b ^ c, d, a ^ d, b ^ d, a ^ b ^ d, c ^ d, a ^ c ^ d, \
@@ -72,7 +72,7 @@ static inline REAL blue_noise_lanes(LANE_U32 place, LANE_U32 dimension) {
   return unit_lanes(reversed_lanes(owen_lanes(reversed_lanes(place), hash_lanes(dimension + 0x9e3779b9u))));
 }
 
-// The pixel and the sample of each lane, and the frame's SceneInfo.seed.
+// The pixel and sample of each lane, and the frame's SceneInfo.seed.
 typedef struct LaneSamples {
   MASK x, y, sample;
   u32 seed;
@@ -93,12 +93,12 @@ static inline void unlinked_pair(const LaneSamples* at, LANE_U32 own, REAL* u, R
   }
 }
 
-// Four numbers in [0, 1) for each lane: of the dimensions from `dimension` on, a multiple of four.
+// Four numbers in [0, 1) per lane, of the dimensions from `dimension`, a multiple of four, on.
 typedef struct FourNumbers {
   REAL x, y, z, w;
 } FourNumbers;
 
-// Those of the four that `first` and `later` ask for: the first two and the two behind them; else one half.
+// The numbers selected by `first` (the first two) and `later` (the other two); one half elsewhere.
 static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
   const LANE_U32 own = AS_LANE_U32(dimension) + at->seed;
   const REAL half_way = (REAL)(0.5f);
@@ -124,14 +124,14 @@ static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bo
   return u;
 }
 
-// Two of the four: the first two, or with `later` those behind them.
+// Two of the four: the first two, or with `later` the other two.
 static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later, REAL* u, REAL* v) {
   const FourNumbers chosen = chosen_lanes(at, dimension, !later, later);
   *u = later ? chosen.z : chosen.x;
   *v = later ? chosen.w : chosen.y;
 }
 
-// Hammersley's set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
+// The Hammersley set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
 static inline void hammersley_lanes(const LaneSamples* at, u32 samples, REAL* u, REAL* v) {
   const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y);
   const LANE_U32 shift_u = hash_lanes(x + hash_lanes(y + hash_u32(at->seed))),
@@ -141,8 +141,8 @@ static inline void hammersley_lanes(const LaneSamples* at, u32 samples, REAL* u,
   *v = unit_lanes(reversed_lanes(AS_LANE_U32(at->sample)) + shift_v);
 }
 
-// Where the camera samples of `lanes` lie in their pixels, in [0, 1) each way: in the middle where `samples`,
-// those of a pixel, are one.
+// Positions of the camera samples of `lanes` in their pixels, in [0, 1)^2: the centre if `samples`, those of
+// a pixel, is one.
 static inline void places_in_pixels(const LaneSamples* at, MASK lanes, u32 samples, REAL* u, REAL* v) {
   *u = *v = (REAL)(0.5f);
   if (samples <= 1u) return;

@@ -1,6 +1,6 @@
 // The scene as kernels see it: SceneInfo and the tables of shared/scene_tables.h. A kernel takes them as
-// parameters, since OpenCL C 1.2 allows no pointers in a struct argument, and makes one Scene of them for all
-// that it calls:
+// parameters, since OpenCL C 1.2 allows no pointers in a struct argument, and collects them in a Scene for
+// its callees:
 //   __kernel void f(SCENE_PARAMETERS, ...) { const Scene scene = SCENE_OF_PARAMETERS; ... }
 #ifndef SUNDOG_LIB_TABLES_H
 #define SUNDOG_LIB_TABLES_H
@@ -18,7 +18,7 @@ typedef struct Scene {
 #define SCENE_VALUE(type, host_type, name, label) , name
 #define SCENE_OF_PARAMETERS {info SCENE_TABLES(SCENE_VALUE)}
 
-// Asks the processor for the first bytes of a row that is read later: the wait for memory is over by then.
+// Prefetches the start of a row that is read later.
 #if defined(__AVX2__) && !defined(SUNDOG_PORTABLE)
 #define FETCH_ROW(row) __builtin_prefetch((const void*)(ulong)(row))
 #else

@@ -19,7 +19,7 @@ static inline float3 object_vector(__global const Instance* instance, float3 d) 
                   fma(r2.x, d.x, fma(r2.y, d.y, r2.z * d.z)));
 }
 
-// The same, a ray a lane.
+// For points, one ray per lane.
 static inline REAL3 object_points(__global const Instance* instance, REAL3 p) {
   const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
                r2 = instance->object_from_world[2];
@@ -36,8 +36,8 @@ static inline REAL3 object_vectors(__global const Instance* instance, REAL3 d) {
                fma((REAL)(r2.x), d.x, fma((REAL)(r2.y), d.y, r2.z * d.z)));
 }
 
-// Rays into object space; of instances that only scale and move, which many solids do, with a third of the
-// products and the same bits.
+// Transforms rays to object space; instances that only scale and move, as many solids do, take a third of the
+// products for the same bits.
 static inline void into_object(__global const Instance* instance, REAL3* o, REAL3* d) {
   if (instance->flags & INSTANCE_IDENTITY) return;
   if (!(instance->flags & INSTANCE_SCALES)) {
@@ -52,7 +52,7 @@ static inline void into_object(__global const Instance* instance, REAL3* o, REAL
   *d = real3(r0.x * d->x, r1.y * d->y, r2.z * d->z);
 }
 
-// A normal is a covector: it goes to world space by the transpose of object_from_world. Not normalised.
+// Normals are covectors, so the transpose of object_from_world takes them to world space. Not normalised.
 static inline REAL3 world_normals(__global const Instance* instance, REAL3 n) {
   const float4 r0 = instance->object_from_world[0], r1 = instance->object_from_world[1],
                r2 = instance->object_from_world[2];

@@ -1,18 +1,18 @@
-// Turns and growth of instances about points while the shutter is open, back to when it opened and on from
-// then. A row of `turns` at a time.
+// Rotation and scaling of instances about points while the shutter is open, backward to when it opened and
+// forward from then; one row of `turns` at a time.
 #ifndef SUNDOG_LIB_TURNS_CL
 #define SUNDOG_LIB_TURNS_CL
 #include "lib/core/lanes.h"
 #include "shared/bvh.h"
 
 #if HAS_TURNS
-// Sine, and 1 minus cosine, of parts of a whole turn. Polynomials: a built-in may take another way for all
-// lanes because of one.
+// Sine, and 1 minus cosine, of fractions of a turn. Polynomials, because one lane can make a built-in take a
+// slower path for all.
 typedef struct TurnedParts {
   REAL sine, rest;
 } TurnedParts;
 
-// sin(pi x) for x in [-1/2, 1/2]: Taylor's series.
+// sin(pi x) for x in [-1/2, 1/2]: Taylor series.
 static inline REAL sine_of_half_turns(REAL x) {
   const REAL y = M_PI_F * x, s = y * y;
   REAL sum = fma(s, (REAL)(-1.0f / 39916800.0f), (REAL)(1.0f / 362880.0f));
@@ -40,7 +40,7 @@ static inline REAL3 spin_normal3(__global const Turn* turn, REAL3 n) {
 static inline REAL3 pivot_of(__global const Turn* turn) {
   return all3((float3)(turn->spin[0].w, turn->spin[1].w, turn->spin[2].w));
 }
-// How many times its first size a thing has.
+// The scale at a time.
 static inline REAL size_at(__global const Turn* turn, REAL time) {
   return fma(time, (REAL)(turn->turn.y), (REAL)(1.0f));
 }
@@ -55,14 +55,14 @@ static inline REAL3 turn_on(__global const Turn* turn, REAL3 a, REAL time) {
   const REAL3 once = spin3(turn, a), twice = spin3(turn, once);
   return scale3(along3(along3(a, parts.sine, once), parts.rest, twice), size_at(turn, time));
 }
-// Normals are covectors: by the transpose of turn_back().
+// Normals are covectors: multiplied by the transpose of turn_back().
 static inline REAL3 turn_normal(__global const Turn* turn, REAL3 n, REAL time) {
   const TurnedParts parts = turned_parts(time * turn->turn.x);
   const REAL3 once = spin_normal3(turn, n), twice = spin_normal3(turn, once);
   return scale3(along3(along3(n, -parts.sine, once), parts.rest, twice), 1.0f / size_at(turn, time));
 }
 
-// The rows of an instance, by its row of `moves`: `first` to `end`.
+// An instance's rows, by its row of `moves`: `first` to `end`.
 static inline u32 first_turn(float4 moves) { return moves.w > 0.0f ? (u32)moves.w - 1u : 0u; }
 static inline u32 end_of_turns(__global const Turn* turns, float4 moves) {
   return moves.w > 0.0f ? (u32)moves.w + (u32)turns[first_turn(moves)].turn.z : 0u;

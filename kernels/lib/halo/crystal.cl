@@ -1,32 +1,32 @@
-// Hexagonal prisms of ice in sunlight: how one lies, and where a ray enters it. A crystal a lane.
+// Hexagonal ice prisms in sunlight: their orientation, and where a ray enters. One crystal per lane.
 #ifndef SUNDOG_LIB_HALO_CRYSTAL_CL
 #define SUNDOG_LIB_HALO_CRYSTAL_CL
 #include "lib/halo/numbers.cl"
 
-// Light in a crystal. `at`, `d` (unit) and `sunlight` are in the crystal's coordinates: z is its axis, the
-// side faces 0, 1, 2 (and those behind) face the angles 0, 60 and 120 degrees.
+// Light in a crystal. `at`, `d` (unit) and `sunlight` are in the crystal's coordinates: z is its axis; side
+// faces 0, 1, 2 (and their opposites) are at 0, 60 and 120 degrees.
 typedef struct HaloRays {
-  REAL3 a, b, c;   // the crystal's x, y and z in the world
-  REAL3 at, d;     // where the light is, and goes
-  REAL3 sunlight;  // the way it came
+  REAL3 a, b, c;   // the crystal's axes x, y and z in the world
+  REAL3 at, d;     // position and direction of the light
+  REAL3 sunlight;  // its original direction
   REAL index;      // of refraction
-  REAL weight;     // of the light that is left
-  WORDS random;    // the state of its numbers
+  REAL weight;     // fraction of the light that is left
+  WORDS random;    // random state
 } HaloRays;
 
-// Light that leaves a crystal.
+// Light leaving a crystal.
 typedef struct HaloExits {
   REAL3 d;      // in the crystal's coordinates
-  REAL weight;  // 0: none does
+  REAL weight;  // 0: none
 } HaloExits;
 
-// How much of v is along the normals of the side faces 0, 1 and 2.
+// Components of v along the normals of side faces 0, 1 and 2.
 ALWAYS_INLINE REAL3 halo_sides(REAL3 v) {
   const REAL half_x = 0.5f * v.x, rest = 0.866025404f * v.y;
   return real3(v.x, half_x + rest, rest - half_x);
 }
 
-// a + s n: n is the normal of side face `side`, or of the basal face (+z) for -1.
+// a + s n with the normal n of side face `side`, or of the basal face (+z) for -1.
 ALWAYS_INLINE REAL3 halo_along_normal(REAL3 a, REAL s, MASK side) {
   const MASK basal = MASK_OF(side < 0), first = MASK_OF(side == 0), second = MASK_OF(side == 1);
   const REAL x = select(select(-0.5f * s, 0.5f * s, second), s, first);
@@ -36,7 +36,7 @@ ALWAYS_INLINE REAL3 halo_along_normal(REAL3 a, REAL s, MASK side) {
 
 ALWAYS_INLINE REAL halo_sign(REAL x) { return select(ALL_OF(1.0f), ALL_OF(-1.0f), MASK_OF(x < 0.0f)); }
 
-// Fresnel's reflectance for unpolarised light, by the cosines of the angles outside and inside.
+// Fresnel reflectance for unpolarised light, by the cosines outside and inside.
 ALWAYS_INLINE REAL halo_reflectance(REAL outside, REAL inside, REAL index) {
   const REAL a = outside + index * inside, b = index * outside + inside;
   const REAL inverse = halo_inverse(a * b);
@@ -44,7 +44,7 @@ ALWAYS_INLINE REAL halo_reflectance(REAL outside, REAL inside, REAL index) {
   return 0.5f * (s * s + p * p);
 }
 
-// The crystal's axes: turned by `spin` about its own axis, by the tilt, and about the upright.
+// Orients the crystal: rotates by `spin` about its own axis, by the tilt, and about the vertical.
 ALWAYS_INLINE void halo_orient(const HaloLaunch* launch, HaloRays* rays) {
   REAL sin_spin, cos_spin, sin_tilt, cos_tilt, sin_turn, cos_turn;
   REAL spin = halo_random(&rays->random);
@@ -84,8 +84,8 @@ ALWAYS_INLINE void halo_shine(const HaloLaunch* launch, HaloRays* rays) {
   rays->sunlight = real3(halo_dot(d, rays->a), halo_dot(d, rays->b), halo_dot(d, rays->c));
 }
 
-// A point of the faces that the sun sees, each as often as it shows area: the face's index (as of
-// halo_along_normal()) and the side that is lit. Sets `at`, and the weight: the area that the crystal shows.
+// A point on the faces lit by the sun, sampled by projected area: the face's index (as in
+// halo_along_normal()) and the lit side. Sets `at`, and the weight: the total projected area.
 ALWAYS_INLINE MASK halo_pick_face(const HaloLaunch* launch, HaloRays* rays, REAL* facing) {
   const REAL h = launch->half_height + ALL_OF(0.0f);
   const REAL3 s = halo_sides(rays->sunlight);
@@ -99,7 +99,7 @@ ALWAYS_INLINE MASK halo_pick_face(const HaloLaunch* launch, HaloRays* rays, REAL
   *facing = select(select(select(s.z, s.y, on_second), s.x, on_first), rays->sunlight.z, on_basal);
   const MASK side =
       select(select(select(NO_LANES + 2, NO_LANES + 1, on_second), NO_LANES, on_first), ALL_LANES, on_basal);
-  // The hexagon is three rhombi about its middle; a side face a rectangle about the normal.
+  // The hexagon is three rhombi about its centre; a side face is a rectangle about its normal.
   const REAL third = 3.0f * u;
   const MASK rhombus = TO_MASK(third);
   const REAL p = third - TO_REAL(rhombus), none = ALL_OF(0.0f);
@@ -109,7 +109,7 @@ ALWAYS_INLINE MASK halo_pick_face(const HaloLaunch* launch, HaloRays* rays, REAL
                          0.577350269f * v - 1.15470054f * p, two);
   const REAL out = 0.0f - halo_sign(*facing), along = 1.15470054f * u - 0.577350269f;
   const MASK is_first = MASK_OF(side == 0), is_second = MASK_OF(side == 1);
-  // The way along a side face is at right angles to its normal.
+  // The direction along a side face is perpendicular to its normal.
   const REAL tx = select(select(-0.866025404f * along, -0.866025404f * along, is_second), none, is_first);
   const REAL ty = select(select(-0.5f * along, 0.5f * along, is_second), along, is_first);
   const REAL3 start = real3(select(tx, px, on_basal), select(ty, py, on_basal),
@@ -119,7 +119,7 @@ ALWAYS_INLINE MASK halo_pick_face(const HaloLaunch* launch, HaloRays* rays, REAL
   return side;
 }
 
-// A ray of sunlight meets a crystal: what it reflects leaves at once, the rest enters.
+// A ray of sunlight hits a crystal: the reflected part leaves at once, the rest enters.
 ALWAYS_INLINE HaloExits halo_enter(const HaloLaunch* launch, MASK ray, HaloRays* rays) {
   rays->random = halo_hash(AS_WORDS(ray) + launch->seed);
   rays->index = launch->index_low + (launch->index_high - launch->index_low) * halo_random(&rays->random);

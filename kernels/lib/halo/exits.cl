@@ -1,10 +1,10 @@
-// Light inside a crystal meets its surface: a part leaves, the rest is reflected.
+// Light inside a crystal hits its surface: a part leaves, the rest is reflected.
 #ifndef SUNDOG_LIB_HALO_EXITS_CL
 #define SUNDOG_LIB_HALO_EXITS_CL
 #include "lib/halo/crystal.cl"
 
-// The face ahead, of the basal pair (-1) and the three pairs of sides: distances are quotients, which are
-// compared across. `facing`: the direction along the face's normal.
+// The next face, of the basal pair (-1) and the three pairs of sides: distances are quotients, compared by
+// cross multiplication. `facing`: the direction's component along the face's normal.
 ALWAYS_INLINE MASK halo_next_face(const HaloLaunch* launch, HaloRays* rays, REAL* facing) {
   const REAL3 s = halo_sides(rays->d), q = halo_sides(rays->at);
   const REAL way[3] = {s.x, s.y, s.z}, place[3] = {q.x, q.y, q.z};
@@ -24,12 +24,12 @@ ALWAYS_INLINE MASK halo_next_face(const HaloLaunch* launch, HaloRays* rays, REAL
   return side;
 }
 
-// Takes the rays to the surface and back inwards; returns what leaves there. `side` is where.
+// Moves the rays to the surface and reflects them; returns the light that leaves there. `side`: the face.
 ALWAYS_INLINE HaloExits halo_bounce(const HaloLaunch* launch, HaloRays* rays, MASK* side) {
   REAL facing;
   *side = halo_next_face(launch, rays, &facing);
   const REAL inside = fabs(facing), index = rays->index;
-  const REAL left = 1.0f - (1.0f - inside * inside) * index * index;  // the square of the cosine outside
+  const REAL left = 1.0f - (1.0f - inside * inside) * index * index;  // squared cosine outside
   const MASK leaves = MASK_OF(left > 0.0f);
   const REAL outside = halo_root(select(ALL_OF(1.0f), left, leaves));
   const REAL part = select(ALL_OF(1.0f), halo_reflectance(outside, inside, index), leaves);

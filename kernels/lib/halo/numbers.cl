@@ -1,6 +1,6 @@
-// Arithmetic of halos: of floats only additions, products, comparisons and conversions, which every device
-// rounds alike, and never fma(): a map has the same bits on all devices, and on the host, which compiles
-// these files as C++ (host/compile/halo/host_lanes.h stands for lib/core/lanes.h there).
+// Arithmetic of halos: only float additions, products, comparisons and conversions, which every device rounds
+// alike, and never fma(), so that a map has the same bits on all devices and on the host, which compiles
+// these files as C++ (host/compile/halo/host_lanes.h replaces lib/core/lanes.h there).
 #ifndef SUNDOG_LIB_HALO_NUMBERS_CL
 #define SUNDOG_LIB_HALO_NUMBERS_CL
 #include "lib/core/lanes.h"
@@ -29,8 +29,8 @@ typedef uint16 WORDS;
 
 ALWAYS_INLINE REAL halo_dot(REAL3 a, REAL3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// 1 / x for x that are normal and below 1e37, to 2 ulp: a guess by the exponent (to 12 %), then Newton's
-// steps, which double its digits.
+// 1 / x for normal x below 1e37, to 2 ulp: an estimate from the exponent (to 12 %), then Newton steps, which
+// double its digits.
 ALWAYS_INLINE REAL halo_inverse(REAL x) {
   REAL y = AS_REAL(0x7ef311c7 - AS_MASK(x));
   y = y * (2.0f - x * y);
@@ -38,7 +38,7 @@ ALWAYS_INLINE REAL halo_inverse(REAL x) {
   return y * (2.0f - x * y);
 }
 
-// sqrt(x) for x >= 0 below 1e37, by 1 / sqrt(x) in the same way (the guess is good to 3 %).
+// sqrt(x) for x >= 0 below 1e37, through 1 / sqrt(x) likewise (the estimate is within 3 %).
 ALWAYS_INLINE REAL halo_inverse_root(REAL x) {
   const REAL half_x = 0.5f * x;
   REAL y = AS_REAL(0x5f375a86 - (AS_MASK(x) >> 1));
@@ -48,7 +48,7 @@ ALWAYS_INLINE REAL halo_inverse_root(REAL x) {
 }
 ALWAYS_INLINE REAL halo_root(REAL x) { return x * halo_inverse_root(x); }
 
-// Sine and cosine of `turns` (a few at most), by their series in an eighth of a turn about zero; 1e-7.
+// Sine and cosine of `turns` (a few at most), by series within an eighth of a turn about zero; 1e-7.
 ALWAYS_INLINE void halo_turn(REAL turns, REAL* sine, REAL* cosine) {
   const REAL quarters = 4.0f * turns;
   const MASK k = TO_MASK(quarters + select(ALL_OF(0.5f), ALL_OF(-0.5f), MASK_OF(quarters < 0.0f)));
@@ -81,7 +81,7 @@ ALWAYS_INLINE WORDS halo_hash(WORDS x) {
   return x ^ (x >> 16);
 }
 
-// The next of a ray's random numbers in [0, 1), of 24 bits.
+// The next of a ray's random numbers in [0, 1), with 24 bits.
 ALWAYS_INLINE REAL halo_random(WORDS* state) {
   *state = *state + 0x9e3779b9u;
   return TO_REAL(AS_MASK_OF_WORDS(halo_hash(*state) >> 8)) * 5.96046448e-8f;

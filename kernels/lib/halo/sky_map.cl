@@ -1,5 +1,5 @@
-// The map of the sky that light is counted in: the sphere on a square, cells of equal area (Clarberg, "Fast
-// Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008); the upper half is the square's inner diamond.
+// The map of the sky: the sphere on a square with cells of equal area (Clarberg, "Fast Equal-Area Mapping of
+// the (Hemi)Sphere using SIMD", 2008); the upper half is the inner diamond.
 #ifndef SUNDOG_LIB_HALO_SKY_MAP_CL
 #define SUNDOG_LIB_HALO_SKY_MAP_CL
 #include "lib/halo/crystal.cl"
@@ -9,14 +9,14 @@
 #define HALO_ADD(map, index, units) atomic_add((map) + (index), units)
 #endif
 
-// The cell of the directions d, from the ground towards where the light comes from.
+// The cells of the directions d, from the ground towards the light.
 ALWAYS_INLINE MASK halo_cell(REAL3 d, u32 side) {
   const REAL x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
   const MASK swapped = MASK_OF(x < y);
   const REAL greater = select(x, y, swapped), smaller = select(y, x, swapped);
   const REAL radius = halo_root((x * x + y * y) * halo_inverse(1.0f + z));
   const REAL b = smaller * halo_inverse(real_max(greater, ALL_OF(1e-20f))), w = b * b;
-  // Of the arc tangent in quarter turns, fitted to 1e-6.
+  // Arc tangent in quarter turns, fitted to 1e-6.
   const REAL angle =
       b * (0.63660693f +
            w * (-0.21177506f + w * (0.12329435f + w * (-0.07426241f + w * (0.03362848f - w * 0.00749333f)))));
@@ -31,8 +31,8 @@ ALWAYS_INLINE MASK halo_cell(REAL3 d, u32 side) {
          TO_MASK(real_clamp(column, none, ALL_OF(most)));
 }
 
-// Adds light that leaves the crystals to the cells that people see it in: whole units, of which a random
-// number decides, so that the mean is exact and little light costs little.
+// Adds light leaving the crystals to the cells where observers see it: integer units, rounded randomly, so
+// that the mean is exact and little light costs little.
 ALWAYS_INLINE void halo_count(const HaloLaunch* launch, HALO_MAP map, HaloRays* rays, const HaloExits* exits,
                               MASK lanes) {
   const MASK units = TO_MASK(exits->weight * HALO_UNITS + halo_random(&rays->random)) & lanes;

@@ -1,10 +1,10 @@
-// Sunlight through crystals of one kind, into the map of the sky.
+// Traces sunlight through crystals of one kind to the map of the sky.
 #ifndef SUNDOG_LIB_HALO_TRACE_CL
 #define SUNDOG_LIB_HALO_TRACE_CL
 #include "lib/halo/exits.cl"
 #include "lib/halo/sky_map.cl"
 
-// Weights by where the light went (HALO_SENT, ...), a sum a lane.
+// Weights by destination (HALO_SENT, ...), one sum per lane.
 typedef struct HaloSums {
   MASK sum[HALO_TALLIES];
 } HaloSums;
@@ -13,7 +13,7 @@ ALWAYS_INLINE void halo_tally(HaloSums* sums, u32 which, REAL weight, MASK lanes
   sums->sum[which] += TO_MASK(weight * HALO_TALLY_UNITS + 0.5f) & lanes;
 }
 
-// Light that leaves as it came (through parallel faces) is no halo: it is in the sun's own place.
+// Light leaving in its original direction (through parallel faces) is no halo: it appears at the sun.
 ALWAYS_INLINE void halo_leave(const HaloLaunch* launch, HALO_MAP map, HaloRays* rays, const HaloExits* exits,
                               MASK lanes, HaloSums* sums) {
   const MASK straight = MASK_OF(halo_dot(exits->d, rays->sunlight) > 0.999995f) & lanes;

@@ -1,15 +1,15 @@
-// The pinhole camera and what lies behind everything.
+// The pinhole camera and the background.
 #ifndef SUNDOG_LIB_CAMERA_CL
 #define SUNDOG_LIB_CAMERA_CL
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
-// Rays and their intervals, in world space unless it is said otherwise.
+// Rays and their intervals, in world space unless stated otherwise.
 typedef struct Rays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
 #if HAS_CONES
-  REAL spread;  // how much wider their cones become on each unit of their way
+  REAL spread;  // growth of their cones' width per unit of distance
 #endif
 #if HAS_OBJECT_MOTION
   REAL time;  // from 0, when the shutter opens, to 1
@@ -22,14 +22,14 @@ static inline void set_ray_times(REAL time, Rays* rays) { rays->time = time; }
 static inline void set_ray_times(REAL time, Rays* rays) {}
 #endif
 
-// How much wider a pixel's footprint becomes on each unit of a ray's way.
+// Growth of a pixel's footprint per unit of a ray's distance.
 static inline float pixel_spread(__global const SceneInfo* restrict info) {
   const float3 dx = info->camera_dx.xyz;
   return sqrt(dot(dx, dx));
 }
 
-// The same of a sample's. The samples of a pixel share it, but each sees more than its part, or little would
-// be filtered.
+// Growth of a sample's footprint. The samples share the pixel, but each sees more than its share, or too
+// little would be filtered.
 static inline float sample_spread(__global const SceneInfo* restrict info) {
   return pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f);
 }
@@ -57,7 +57,7 @@ static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, 
   return rays;
 }
 
-// What a ray sees that meets nothing, by its unit direction.
+// The background for a ray of this unit direction.
 static inline REAL3 background_along(__global const SceneInfo* restrict info, REAL3 d) {
   const float3 bottom = info->background_bottom.xyz;
   const REAL sine = dot3(d, all3(info->up.xyz));

@@ -1,4 +1,4 @@
-// Samples of pixels as they begin, a pixel's a lane: their places in the image, and the camera's rays there.
+// Starts samples of pixels, one pixel per lane: positions in the image, and camera rays.
 #ifndef SUNDOG_LIB_CAMERA_SAMPLES_CL
 #define SUNDOG_LIB_CAMERA_SAMPLES_CL
 #include "lib/core/filter.cl"
@@ -8,10 +8,10 @@
 
 typedef struct BegunSamples {
   LaneSamples at;
-  MASK lanes;  // those that have a sample
+  MASK lanes;  // those with a sample
 } BegunSamples;
 
-// The rays of the samples, of which a pixel has `samples`; signs[lane] becomes what the lane's sample counts.
+// The samples' rays, where a pixel has `samples`; signs[lane] becomes the lane's sample weight.
 static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun, u32 samples,
                                    MediaStack around, float* signs) {
   REAL u_x, u_y;

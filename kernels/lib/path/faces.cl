@@ -1,5 +1,5 @@
-// Which side of which material rays hit, before anything is shaded: interfaces and shadow rays need no more.
-// A ray a lane.
+// The side and material that rays hit, without shading: all that interfaces and shadow rays need. One ray per
+// lane.
 #ifndef SUNDOG_LIB_FACES_CL
 #define SUNDOG_LIB_FACES_CL
 #include "lib/core/motion.cl"
@@ -7,7 +7,7 @@
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
 
-// Which side of what a ray hit.
+// The side and material that a ray hit.
 typedef struct Faces {
   REAL3 outward;       // world, not normalised; its sign against the direction tells entering from leaving
   MASK entering;       // the ray comes from outside
@@ -28,7 +28,7 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
   faces.material = NO_LANES;
   faces.flags = NO_LANES;
   faces.medium = NO_LANES;
-  MASK by_triangle = NO_LANES;  // their triangles have materials of their own
+  MASK by_triangle = NO_LANES;  // whose triangles have their own materials
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
     const MASK mine = take_alike(hits->instance, &left, &index);

@@ -1,5 +1,5 @@
-// The scene's distance fields among its other things: a batch of world-space rays is marched through each of
-// them, as far as the nearest hit that is known. Instances [instance_count, field_end) place the fields.
+// Distance fields among the scene's other objects: marches a batch of world-space rays through each field, up
+// to the nearest known hit. Instances [instance_count, field_end) place the fields.
 #ifndef SUNDOG_LIB_FIELDS_CL
 #define SUNDOG_LIB_FIELDS_CL
 #include "lib/core/motion.cl"
@@ -7,8 +7,8 @@
 #include "lib/core/transform.cl"
 #include "lib/path/scene_ray.cl"
 
-// The wanted parts of a hit: all; all, on the way to a light, so that fields with soft shadows are left to
-// soft_shadows(); only its instance, on such a way.
+// Why a ray is marched. TO_SEE: full hit. TO_LIGHT: full hit of a shadow ray; fields with soft shadows are
+// left to soft_shadows(). TO_BLOCK: likewise, but sets only the instance.
 #define MARCH_TO_SEE 0u
 #define MARCH_TO_LIGHT 1u
 #define MARCH_TO_BLOCK 2u
@@ -16,7 +16,7 @@
 #if HAS_SDF
 #include "lib/sdf/surface.cl"
 
-// A point as marching counts it: in the field's space, in deep views from the place of the world's origin.
+// A point for marching: in field space; in deep views relative to the world origin's place.
 #ifdef SDF_DEEP
 static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
   return object_vectors(instance, p);
@@ -27,7 +27,7 @@ static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
 }
 #endif
 
-// The search for the nearest hit among the fields: the batch's rays, and the hit so far.
+// The search for the nearest hit among fields: the batch's rays, and the hit so far.
 typedef struct FieldSearch {
   REAL3 o, d;  // world
   REAL t_min, t_best, footprint;
@@ -63,7 +63,7 @@ static inline REAL3 search_directions(const Scene* scene, u32 index, const Field
 }
 #endif
 
-// The light of fields that glow, which rays gather as they pass.
+// Light of glowing fields, which rays gather as they pass.
 #if HAS_GLOW
 static inline void start_glow(FieldSearch* search) { search->glow = all3((float3)(0.0f)); }
 static inline void gather_glow(__global const SdfField* restrict field, const MarchHits* hits,
@@ -100,26 +100,26 @@ static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK 
   return search;
 }
 
-// Lanes that start in the interval.
+// Lanes that start inside the interval.
 static inline MASK starts_within(__global const SdfField* restrict field, const MarchRays* rays) {
   const REAL3 p = along3(rays->origin, rays->t_min, rays->direction);
   return MASK_OF(p.x >= field->lower.x) & MASK_OF(p.x <= field->upper.x) & MASK_OF(p.y >= field->lower.y) &
          MASK_OF(p.y <= field->upper.y) & MASK_OF(p.z >= field->lower.z) & MASK_OF(p.z <= field->upper.z);
 }
 
-// Sets on which side of the field's surface the rays start.
+// Sets the side of the field's surface on which rays start.
 #if SDF_TWO_SIDED
 static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {
   const u32 place = scene->instances[index].root;
   __global const SdfField* restrict field = scene->sdf_fields + place;
   rays->inside = rays->leaving & MASK_OF((search->from & 1) != 0);
-  // A ray that starts elsewhere asks the field itself.
+  // A ray that starts elsewhere evaluates the field.
   const MASK ask = rays->active & ~rays->leaving & starts_within(field, rays);
   if (!any_lane(ask)) return;
   const REAL3 start = along3(rays->origin, rays->t_min, rays->direction);
   const REAL d = sdf_signed(place, start, ask, scene->sdf_parameters);
   rays->inside |= ask & MASK_OF(d < 0.0f);
-  // One that starts closer to a closed form than a threshold, on another surface, has not arrived there yet.
+  // A ray that starts on another surface within a threshold of a closed form has not arrived there yet.
   const REAL threshold = march_threshold(field, rays, rays->t_min, length3(rays->direction));
   if (field->flags & SDF_FLAGS & SDF_SMOOTH) rays->leaving |= ask & MASK_OF(fabs(d) < threshold);
 }
@@ -127,7 +127,7 @@ static inline void start_on_side(const Scene* scene, u32 index, const FieldSearc
 static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {}
 #endif
 
-// The rays in the field's own space, and on which side of its surface they start.
+// The rays in field space, and the side of its surface on which they start.
 static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const FieldSearch* search) {
   __global const Instance* instance = scene->instances + index;
   MarchRays rays;
@@ -144,12 +144,12 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   return rays;
 }
 
-// What a work-item's marches of one sample may cost, in iterations of formulas: so much that no picture that
-// anyone waits for comes near it, and so little that no launch runs for long, however hard the fractal. What
-// finds nothing left is counted and reported.
+// Limit of a work-item's march cost per sample, in iterations of formulas: far above any practical picture,
+// but low enough that no launch runs for long, however hard the fractal. Marches without budget are counted
+// and reported.
 #define MARCH_WORK 2000000u
 
-// Steps through a field that are left to the sample.
+// Steps through a field that the sample has left.
 static inline u32 steps_left(__global const SdfField* restrict field, const u32* counts) {
   return counts[COUNT_MARCH_LEFT] / field->iterations;
 }
@@ -157,7 +157,7 @@ static inline void pay_for_steps(__global const SdfField* restrict field, u32 st
   counts[COUNT_MARCH_LEFT] -= min(steps * field->iterations, counts[COUNT_MARCH_LEFT]);
 }
 
-// Marches through one field and keeps what is nearer.
+// Marches through one field and keeps a nearer hit.
 static inline void march_field(const Scene* scene, u32 index, FieldSearch* search, u32* counts) {
   __global const SdfField* restrict field = scene->sdf_fields + scene->instances[index].root;
   const u32 flags = scene->materials[scene->instances[index].material].flags;
@@ -186,7 +186,7 @@ static inline void march_field(const Scene* scene, u32 index, FieldSearch* searc
   pay_for_steps(field, most, counts);
 }
 
-// Normals of the lanes that met instance `index`.
+// Sets normals of the lanes that hit instance `index`.
 static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch* search, Hits* hits) {
   const MASK mine = MASK_OF(search->winner == (int)index);
   if (!any_lane(mine)) return;
@@ -194,8 +194,8 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
               d = object_vectors(scene->instances + index, search_directions(scene, index, search));
   REAL3 normal = sdf_normal(scene, scene->instances[index].root, along3(o, search->t_best, d),
                             search->threshold, mine, search->cut);
-  // A normal must not contradict the side that the ray comes from: it is bent as far as the silhouette. Of a
-  // closed form it is that of the other side of a wall without thickness.
+  // A normal must not contradict the ray's side: it is bent to the silhouette. For a closed form it belongs
+  // to the other side of a wall without thickness.
   const REAL speed = length3(d), towards = dot3(normal, d) / speed;
   const MASK inside = search->inside;
   const REAL limit = select((REAL)(-1e-3f), (REAL)(1e-3f), inside);
@@ -212,8 +212,8 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
   hits->prim = select(hits->prim, NO_LANES, mine);
 }
 
-// Takes `hits`, which holds the nearest ones so far, to a field's where that is nearer, for the lanes of
-// `active`. Adds to the rays' glow.
+// Replaces `hits`, the nearest so far, by nearer hits on fields, for the lanes of `active`. Adds to the rays'
+// glow.
 NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
                                u32* counts) {
   const bool to_light = purpose != MARCH_TO_SEE;
@@ -230,7 +230,7 @@ NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active,
   if (!to_light) add_glow(rays, &search, active);
 }
 
-// A sample's marches are paid from here.
+// Sets the march budget of a sample.
 static inline void start_marching(u32* counts) { counts[COUNT_MARCH_LEFT] = MARCH_WORK; }
 #else
 static inline void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,

@@ -1,12 +1,12 @@
-// The camera's rays of a sample: through a lens, and while the camera moves, where the scene has these.
+// Camera rays of a sample, with a lens and a moving camera if the scene has these.
 #ifndef SUNDOG_LIB_LENS_CL
 #define SUNDOG_LIB_LENS_CL
 #include "lib/core/directions.cl"
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/camera.cl"
 
-// A point of the regular polygon of `blades` corners on the unit circle, uniform in area: one of its
-// triangles, then a point of that.
+// A uniformly distributed point of the regular polygon with `blades` corners on the unit circle: chooses a
+// triangle, then a point in it.
 static inline void place_in_polygon(float blades, REAL u_x, REAL u_y, REAL* x, REAL* y) {
   const REAL scaled = u_x * blades, blade = real_min(floor(scaled), (REAL)(blades - 1.0f));
   const REAL out = real_sqrt(real_clamp(scaled - blade, (REAL)(0.0f), (REAL)(1.0f)));
@@ -15,7 +15,7 @@ static inline void place_in_polygon(float blades, REAL u_x, REAL u_y, REAL* x, R
   *y = out * (sin(from) + u_y * (sin(to) - sin(from)));
 }
 
-// Where samples lie: in the image, on the lens, in time.
+// Positions of samples in the image, on the lens, in time.
 typedef struct CameraSamples {
   REAL x, y;
 #if HAS_LENS
@@ -26,7 +26,7 @@ typedef struct CameraSamples {
 #endif
 } CameraSamples;
 
-// The pinhole camera at one time, before lens and motion; `along` is of length 1 along the view.
+// The pinhole camera at one time, before lens and motion; `along` has length 1 along the view.
 typedef struct CameraPlaces {
   REAL3 position, along, dx, dy;
 } CameraPlaces;
@@ -59,7 +59,7 @@ static inline void move_camera(__global const SceneInfo* restrict info, const Ca
 static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {
   pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), true, &samples->lens_x, &samples->lens_y);
 }
-// What the lens adds to the origin, by its two numbers.
+// The origin's offset by the lens.
 static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_x, REAL u_y) {
   REAL x, y;
   if (info->lens_y.w > 0.0f)
@@ -73,7 +73,7 @@ static inline void pass_lens(__global const SceneInfo* restrict info, const Came
   const REAL3 offset = lens_offset(info, samples->lens_x, samples->lens_y);
   camera->position = add3(camera->position, offset);
   camera->along =
-      along3(camera->along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through what is sharp
+      along3(camera->along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through the point in focus
 }
 #else
 static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {}
@@ -81,13 +81,13 @@ static inline void pass_lens(__global const SceneInfo* restrict info, const Came
                              CameraPlaces* camera) {}
 #endif
 
-// On the lens and in time.
+// Samples the lens and time.
 static inline void set_camera_samples(const LaneSamples* at, CameraSamples* samples) {
   set_lens_places(at, samples);
   set_times(at, samples);
 }
 
-// The rays of samples.
+// The samples' rays.
 static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
                                        const CameraSamples* samples) {
   if (!(HAS_LENS | HAS_CAMERA_MOTION)) {

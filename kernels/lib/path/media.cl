@@ -1,17 +1,17 @@
-// The stack of media that travels with a ray. Where solids overlap, the medium of the highest priority is the
-// one light is in; of equal priorities the one entered last (Schmidt and Budge 2002, "Simple Nested
-// Dielectrics in Ray Traced Images").
+// The stack of media that travels with a ray. Where solids overlap, the medium of highest priority applies;
+// among equal priorities, the last entered (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced
+// Images").
 #ifndef SUNDOG_LIB_MEDIA_CL
 #define SUNDOG_LIB_MEDIA_CL
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
-// Up to eight media in the order of entry, the last in the lowest byte; a byte holds the medium's index plus
-// one, 0 is empty. One register, so that a waiting ray stays small. The host refuses scenes of more than
-// MAX_MEDIA media.
+// Up to eight media in order of entry, the last in the lowest byte; a byte holds the medium's index plus one,
+// 0 is empty. A single register, to keep waiting rays small. The host rejects scenes with more than MAX_MEDIA
+// media.
 typedef ulong MediaStack;
 
-// Index of the medium that light is in; 0 is the world's.
+// Index of the effective medium; 0 is the world's.
 static inline u32 current_medium(__global const Medium* restrict media, MediaStack stack) {
   if (!stack) return 0u;
   u32 best = (u32)(stack & 0xFFu) - 1u;
@@ -23,8 +23,7 @@ static inline u32 current_medium(__global const Medium* restrict media, MediaSta
   return best;
 }
 
-// Enters or leaves `medium`. Returns false when that cannot be: the stack is full, or the medium was never
-// entered.
+// Enters or leaves `medium`. Returns false if the stack is full or the medium was never entered.
 static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) {
   const MediaStack entry = medium + 1u;
   if (entering) {
@@ -42,14 +41,14 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
   return false;
 }
 
-// Beer-Lambert: the part of light that passes `distance` in the medium of each lane of `lanes`, 1 elsewhere.
+// Beer-Lambert: transmittance over `distance` in the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
   REAL3 kept = all3((float3)(1.0f));
   u32 index;
   for (u32 left = HAS_ABSORPTION ? lane_bits(lanes) : 0u; left;) {
     const MASK mine = take_alike(medium, &left, &index);
     const float3 a = media[index].absorption.xyz;
-    // A colour that is not absorbed keeps its bits, over infinite distances too.
+    // Unabsorbed colours keep their bits, even over infinite distances.
     if (a.x != 0.0f) kept.x = select(kept.x, real_exp(-a.x * distance), mine);
     if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
     if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
@@ -57,13 +56,13 @@ static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, R
   return kept;
 }
 
-// Whether light of no wavelength is bent from one to the other.
+// Whether an interface between these media refracts at no wavelength.
 static inline bool same_index(__global const Medium* a, __global const Medium* b) {
   if (HAS_DISPERSION && a->spectrum != b->spectrum) return false;
   return a->absorption.w == b->absorption.w;
 }
 
-// Index of refraction of the medium of each lane of `lanes`, 1 elsewhere.
+// Refractive index of the medium of each lane of `lanes`, 1 elsewhere.
 static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
   REAL index = (REAL)(1.0f);
   u32 at;
@@ -74,7 +73,7 @@ static inline REAL refraction_index(__global const Medium* restrict media, MASK 
   return index;
 }
 
-// Index of refraction behind the interfaces of `lanes` over that before them, 1 elsewhere.
+// Refractive index behind the interfaces of `lanes` over that before them, 1 elsewhere.
 static inline REAL relative_index(__global const Medium* restrict media, MASK before, MASK after,
                                   MASK lanes) {
   if (!HAS_MEDIA) return (REAL)(1.0f);

@@ -1,10 +1,10 @@
-// Which media a place is inside of, found by following a line from it to the outside.
+// Finds the media that contain a place by following a line from it to the outside.
 #ifndef SUNDOG_LIB_MEDIA_AROUND_CL
 #define SUNDOG_LIB_MEDIA_AROUND_CL
 #include "lib/path/segment.cl"
 
-// The line leaves `medium`: one that it entered, or one that holds the camera. A medium that is left
-// later was entered earlier: it goes to the far end.
+// The line leaves `medium`: one that it entered, or one that contains the camera. Of the latter, media left
+// later were entered earlier, so they go to the far end.
 static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
   if (cross_boundary(entered, medium, false)) return;
   u32 shift = 0;
@@ -13,7 +13,7 @@ static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* hol
 }
 
 #if HAS_TOUCHING
-// The line at faces that lie in one place. Returns the distance of the last one.
+// Processes the line at coincident faces. Returns the distance of the last one.
 static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                 MediaStack* entered, MediaStack* holding) {
   const Hit first = get_hit(hits, 0);
@@ -37,11 +37,11 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
 }
 #endif
 
-// The media around the place p: a solid that the line leaves without having entered it holds the place, and
-// the nearest such exit was entered last.
+// The media around the place p: a solid that the line leaves without having entered it contains p, and the
+// nearest such exit was entered last.
 NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
   const float3 d =
-      (float3)(0.3141f, 0.8660f, 0.3890f);  // off every axis that a scene is likely to be built along
+      (float3)(0.3141f, 0.8660f, 0.3890f);  // not along an axis that a scene is likely to be aligned with
   Rays line;
   line.o = all3(p);
   line.d = renormalized3(all3(d));
@@ -51,7 +51,7 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
   set_ray_times((REAL)(0.0f), &line);
   SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
-  u32 counts[COUNTERS];  // marching counts, which nobody asks for here
+  u32 counts[COUNTERS];  // required by marching, unused here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   start_marching(counts);
   MediaStack entered = 0, holding = 0;

@@ -1,5 +1,5 @@
-// Nearest hits of a batch of rays among all that a scene holds: the BVH's instances and the planes from the
-// tracer, then the marched fields, which only look as far as that.
+// Nearest hits of a batch among everything in the scene: first instances and planes by the tracer, then
+// fields by marching up to those hits.
 #ifndef SUNDOG_LIB_NEAREST_CL
 #define SUNDOG_LIB_NEAREST_CL
 #include "lib/core/config.h"
@@ -8,7 +8,7 @@
 #include "lib/path/scene_ray.cl"
 #include "lib/trace/traverse.cl"
 
-// The hits of the lanes of `active`; elsewhere nothing is hit. `coherent`: the rays run close together.
+// The hits of the lanes of `active`; no hits elsewhere. `coherent`: the rays are coherent.
 static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, Hits* hits,
                                 u32* counts) {
   trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
@@ -16,7 +16,7 @@ static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active
   march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);
 }
 
-// The same for shadow rays.
+// nearest_hits() for shadow rays.
 static inline void nearest_to_light(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                     Hits* hits, u32* counts) {
   trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
@@ -38,8 +38,8 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
 }
 
 #if BATCH == 1
-// One ray of either kind, so that the lanes of a group that follow different kinds stay together: the
-// nearest hit, or of an opaque scene's shadow ray any.
+// One ray of either kind, so that lanes of a group with different kinds stay together: the nearest hit or,
+// for an opaque scene's shadow ray, any.
 static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
                              u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;

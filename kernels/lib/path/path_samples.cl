@@ -1,10 +1,10 @@
-// Random numbers for what happens on the way of rays: of each ray's pixel, sample and place in the ray tree.
+// Random numbers along rays: by each ray's pixel, sample and position in the ray tree.
 #ifndef SUNDOG_LIB_PATH_SAMPLES_CL
 #define SUNDOG_LIB_PATH_SAMPLES_CL
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/ray_stack.cl"
 
-// The pixels of a work-item's tile, and which of their samples is made.
+// The pixels of a work-item's tile, and their current sample.
 typedef struct TileSamples {
 #if HAS_RANDOM
   MASK x, y;
@@ -22,8 +22,8 @@ static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
 
 static inline void start_branches(WaitingRays* paths) { paths->branch = NO_LANES; }
 
-// Place in the ray tree of a child of `branch` (0: the camera's ray) by the number of its kind: what it adds
-// to dimensions, so that surfaces of one depth differ.
+// Position in the ray tree of a child of `branch` (0: the camera ray) by its kind: an offset of dimensions
+// that distinguishes surfaces of equal depth.
 static inline MASK child_branch(MASK branch, u32 kind) {
   return AS_MASK(hash_lanes(AS_LANE_U32(branch) + (kind + 1u)) & ~0xFFFu);
 }
@@ -32,8 +32,8 @@ static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays
   child->branch = child_branch(parent->branch, kind);
 }
 
-// The numbers of the surfaces that the rays of `lanes` have met: pixels, and the dimensions from `offset`
-// (BOUNCE_...) on of that surface, for the light `light` (0 where it is no light's).
+// The numbers of the surfaces hit by the rays of `lanes`: pixels, and dimensions from `offset` (BOUNCE_...)
+// on, for the light `light` (0 otherwise).
 typedef struct BounceNumbers {
   LaneSamples at;
   MASK first;
@@ -54,7 +54,7 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
   numbers->later = offset & 2u;
 }
 
-// Two of them in the sample `part` of the `parts` into which the pixel's sample is divided.
+// Two of these numbers for part `part` of the `parts` into which the pixel's sample is divided.
 static inline void next_numbers(const TileSamples* tile, u32 part, u32 parts, BounceNumbers* numbers,
                                 REAL* u_x, REAL* u_y) {
   numbers->at.sample = (MASK)((int)(tile->sample * parts + part));

@@ -1,12 +1,12 @@
-// Camera, reflected, refracted and shadow rays of pixels, where the host asks for them. With RAYS_BY_LANE
-// they are counted for each of a work-item's pixels, behind the counts of the launch; else for all of them,
-// as those of the first.
+// Counts camera, reflected, refracted and shadow rays of pixels, on request. With RAYS_BY_LANE they are
+// counted per pixel of a work-item, after the launch's counters; else for all its pixels together, as the
+// first one's.
 #ifndef SUNDOG_LIB_RAY_COUNTS_CL
 #define SUNDOG_LIB_RAY_COUNTS_CL
 #include "lib/core/lanes.h"
 #include "lib/path/tile.cl"
 
-// An integrator whose lanes have a pixel each may define it for all its kernels.
+// An integrator with one pixel per lane may define it for all its kernels.
 #ifndef RAYS_BY_LANE
 #define RAYS_BY_LANE HAS_RAY_COUNTS
 #endif
@@ -17,17 +17,17 @@ static inline void count_lanes(u32* counts, u32 which, MASK lanes) { counts[whic
 #if RAYS_BY_LANE
 #define ALL_COUNTS (COUNTERS + BATCH)
 
-// A ray in each lane of `lanes`, of the work-item's pixels `pixels`.
+// Counts a ray for each lane of `lanes`, in the work-item's pixels `pixels`.
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
     counts[COUNTERS + MASK_LANE(pixels, lowest_bit(bits))] += 1u;
 }
-// The same where lane i is of pixel i.
+// note_rays() if lane i is of pixel i.
 static inline void note_own_rays(MASK lanes, u32* counts) {
   float* own = (float*)(counts + COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
-// Adds the rays of a lane to those of the rectangle's pixel `place`, and forgets them.
+// Adds a lane's rays to those of the rectangle's pixel `place`.
 static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32* counts,
                                  __global u32* restrict rays) {
   if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];

@@ -1,25 +1,24 @@
-// Rays that wait, with what each adds to its pixel. Arrays by member, so that a batch is pushed and taken in
+// Waiting rays with their contributions to pixels. Arrays by member, so that a batch is pushed and popped in
 // whole vectors.
 #ifndef SUNDOG_LIB_RAY_STACK_CL
 #define SUNDOG_LIB_RAY_STACK_CL
 #include "lib/path/scene_ray.cl"
 
-// What rays carry besides their way.
+// Data of rays besides their geometry.
 typedef struct WaitingRays {
-  REAL3 throughput;  // of a shadow ray: the light that it would bring
+  REAL3 throughput;  // of a shadow ray: the light that it carries
   MASK pixel;        // in the work-item's tile
-  MASK depth;        // the camera's ray has 1, a shadow ray 0; with TURNED
+  MASK depth;        // 1 for a camera ray, 0 for a shadow ray; with TURNED
 #if HAS_RANDOM
-  MASK branch;  // the ray's place in the ray tree, for random numbers; 0: the camera's ray
+  MASK branch;  // position in the ray tree, for random numbers; 0: the camera ray
 #endif
 } WaitingRays;
 
-// In the depth of rays that do not go straight on from the camera.
+// Flag in the depth of rays that do not go straight on from the camera.
 #define TURNED 0x80
 static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (TURNED - 1); }
 
-// What is kept of each waiting ray, in this order: from this list come the count, the writing and the
-// reading.
+// The members of a waiting ray, in order; this list generates their number, writing and reading.
 #if BATCH > 1
 #define STACKED_PIXEL(REALS, MASKS) MASKS(paths->pixel)
 #else
@@ -68,7 +67,7 @@ static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (T
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))
 
-// Arrays are BATCH longer than what may wait: see write_packed().
+// Arrays exceed the capacity by BATCH: see write_packed().
 #if BATCH > 1
 #define STACK_LENGTH (RAY_STACK + BATCH)
 #define SHADOW_LENGTH (3u * BATCH)  // fewer than a batch wait when another comes
@@ -77,7 +76,7 @@ typedef struct ShadowStack {
   u32 count;
 } ShadowStack;
 #else
-// Rays of both kinds wait together: children, then at most one ray that continues later, then shadow rays.
+// Both kinds of rays wait together: children, at most one ray that continues later, then shadow rays.
 #define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + 1)
 #define SHADOW_LENGTH STACK_LENGTH
 #define ShadowStack RayStack
@@ -87,7 +86,7 @@ typedef struct RayStack {
   u32 count;
 } RayStack;
 
-// Writes the lanes of `lanes` one behind the other; member k goes to to[k * stride].
+// Writes the lanes of `lanes` contiguously; member k goes to to[k * stride].
 NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const WaitingRays* paths,
                              MASK lanes) {
 #define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
@@ -106,7 +105,7 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Wait
   STACKED(READ_REALS, READ_MASKS)
 }
 
-// The lanes of `lanes`; there must be room.
+// Pushes the lanes of `lanes`; there must be room.
 static inline void push_rays(RayStack* stack, const SceneRays* rays, const WaitingRays* paths, MASK lanes) {
   write_rays(stack->members + stack->count, STACK_LENGTH, rays, paths, lanes);
   stack->count += lane_count(lanes);
@@ -117,7 +116,7 @@ static inline void push_shadows(ShadowStack* stack, const SceneRays* rays, const
   stack->count += lane_count(lanes);
 }
 
-// Takes the newest rays, at most `most`, which is at most BATCH. Returns their lanes.
+// Pops the newest rays, at most `most` and BATCH. Returns their lanes.
 static inline MASK pop_rays(RayStack* stack, u32 most, SceneRays* rays, WaitingRays* paths) {
   const u32 count = min(stack->count, most);
   stack->count -= count;
@@ -131,7 +130,7 @@ static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, Wa
   return lanes_of((1u << count) - 1u);
 }
 
-// Adds light to the pixels of `lanes`, one lane after another: several may have the same pixel.
+// Adds light to the pixels of `lanes`, lane by lane, because several may share a pixel.
 static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* radiance) {
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);

@@ -176,7 +176,7 @@ static inline void set_media(SceneRays* rays, u32 i, MediaStack stack) {
   MASK_LANE(rays->media_high, i) = (int)(stack >> 32);
 }
 
-// The media that the lanes of `lanes` are in.
+// The media of the lanes of `lanes`.
 static inline MASK current_media(__global const Medium* restrict media, const SceneRays* rays, MASK lanes) {
   MASK current = NO_LANES;
   const MASK somewhere = lanes & MASK_OF((rays->media_low | rays->media_high) != 0);

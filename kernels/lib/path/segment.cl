@@ -1,5 +1,5 @@
-// A batch of rays from their starts to the next surfaces that they can see: interfaces overruled by priority
-// are crossed on the way, the media stack is kept and absorption is gathered.
+// Moves a batch of rays from their starts to the next visible surfaces: crosses interfaces overruled by
+// priority, maintains the media stack and accumulates absorption.
 #ifndef SUNDOG_LIB_SEGMENT_CL
 #define SUNDOG_LIB_SEGMENT_CL
 #include "lib/core/config.h"
@@ -8,8 +8,7 @@
 #include "lib/path/nearest.cl"
 #include "lib/path/touching.cl"
 
-// What rays meet. `before` and `after` are the media on the two sides as a ray crosses; equal where nothing
-// is crossed.
+// A ray's next surface. `before` and `after` are the media on its two sides; equal if nothing is crossed.
 typedef struct Encounters {
   Hits hit;
   Faces face;
@@ -17,16 +16,16 @@ typedef struct Encounters {
   REAL3 absorbed;  // factor on the ray's light from its start to the hit
 #if HAS_TOUCHING
   MASK behind_low, behind_high;  // the words of the MediaStack behind
-  REAL apart;                    // how far the faces that touch there may be apart
+  REAL apart;                    // how far apart the touching faces may be
 #endif
 #if HAS_PARALLAX
-  REAL below;  // how far the hit is below a surface in whose relief it lies; 0 elsewhere
+  REAL below;  // depth of the hit below a surface in whose relief it lies, or 0
   REAL3 top;   // that surface's normal
 #endif
 } Encounters;
 
-// The part of light from the rays' ends that the world's fog lets through, of the rays of `lanes` that were
-// not inside anything.
+// The fraction of light from the rays' ends that the world's fog transmits, for rays of `lanes` outside all
+// solids.
 static inline REAL clear_of_fog(const Scene* scene, const Encounters* met, MASK lanes) {
   const MASK foggy = lanes & MASK_OF(met->before == 0);
   return select((REAL)(1.0f), real_exp(-scene->info->fog.w * met->hit.t), foggy);
@@ -37,7 +36,7 @@ static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {
   MASK_LANE(met->behind_low, i) = (int)stack;
   MASK_LANE(met->behind_high, i) = (int)(stack >> 32);
 }
-// The lanes of `lanes` have met nothing that changes the media `low` and `high`.
+// The hits of `lanes` do not change the media `low` and `high`.
 static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lanes) {
   met->behind_low = select(met->behind_low, low, lanes);
   met->behind_high = select(met->behind_high, high, lanes);
@@ -54,7 +53,7 @@ static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lane
 static inline void forget_behind(Encounters* met) {}
 #endif
 
-// Takes the faces of the hits of `lanes` into `met`.
+// Stores the faces of the hits of `lanes` in `met`.
 static inline Faces see_faces(const Scene* scene, const SceneRays* rays, Encounters* met, MASK lanes) {
   const Faces faces = hit_faces(scene, rays->d, &met->hit, lanes);
   met->face.outward = select3(met->face.outward, faces.outward, lanes);
@@ -66,9 +65,9 @@ static inline Faces see_faces(const Scene* scene, const SceneRays* rays, Encount
 }
 
 #if HAS_MEDIA
-// Lane i at an interface behind which the media are `crossed`. There is nothing to see where both sides are
-// one medium, nor where a clear material parts media of equal index; then the ray's stack becomes the one
-// behind. Returns whether that is so.
+// Lane i at an interface with the media `crossed` behind it. It is unseen if both sides are the same medium,
+// or a clear material separates media of equal index; then the ray's stack becomes the one behind. Returns
+// whether it is unseen.
 static inline bool cross_if_unseen(__global const Medium* restrict media, SceneRays* rays, Encounters* met,
                                    u32 i, MediaStack crossed) {
   const u32 before = (u32)MASK_LANE(met->before, i), after = current_medium(media, crossed);
@@ -81,7 +80,7 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
   return true;
 }
 
-// The stack of media behind the interface that lane i has met.
+// The media stack behind the interface that lane i has hit.
 static inline MediaStack media_behind(const SceneRays* rays, const Encounters* met, u32 i, u32* counts) {
   const bool entering = MASK_LANE(met->face.entering, i);
   MediaStack crossed = get_media(rays, i);
@@ -90,10 +89,10 @@ static inline MediaStack media_behind(const SceneRays* rays, const Encounters* m
   return crossed;
 }
 
-#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags to look at: an interface only transmits
+#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags that tell whether a face only transmits
 
 #if HAS_TOUCHING
-// The lanes of `lanes`, whose faces may touch others. Returns those that continue, as in cross_unseen().
+// Crosses faces of `lanes` that may touch others. Returns the lanes that continue, as cross_unseen() does.
 static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
                                   u32* counts) {
   MASK unseen = NO_LANES;
@@ -120,8 +119,8 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
 }
 #endif
 
-// The lanes of `waiting` at their next hits. Returns those that continue through invisible interfaces: their
-// rays are then what holds behind.
+// Crosses invisible interfaces at the hits of `waiting`. Returns the lanes that continue; their rays then
+// have the state behind.
 static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters* met, MASK waiting,
                                 u32* counts) {
   const MASK hit = waiting & hit_anything(&met->hit);
@@ -161,9 +160,9 @@ static inline void start_encounters(Encounters* met) {
   forget_behind(met);
 }
 
-// The lanes of `active` at the interfaces met->hit. Returns those that cannot see them: their rays are then
-// what holds behind. The media of the others are those just before the surface. Crossed interfaces do not
-// move the origin, so what lies behind a vanished interface keeps its bits.
+// Processes the interfaces met->hit of the lanes of `active`. Returns the lanes that do not see them; their
+// rays then have the state behind. The media of the others are those just before the surface. Crossed
+// interfaces do not move the origin, so hits behind a vanished interface keep their bits.
 static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
                                     u32* counts) {
   start_encounters(met);
@@ -185,7 +184,7 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
 }
 #endif
 
-// The camera's rays of `lanes` go on behind lamps that are hidden from them. Returns those.
+// Camera rays of `lanes` continue behind lamps hidden from them. Returns those lanes.
 #if HAS_MEDIA
 static inline void end_stretch(SceneRays* rays, const Hits* hits, MASK lanes) {
   rays->since = select(rays->since, hits->t, lanes);
@@ -203,10 +202,10 @@ static inline MASK pass_hidden(const Scene* scene, SceneRays* rays, const Encoun
   return hidden;
 }
 
-// Whether rays inside of media pass all that they do not see in one walk.
+// Whether rays inside media cross all unseen interfaces in one walk.
 #define LISTS_UNSEEN (LISTS_HITS && HAS_MEDIA && !HAS_PARALLAX)
 #if LISTS_UNSEEN
-// The priorities of the media that the lanes of `lanes` are in.
+// The priorities of the media around the lanes of `lanes`.
 static inline MASK priorities_around(const Scene* scene, const SceneRays* rays, MASK lanes) {
   MASK priorities = (MASK)((int)0x80000000);
   u32 index;
@@ -218,8 +217,7 @@ static inline MASK priorities_around(const Scene* scene, const SceneRays* rays, 
   return priorities;
 }
 
-// The same as meet_interfaces() for rays that do not run close together; most of those returned there are
-// taken on at once.
+// meet_interfaces() for incoherent rays; continues most of the returned lanes at once.
 static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active, Encounters* met,
                                u32* counts) {
   HitList lists[BATCH];
@@ -247,14 +245,14 @@ static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active,
 }
 #endif
 
-// Takes the lanes of `active` in (t_min, t_max] there. `coherent`: the rays run close together.
+// Moves the lanes of `active` to their next hits in (t_min, t_max]. `coherent`: the rays are coherent.
 static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                    Encounters* met, u32* counts) {
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
-// The same to their next visible surfaces.
+// Moves them to their next visible surfaces.
 static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                  Encounters* met, u32* counts) {
   MASK waiting = next_interfaces(scene, rays, active, coherent, met, counts);
@@ -266,9 +264,8 @@ static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK activ
   }
 }
 
-// offset_beyond(): how far off the surface further rays start, where faces that touch may be apart.
-// enter_behind(): the children of `lanes`, copies of `rays`, are in the media behind what those have met;
-// thin surfaces change none.
+// offset_beyond(): the offset of secondary rays, considering the gap between touching faces. enter_behind():
+// the children of `lanes`, copies of `rays`, enter the media behind the hits; thin surfaces change none.
 #if HAS_TOUCHING
 static inline REAL offset_beyond(const Encounters* met, REAL offset) {
   return select(offset, met->apart, MASK_OF(met->apart > 0.0f));

@@ -1,14 +1,14 @@
-// The pixels of a work-item's lanes, and where their samples go.
+// The pixels of a work-item's lanes, and storage of their samples.
 #ifndef SUNDOG_LIB_TILE_CL
 #define SUNDOG_LIB_TILE_CL
 #include "lib/core/lanes.h"
 #include "shared/launch.h"
 #include "shared/scene.h"
 
-// Pixel of lane `lane` of work-item `item`, counted from the rectangle's corner. Neighbouring work-items take
-// neighbouring tiles. Those of one pixel go through blocks of 8x4 of them, each in quarters of 4x2, so that
-// the eight or thirty-two that a device runs together have ray trees that are alike; in a launch of two
-// dimensions the group has its own shape.
+// Pixel of lane `lane` of work-item `item`, relative to the rectangle's corner. Neighbouring work-items have
+// neighbouring tiles. Those of one pixel are ordered in blocks of 8x4, each in quarters of 4x2, so that the
+// eight or thirty-two that a device runs together have similar ray trees; in a two-dimensional launch the
+// group has its own shape.
 static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
   if (BATCH == 1 && launch->blocks) {
     const u32 columns = (launch->width + 7u) / 8u, block = item / 32u;
@@ -19,18 +19,18 @@ static inline uint2 lane_pixel(const Launch* launch, u32 item, u32 lane) {
   return (uint2)(item % columns * TILE_W + lane % TILE_W, item / columns * TILE_H + lane / TILE_W);
 }
 
-// Whether the tile of the item lies whole in the rectangle, at `corner`.
+// Whether the item's tile is completely inside the rectangle, at `corner`.
 static inline bool is_whole_tile(const Launch* launch, u32 item, uint2* corner) {
   *corner = lane_pixel(launch, item, 0u);
   return corner->x + TILE_W <= launch->width && corner->y + TILE_H <= launch->height;
 }
 
-// Where lane `lane` of a whole tile stands in the rectangle's arrays.
+// Index of lane `lane` of a whole tile in the rectangle's arrays.
 static inline u32 pixel_of_tile(const Launch* launch, uint2 corner, u32 lane) {
   return (corner.y + lane / TILE_W) * launch->width + corner.x + lane % TILE_W;
 }
 
-// The pixel of the image that the pixel `at` of the rectangle stands for. False: there is none.
+// The image pixel that pixel `at` of the rectangle stands for. False: none.
 static inline bool image_pixel(const Launch* launch, __global const u32* restrict pixels, uint2 at,
                                uint2* pixel) {
   if (at.x >= launch->width || at.y >= launch->height) return false;
@@ -41,7 +41,7 @@ static inline bool image_pixel(const Launch* launch, __global const u32* restric
   return listed != NO_PIXEL;
 }
 
-// The pixels of the image that the lanes of a work-item stand for. Returns the lanes that have one.
+// The image pixels of a work-item's lanes. Returns the lanes that have one.
 static inline MASK item_pixels(const Launch* launch, __global const u32* restrict pixels, u32 item, MASK* x,
                                MASK* y) {
   uint2 corner;
@@ -72,8 +72,8 @@ static inline MASK item_pixels(const Launch* launch, __global const u32* restric
   return lanes;
 }
 
-// Clears film, weights and, where they are asked for, rays of the work-item's pixels, if the launch makes
-// their first samples.
+// Clears film, weights and, if counted, rays of the work-item's pixels if the launch makes their first
+// samples.
 static inline void begin_film(const Launch* launch, u32 item, __global float4* restrict film,
                               __global float* restrict weights, __global u32* restrict rays) {
   if (launch->first_sample > 0u) return;
@@ -98,11 +98,10 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
   }
 }
 
-// Adds the light of a sample to film and weights of the rectangle's pixel `place`; `sign` is what the sample
-// counts.
+// Adds a sample's light to film and weights of the rectangle's pixel `place`, with the weight `sign`.
 static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
                                 __global float* restrict weights, u32* counts) {
-  const float3 zero = radiance.xyz * 0.0f;  // NaN where one is not finite
+  const float3 zero = radiance.xyz * 0.0f;  // NaN if one is not finite
   if (zero.x + zero.y + zero.z != 0.0f) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
@@ -111,7 +110,7 @@ static inline void store_sample(u32 place, float4 radiance, float sign, __global
   weights[place] += HAS_FILTER ? sign : 1.0f;
 }
 
-// The same for the pixels of all lanes of `lanes`; arrays by lane.
+// store_sample() for the pixels of all lanes of `lanes`; arrays by lane.
 static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
                                const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {

@@ -1,7 +1,7 @@
-// Surfaces that touch. Where faces of several solids lie in one place, exactly or to rounding, a ray crosses
-// all of them at once: from the media before to the media behind, with one reflection and one refraction
-// between them. Were they crossed one after another, the next ray would start beyond those that it has not
-// met yet, or be turned back by a gap that is not there. The host marks the instances that may touch others.
+// Touching surfaces: a ray crosses coincident faces of several solids (exactly or up to rounding) together,
+// from the media before to the media behind, with a single reflection and refraction. Crossed one by one, the
+// next ray would start beyond faces that it has not hit yet, or be reflected by a nonexistent gap. The host
+// marks the instances that may touch others.
 #ifndef SUNDOG_LIB_TOUCHING_CL
 #define SUNDOG_LIB_TOUCHING_CL
 #include "lib/core/config.h"
@@ -26,8 +26,8 @@ static inline float3 outward_of(const Scene* scene, const Hit* hit, float time) 
   return moved_normal(scene, hit->instance, outward, time);
 }
 
-// How far rounding may place a hit off its surface: `least` or what the size of the surface asks for. Twice
-// as much separates what are two surfaces from what is one.
+// Bound of a hit's distance from its surface by rounding: at least `least`, or by the size of the surface.
+// Twice this separates distinct surfaces.
 static inline float rounding_of(const Scene* scene, const Hit* hit, float3 outward, float least) {
   __global const Instance* instance = scene->instances + hit->instance;
   float size = greatest_component(instance->world_center.xyz) + instance->world_center.w;
@@ -37,15 +37,15 @@ static inline float rounding_of(const Scene* scene, const Hit* hit, float3 outwa
   return fmax(least, size * 0x1p-21f);
 }
 
-// The faces that a ray crosses together with one of them.
+// The faces that a ray crosses together.
 typedef struct Touching {
   Stretch met;
   float end;    // t of the last one
   float apart;  // how far the faces may be apart
 } Touching;
 
-// The faces beyond `t_min` that touch the one at `first`, itself among them. Some may lie before it by their
-// rounding: the tracer leaves out boxes that begin behind a hit.
+// The faces beyond `t_min` that touch the one at `first`, itself included. Some may be before it by rounding,
+// since the tracer skips boxes that begin behind a hit.
 static inline void find_touching(const Scene* scene, float3 o, float3 d, float t_min, const Hit* first,
                                  Touching* touching) {
   Stretch* met = &touching->met;
@@ -67,8 +67,8 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   met->count = min(met->count, MOST_TOUCHING);
   touching->end = first->t;
   touching->apart = own;
-  // First what rounding and a quarter of it allow, then what follows the last of those closely: so the next
-  // ray's start, `apart` behind, has a quarter to the faces on its either side.
+  // First within rounding plus a quarter, then closely behind the last of those, so that the next ray's
+  // start, `apart` behind, has a quarter to the faces on either side.
   for (u32 pass = 0; pass < 2u; ++pass) {
     const float from = touching->end;
     for (u32 i = 0; i < met->count; ++i) {
@@ -92,7 +92,7 @@ static inline u32 material_of(const Scene* scene, const Hit* hit) {
   return material != NO_MATERIAL ? material : scene->triangles[hit->prim].material;
 }
 
-// Whether two hits are one, on an edge that two triangles of a mesh share.
+// Whether two hits are the same, on an edge shared by two triangles of a mesh.
 static inline bool on_shared_edge(__global const Instance* restrict instances, const Hit* a, const Hit* b) {
   if (a->instance != b->instance || instances[a->instance].shape != SHAPE_MESH) return false;
   const float near_a = fmin(fmin(a->u, a->v), 1.0f - a->u - a->v),
@@ -100,8 +100,8 @@ static inline bool on_shared_edge(__global const Instance* restrict instances, c
   return fmax(near_a, near_b) < 1e-5f && dot(normal_of(a), normal_of(b)) > 0.0f;
 }
 
-// What the faces of one crossing change: bits of `met` whose media are entered and left. A medium that is
-// left and entered again stays as it is, and neither face is seen.
+// Changes of media by the faces of a crossing: bits of `met` whose media are entered and left. A medium left
+// and entered again is unchanged, and neither face is seen.
 typedef struct Changes {
   u32 entered, left, thin;
   u32 material[MOST_TOUCHING];
@@ -129,8 +129,8 @@ static inline Changes faces_of(const Scene* scene, const Stretch* met) {
   return changes;
 }
 
-// Takes out faces that leave and enter the same medium, two by two; those that face each other first, so that
-// of a corner the right face is left.
+// Cancels pairs of faces that leave and enter the same medium; first those that face each other, so that the
+// right face of a corner remains.
 static inline void take_out_pairs(const Scene* scene, const Stretch* met, Changes* changes) {
   for (u32 facing = 2; facing-- > 0;)
     for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
@@ -149,8 +149,8 @@ static inline void take_out_pairs(const Scene* scene, const Stretch* met, Change
     }
 }
 
-// Whether, of two solids that are entered in one place, the first counts as the outer one: the larger. Else
-// the media decide, so that the order in the file does not.
+// Whether the first of two solids entered at one place is the outer one: the larger. Ties are broken by
+// medium, so that the order in the file does not matter.
 static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, const Hit* b, u32 medium_b) {
   const float size_a = scene->instances[a->instance].world_center.w,
               size_b = scene->instances[b->instance].world_center.w;
@@ -159,7 +159,7 @@ static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, cons
   return index_a != index_b ? index_a < index_b : medium_a < medium_b;
 }
 
-// Of the faces of `bits`, which is not 0, the one whose solid counts as the outermost, or else the innermost.
+// The face of `bits`, which is not 0, whose solid is outermost or, if not `outermost`, innermost.
 static inline u32 pick_face(const Scene* scene, const Stretch* met, const Changes* changes, u32 bits,
                             bool outermost) {
   u32 best = lowest_bit(bits), medium = scene->materials[changes->material[best]].medium;
@@ -172,7 +172,7 @@ static inline u32 pick_face(const Scene* scene, const Stretch* met, const Change
   return best;
 }
 
-// Enters the media of `changes`, the outer ones first. Returns how many found no room.
+// Enters the media of `changes`, outer ones first. Returns how many did not fit.
 static inline u32 enter_all(const Scene* scene, const Stretch* met, const Changes* changes,
                             MediaStack* stack) {
   u32 lost = 0;
@@ -184,12 +184,12 @@ static inline u32 enter_all(const Scene* scene, const Stretch* met, const Change
   return lost;
 }
 
-// Which of the faces that touch a ray sees.
+// The face seen among touching ones.
 typedef struct Seen {
   Hit hit;
   u32 material;
   MediaStack behind;  // the media behind all of them
-  u32 after;          // the one that light is in there
+  u32 after;          // the effective one
   u32 overflows, strays;
 } Seen;
 
@@ -198,15 +198,14 @@ static inline bool comes_first(const Hit* a, const Hit* b) {
   return a->instance != b->instance ? a->instance < b->instance : a->prim < b->prim;
 }
 
-// How much a face has to say where two media meet: greater is seen. Nothing where it parts neither of them.
+// The priority of a face between two media: the greatest is seen. 0 if it separates neither of them.
 static inline u32 say_of(__global const Material* restrict material, u32 before, u32 after) {
   if (material->flags & MATERIAL_THIN) return 3u;
   if (material->medium != before && material->medium != after) return 0u;
   return material->flags & MATERIAL_CLEAR ? 1u : 2u;
 }
 
-// Whether face a is seen, and not b. Of one material the outer one is: the first that is entered, the last
-// that is left.
+// Whether face a is seen instead of b. With equal materials, the outer one: the first entered, the last left.
 static inline bool is_seen_before(const Scene* scene, const Hit* a, u32 material_a, const Hit* b,
                                   u32 material_b, u32 before, u32 after, bool left) {
   __global const Material *ma = scene->materials + material_a, *mb = scene->materials + material_b;
@@ -220,8 +219,8 @@ static inline bool is_seen_before(const Scene* scene, const Hit* a, u32 material
   return left ? comes_first(b, a) : comes_first(a, b);
 }
 
-// What a ray in the media `before` makes of faces that touch. Something opaque among them, whose flags are
-// not `passable` under `mask`, is seen from the media before: what lies at its surface, light does not enter.
+// The result of touching faces for a ray in the media `before`. An opaque face among them, whose flags are
+// not `passable` under `mask`, is seen from the media before, because light does not enter it.
 static inline void join_faces(const Scene* scene, const Touching* touching, u32 mask, MediaStack before,
                               Seen* seen) {
   const Stretch* met = &touching->met;
@@ -259,10 +258,10 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   seen->material = changes.material[best];
 }
 
-// Lane i of `rays`, which has met a face of an instance that may touch others: hit and face become those of
-// the face that is seen, `behind` and `after` what lies behind all that touch there. `mask`: as above. The
-// distance of what is seen stays that of the first face; returns that of the last, and in `apart` how far the
-// faces may be apart.
+// Resolves lane i of `rays`, which has hit an instance that may touch others: hit and face become those of
+// the face seen, `behind` and `after` the media behind all touching faces. `mask`: as above. The distance of
+// the hit remains that of the first face; returns that of the last, and in `apart` how far the faces may be
+// apart.
 NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
                                  Faces* faces, Seen* seen, float* apart) {
   Touching touching;
@@ -279,7 +278,7 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
   MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
   MASK_LANE(faces->material, i) = (int)seen->material;
   u32 flags = scene->materials[seen->material].flags;
-  // A thin surface on an interface bends like one.
+  // A thin surface on an interface refracts like it.
   if (seen->after != current_medium(scene->media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
   MASK_LANE(faces->flags, i) = (int)flags;
   MASK_LANE(faces->medium, i) = (int)scene->materials[seen->material].medium;

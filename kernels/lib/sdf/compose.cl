@@ -1,10 +1,10 @@
-// How distance fields are put together. Each operation keeps the bound of its operands: where they never
-// exceed the distance to their surfaces, the result never exceeds the distance to its own.
+// Combinations of distance fields. Each operation preserves bounds: if its operands never exceed the distance
+// to their surfaces, neither does the result.
 #ifndef SUNDOG_LIB_SDF_COMPOSE_CL
 #define SUNDOG_LIB_SDF_COMPOSE_CL
 #include "lib/sdf/sample.h"
 
-// A moved field's table: rows of the rotation's transpose, the offset, the scale and its inverse.
+// Table of a transformed field: rows of the rotation's transpose, offset, scale and inverse scale.
 static inline REAL3 into_child(REAL3 p, SDF_TABLE q) {
   const REAL3 d = real3((p.x - q[9]) * q[13], (p.y - q[10]) * q[13], (p.z - q[11]) * q[13]);
   return real3(fma(d.x, (REAL)(q[0]), fma(d.y, (REAL)(q[1]), d.z * q[2])),
@@ -25,7 +25,7 @@ static inline SdfSample out_of_child_sample(SdfSample s, SDF_TABLE q) {
   return out;
 }
 
-// Place in the nearest cell (neighbour = 0) or in the next nearest along the axis, so that a child which fits
+// Position in the nearest cell (neighbour = 0) or the next nearest along the axis, so that a child that fits
 // its cell is never missed. Table: three periods, three counts.
 static inline REAL cell_coordinate(REAL x, SCALAR period, SCALAR count, u32 neighbour) {
   if (!(period > 0.0f)) return x;
@@ -41,8 +41,8 @@ static inline REAL3 repeat_cell(REAL3 p, SDF_TABLE q, u32 neighbours) {
                cell_coordinate(p.z, q[2], q[5], neighbours & 4u));
 }
 
-// The smooth minimum of a and b, and in `share` the part that b has in it: quadratic, equal to the plain one
-// where they differ by k.
+// The smooth minimum of a and b, and b's share of it: quadratic, equal to the plain minimum if they differ by
+// k.
 static inline REAL smooth_minimum(REAL a, REAL b, SCALAR k, REAL* share) {
   const REAL h = fmax(1.0f - fabs(a - b) / k, (REAL)(0.0f));
   const REAL less = 0.5f * h;
@@ -65,7 +65,7 @@ static inline SdfSample negated_sample(SdfSample a) {
   negated.gradient = negate3(a.gradient);
   return negated;
 }
-// Exact for closed forms, whose gradients are those of their distances; of fractals they are not used.
+// Exact for closed forms, whose gradients are those of their distances; not used for fractals.
 static inline SdfSample unite_samples(SdfSample a, SdfSample b, SCALAR smooth) {
   SdfSample r = select_sample(a, b, MASK_OF(b.distance < a.distance));
   if (!(smooth > 0.0f)) return r;

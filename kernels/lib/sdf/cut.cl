@@ -1,9 +1,9 @@
-// The interval of a field: a box, perhaps with a sphere, that bounds the march and cuts the surface.
+// The interval of a field: a box, optionally a sphere, that bounds the march and cuts the surface.
 #ifndef SUNDOG_LIB_SDF_CUT_CL
 #define SUNDOG_LIB_SDF_CUT_CL
 #include "lib/sdf/sample.h"
 
-// Where one slab is crossed. A ray parallel to it is inside for ever or never (0 times infinity is avoided).
+// Clips to one slab. A parallel ray is always or never inside (avoids 0 times infinity).
 static inline void clip_slab(REAL o, REAL d, float lower, float upper, REAL* enter, REAL* leave) {
   const MASK parallel = MASK_OF(fabs(d) < 1e-30f);
   const REAL inverse = 1.0f / nonzero(d);
@@ -15,7 +15,7 @@ static inline void clip_slab(REAL o, REAL d, float lower, float upper, REAL* ent
   *leave = fmin(*leave, far);
 }
 
-// Narrows [enter, leave] to what lies in the interval; empty (enter > leave) where the ray misses it.
+// Narrows [enter, leave] to the interval; empty (enter > leave) if the ray misses it.
 static inline void clip_to_interval(__global const SdfField* restrict field, REAL3 o, REAL3 d, REAL* enter,
                                     REAL* leave) {
   clip_slab(o.x, d.x, field->lower.x, field->upper.x, enter, leave);
@@ -25,7 +25,7 @@ static inline void clip_to_interval(__global const SdfField* restrict field, REA
   const REAL3 c =
       subtract3(o, real3((REAL)(field->sphere.x), (REAL)(field->sphere.y), (REAL)(field->sphere.z)));
   const REAL a = dot3(d, d), middle = -dot3(c, d) / a;
-  const REAL3 nearest = along3(c, middle, d);  // its distance from the centre loses nothing to cancellation
+  const REAL3 nearest = along3(c, middle, d);  // its distance from the centre avoids cancellation
   const REAL square = fma((REAL)(field->sphere.w), (REAL)(field->sphere.w), -dot3(nearest, nearest)) / a;
   const REAL half_chord = real_sqrt(fmax(square, 0.0f));
   const MASK missed = MASK_OF(square < 0.0f);
@@ -33,7 +33,7 @@ static inline void clip_to_interval(__global const SdfField* restrict field, REA
   *leave = select(fmin(*leave, middle + half_chord), (REAL)(-INFINITY), missed);
 }
 
-// Outward normal of the cut at p, which lies on it: the face that p is nearest to, or the sphere.
+// Outward normal of the cut at p: of the nearest face, or of the sphere.
 static inline REAL3 cut_normal(__global const SdfField* restrict field, REAL3 p) {
   const float4 center = 0.5f * (field->lower + field->upper),
                half_size = 0.5f * (field->upper - field->lower);

@@ -1,6 +1,6 @@
-// Formulas in double precision, for views from so near that floats do not tell the pixels' points apart. From
-// here to lib/sdf/deep_end.h the names of lib/core/lanes.h mean lanes of doubles; where a device has none,
-// they mean what they always do, and such views are coarse.
+// Formulas in double precision, for views so near that floats cannot distinguish the pixels' points. From
+// here to lib/sdf/deep_end.h the names of lib/core/lanes.h mean lanes of doubles; on a device without doubles
+// they keep their meaning, and such views are coarse.
 #ifndef SUNDOG_LIB_SDF_DEEP_BEGIN_H
 #define SUNDOG_LIB_SDF_DEEP_BEGIN_H
 #include "lib/core/lanes.h"
@@ -84,7 +84,7 @@ static inline DEEP_REAL3 deep_unit3(DEEP_REAL3 a) {
 }
 static inline int deep_any_lane(DEEP_MASK m) { return any_lane(DEEP_TO_MASK(m)); }
 
-// The doubles of the parameters stand behind their floats.
+// The parameters' doubles follow their floats.
 #define DEEP_TABLE(q) ((__global const double*)((q) + SDF_DOUBLES_AT))
 #define SDF_TABLE __global const double* restrict
 #define SCALAR double

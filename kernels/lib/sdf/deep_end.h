@@ -1,4 +1,4 @@
-// The end of what lib/sdf/deep_begin.h begins.
+// Ends lib/sdf/deep_begin.h.
 #ifndef SUNDOG_LIB_SDF_DEEP_END_H
 #define SUNDOG_LIB_SDF_DEEP_END_H
 
@@ -36,7 +36,7 @@ typedef struct SdfSample {
   REAL point, plane, axis, iterations;
 } SdfSample;
 
-// In the field's space, from the rays' frame, whose origin's place stands at `origin` in the table.
+// Converts from the rays' frame to field space; the frame's origin is at `origin` in the table.
 static inline DEEP_REAL3 deep_place(REAL3 p, __global const float* restrict q, u32 origin) {
   const DEEP_REAL3 place = {DEEP_FROM(p.x) + DEEP_TABLE(q)[origin],
                             DEEP_FROM(p.y) + DEEP_TABLE(q)[origin + 1u],

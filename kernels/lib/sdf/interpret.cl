@@ -1,6 +1,6 @@
-// The fields of any scene, by programs that stand in the table of their parameters (host/compile/fields/
-// field_program.h): what draws after an edit of a formula until its own kernel is built. It stands for
-// generated/sdf.cl, and gives the same bits.
+// Interprets the fields of any scene by programs in their parameter table (host/compile/fields/
+// field_program.h). Draws after an edit of a formula until its own kernel is built; replaces
+// generated/sdf.cl, with the same bits.
 #ifndef SUNDOG_GENERATED_SDF_CL
 #define SUNDOG_GENERATED_SDF_CL
 #include "lib/sdf/compose.cl"
@@ -27,7 +27,7 @@ static inline void put_sample(REAL* r, SdfSample s) {
   r[7] = s.iterations;
 }
 
-// The operands of an instruction, w and x its words.
+// Operands of an instruction with words w and x.
 #define A r[w >> 16 & 255u]
 #define B r[w >> 24]
 #define C r[x & 255u]
@@ -66,8 +66,8 @@ static inline void put_sample(REAL* r, SdfSample s) {
     put_sample(&RESULT, expression);  \
     break;
 
-// Runs the function that begins at word `start` of the table over the registers; returns where its result is.
-// One way out: llvmpipe mixes up registers of lanes that leave the loop by a return while others stay.
+// Runs the function at word `start` of the table on the registers; returns the register of its result. A
+// single exit: llvmpipe mixes up registers of lanes if some return from the loop while others stay.
 NEVER_INLINE u32 run_program(__global const float* restrict q, u32 start, REAL* r) {
   __global const u32* program = (__global const u32*)q + start;
   u32 counters[FIELD_COUNTERS];
@@ -134,7 +134,7 @@ NEVER_INLINE u32 run_program(__global const float* restrict q, u32 start, REAL* 
 #undef RESULT
 #undef COUNTER
 
-// Where a field's function begins, 0 where it has none.
+// Start of a field's function, 0 if it has none.
 static inline u32 program_of(u32 field, u32 function, __global const float* restrict q) {
   __global const u32* words = (__global const u32*)q;
   const u32 programs = words[0], begin = words[programs + field * FIELD_FUNCTIONS + function];

@@ -1,10 +1,10 @@
-// Light that a field itself can tell about: how much of the sky a point sees, and soft shadows (A. Evans
-// 2006; I. Quilez, Soft shadows in raymarched SDFs, 2010).
+// Light estimated from a field: ambient occlusion and soft shadows (A. Evans 2006; I. Quilez, Soft shadows in
+// raymarched SDFs, 2010).
 #ifndef SUNDOG_LIB_SDF_LIGHT_CL
 #define SUNDOG_LIB_SDF_LIGHT_CL
 #include "lib/sdf/march.cl"
 
-// Distance of p from the surface, as light sees it.
+// Distance of p from the surface, for occlusion.
 static inline REAL open_distance(const Scene* scene, u32 index, REAL3 p, MASK active) {
   if (sdf_uneven(index, scene->sdf_parameters))
     return called_near(index, p, active, NO_LANES, scene->sdf_parameters);
@@ -26,9 +26,9 @@ static inline REAL sdf_openness(const Scene* scene, u32 index, REAL3 p, REAL3 no
   return clamp(1.0f - missing / total, (REAL)(0.0f), (REAL)(1.0f));
 }
 
-// The part of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface, between
-// 0 and 1 where the way to the light passes it within 1 / hardness of the distance. Takes its steps from
-// *steps_left; without any, what has been seen so far counts.
+// The fraction of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface,
+// between 0 and 1 if the way passes it within 1 / hardness of the distance. Takes its steps from *steps_left;
+// when they run out, returns the estimate so far.
 static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
                                    float hardness, u32* steps_left, MASK active) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
@@ -44,7 +44,7 @@ static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3
     if (sdf_uneven(index, scene->sdf_parameters))
       beside = open_distance(scene, index, along3(p, t, wi), active);
     open = select(open, real_min(open, hardness * beside * rough_inverse(t)), active);
-    t += real_max(d, 0.02f * t);  // a penumbra is not looked at more closely than this
+    t += real_max(d, 0.02f * t);  // minimum step in a penumbra
     active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);
   }
   return clamp(open, (REAL)(0.0f), (REAL)(1.0f));

@@ -1,41 +1,40 @@
-// Sphere tracing (Hart 1996) of LANES rays at once, in the field's own space. Steps longer than the estimate
-// are taken only as far as the two empty spheres still touch, and are taken back where they do not (Keinert
-// et al. 2014), so a step is never longer than what the field's bound proves empty.
+// Sphere tracing (Hart 1996) of LANES rays at once, in field space. Over-relaxed steps are reverted if the
+// two empty spheres do not touch (Keinert et al. 2014), so a step never exceeds what the field's bound proves
+// empty.
 #ifndef SUNDOG_LIB_SDF_MARCH_CL
 #define SUNDOG_LIB_SDF_MARCH_CL
-// First: fields in doubles rename what the files below define.
+// First, because fields in doubles rename what the files below define.
 #include "lib/sdf/near.cl"
 
 #include "lib/sdf/cut.cl"
 
-// Rays may step over a surface, and go back to where they crossed it.
+// Rays may step across a surface, and then bisect to it.
 #define SDF_CROSSES (SDF_TWO_SIDED || SDF_HAS_NEAR)
 
-// t counts in lengths of direction, which need not be a unit vector. The pixel's footprint at t is
-// footprint + t * spread, in the same unit.
+// t is in units of the direction's length, which need not be 1. The pixel's footprint at t is footprint + t *
+// spread, in the same unit.
 typedef struct MarchRays {
   REAL3 origin, direction;
   REAL t_min, t_max;
   REAL footprint, spread;
   u32 step_limit;
   MASK active;
-  MASK inside;   // the ray travels inside the solid and looks for the way out
-  MASK leaving;  // it starts on the surface: a hit counts only after it has got clear of it
+  MASK inside;   // the ray travels inside the solid and looks for the exit
+  MASK leaving;  // it starts on the surface: a hit counts only after it has moved clear
 } MarchRays;
 
 typedef struct MarchHits {
   REAL t;
   MASK hit;
-  MASK cut;      // on the interval's boundary, where the solid is cut
-  MASK limited;  // the step limit ended the march: taken as a hit, for the ray had been close to the surface
-                 // for long
-  MASK steps;    // estimates used by each lane
-  MASK taken_back;  // relaxed steps that had to be taken back
-  REAL threshold;   // at the hit, in the field's space
-  REAL nearest;     // the least estimate on the way, in the field's space; only with HAS_GLOW
+  MASK cut;      // on the interval's boundary, which cuts the solid
+  MASK limited;  // the step limit ended the march: treated as a hit, because the ray was close to the surface
+  MASK steps;    // estimates used per lane
+  MASK taken_back;  // relaxed steps that were reverted
+  REAL threshold;   // at the hit, in field space
+  REAL nearest;     // minimum estimate on the way, in field space; only with HAS_GLOW
 } MarchHits;
 
-// How near a ray at t, which runs at this speed in the field's space, has to come to have arrived.
+// The distance at which a ray at t, of this speed in field space, has arrived.
 static inline REAL march_threshold(__global const SdfField* restrict field, const MarchRays* rays, REAL t,
                                    REAL speed) {
   const REAL footprint =
@@ -43,7 +42,7 @@ static inline REAL march_threshold(__global const SdfField* restrict field, cons
   return real_clamp(footprint, (REAL)(field->lower.w), (REAL)(field->upper.w));
 }
 
-// Distance to the surface on the side that each lane travels on: negative when it is on the wrong side.
+// Distance to the surface on each lane's side; negative on the wrong side.
 static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
                                   __global const float* restrict q) {
   if (SDF_TWO_SIDED && any_lane(inside & active)) {
@@ -53,14 +52,14 @@ static inline REAL march_estimate(u32 field, REAL3 p, MASK active, MASK inside,
   return sdf_distance(field, p, active, q);
 }
 
-// The same where a few estimates a ray are wanted: one copy that is called, which is compiled sooner.
+// march_estimate() as a call, for a few estimates per ray: compiles faster.
 __attribute__((noinline)) static REAL called_estimate(u32 field, REAL3 p, MASK active, MASK inside,
                                                       __global const float* restrict q) {
   return march_estimate(field, p, active, inside, q);
 }
 
-// The same, with the distance itself in the place of an estimate that is a small part of it. To first order:
-// it is used near the surface only.
+// called_estimate(), but with the distance itself if the estimate is a small fraction of it. To first order:
+// use near the surface only.
 __attribute__((noinline)) static REAL called_near(u32 field, REAL3 p, MASK active, MASK inside,
                                                   __global const float* restrict q) {
   const REAL d = sdf_near(field, p, active, q);
@@ -72,9 +71,9 @@ static inline REAL surface_distance(const Scene* scene, u32 field, REAL3 p, MASK
   return called_estimate(field, p, active, inside, scene->sdf_parameters);
 }
 
-// From within the threshold of a closed form to its surface: Newton's method along the ray, the slope taken
-// from the last two points, never further from the hit than a few thresholds. A ray that only grazes the
-// surface stays where it comes nearest.
+// Refines a hit within the threshold of a closed form to its surface: Newton's method along the ray, with the
+// slope of the last two points, at most a few thresholds from the hit. A ray that only grazes the surface
+// stops where it is nearest.
 static inline REAL refine_hit(const Scene* scene, u32 field, const MarchRays* rays, REAL t,
                               REAL inverse_speed, REAL threshold, MASK hit) {
   const REAL reach = 64.0f * threshold * inverse_speed, low = t - reach, high = t + reach;
@@ -98,7 +97,7 @@ static inline REAL refine_hit(const Scene* scene, u32 field, const MarchRays* ra
   return select(rays->t_max, best, MASK_OF(best < rays->t_max));
 }
 
-// A ray that has changed sides since `before`: halves the way between until the surface is found.
+// Bisects between `before` and t, on opposite sides, to find the surface.
 static inline REAL bisect_crossing(const Scene* scene, u32 field, const MarchRays* rays, REAL before, REAL t,
                                    MASK lanes) {
   for (int i = 0; i < 12; ++i) {
@@ -112,9 +111,9 @@ static inline REAL bisect_crossing(const Scene* scene, u32 field, const MarchRay
   return t;
 }
 
-// On from where a ray has come out of an estimated surface to where that is about a threshold away: as far
-// off as a ray from outside arrives, so that either side's next ray starts clear of it and the normal is
-// taken where all estimates are from outside.
+// Moves a ray that has left an estimated surface on until the surface is about a threshold away, as far as
+// rays arrive from outside, so that the next ray on either side starts clear of it and the normal is taken
+// where all estimates are from outside.
 static inline REAL clear_exit(const Scene* scene, u32 field, const MarchRays* rays, REAL t, REAL last,
                               REAL inverse_speed, REAL threshold, MASK lanes) {
   REAL clear = t;
@@ -127,8 +126,8 @@ static inline REAL clear_exit(const Scene* scene, u32 field, const MarchRays* ra
   return select(t, clear, MASK_OF(clear < last));
 }
 
-// Hits on an estimated surface where rays continue behind another one: a little behind that, for what starts
-// there must be on the side of it that the rays have come to.
+// Moves hits on an estimated surface slightly behind another surface from which rays continue, because new
+// rays must start on that surface's far side.
 static inline REAL step_behind(const MarchRays* rays, const MarchHits* hits, REAL first, REAL inverse_speed) {
   const REAL clear = fma(0.25f * hits->threshold, inverse_speed, rays->t_min);
   const MASK close = MASK_OF(rays->t_min > 0.0f) & MASK_OF(first == rays->t_min) & MASK_OF(hits->t < clear);
@@ -148,16 +147,15 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   MASK active = rays->active & MASK_OF(first < last), leaving = rays->leaving, relaxed = NO_LANES;
   REAL t = first;
   REAL previous = (REAL)(0.0f), step = (REAL)(0.0f), slope = (REAL)(-1.0f);
-  // How far on the wrong side, in thresholds, a ray that leaves the surface must be to have met it again: it
+  // The distance on the wrong side, in thresholds, at which a leaving ray has hit the surface again: it
   // starts on a refined surface, but before an estimated one (below).
   const bool smooth = field->flags & SDF_FLAGS & SDF_SMOOTH;
   const REAL wrong = select((REAL)(smooth ? -1.0f : 0.25f), (REAL)(-2.0f), rays->inside);
   const REAL pull = select(smooth ? (REAL)(0.0f) : -inverse_speed, (REAL)(0.0f), rays->inside);
-  // A ray inside an estimated surface continues to where it comes out: depths are too rough to stop before
-  // it.
+  // A ray inside an estimated surface continues until it exits: depths are too rough to stop before that.
   const MASK to_crossing = smooth ? NO_LANES : rays->inside;
   MASK overshot = NO_LANES;
-  REAL clear_at = first;  // the last point on the side that the ray travels on
+  REAL clear_at = first;  // the last point on the ray's side
   const bool uneven = sdf_uneven(index, scene->sdf_parameters);
   for (u32 i = 0; i < rays->step_limit && any_lane(active); ++i) {
     const REAL3 p = along3(rays->origin, t, rays->direction);
@@ -172,7 +170,7 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
       hits.nearest = select(hits.nearest, real_min(real_max(d, (REAL)(0.0f)), hits.nearest), active);
     if (uneven) d = select(f, d, close);
 
-    // The spheres about the last point and this one must touch: else back to where the last one ended.
+    // The spheres around the last point and this one must touch; otherwise revert to the end of the last one.
     const MASK gap = active & relaxed & MASK_OF(f + previous < step);
     hits.taken_back -= gap;
     const MASK forward = active & ~gap;
@@ -185,20 +183,20 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
     }
     leaving &= ~(forward & MASK_OF(d >= threshold));
     hits.hit |= arrived;
-    // Back to where the surface is a threshold away, so that rays which start here are clear of it.
+    // Move back until the surface is a threshold away, so that new rays start clear of it.
     const REAL back = real_clamp(threshold - d, (REAL)(0.0f), step);
     hits.t = select(hits.t, fma(back, pull, t), arrived);
     hits.threshold = select(hits.threshold, threshold, active);
     if (i == 0) hits.cut = arrived & from_cut & ~rays->inside & MASK_OF(f <= 0.0f);
 
-    // Along a plane the estimate changes linearly: the longest step whose spheres still touch solves
-    // f + (f + slope s) = s. The slope is smoothed, so that one odd sample does not spoil the next steps.
+    // Along a plane the estimate is linear: the longest step whose spheres still touch solves f + (f + slope
+    // s) = s. The slope is smoothed, so that one odd sample does not spoil the next steps.
     const REAL measured = real_clamp((f - previous) * rough_inverse(real_max(step, (REAL)(1e-30f))),
                                      (REAL)(-1.0f), (REAL)(0.5f));
     slope = select(slope, 0.5f * (slope + measured), forward & MASK_OF(step > 0.0f));
     slope = select(slope, (REAL)(-1.0f), gap);
     REAL proven = real_max(f, 0.5f * threshold);
-    if (uneven)  // a step over the surface is found by its sign, and taken back to it
+    if (uneven)  // a change of sign reveals a step across the surface, to be bisected
       proven = select(proven, real_max(proven, real_min(0.5f * d, 4.0f * threshold)), close);
     const REAL longer = 2.0f * f * rough_inverse(1.0f - slope);
     const REAL remaining = (last - t) * speed;
@@ -208,7 +206,7 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
 
     const REAL stride = real_min(select(proven, real_max(longer, proven), ~leaving), remaining);
     relaxed = MASK_OF(stride > proven) & forward;
-    // Taken back: from the point before, exactly its proven distance.
+    // Reverted: from the previous point by exactly its proven distance.
     t = select(select(t, fma(stride, inverse_speed, t), active), fma(previous - step, inverse_speed, t), gap);
     step = select(stride, previous, gap);
     previous = select(f, previous, gap);
@@ -216,7 +214,7 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   hits.limited = active;
   hits.t = select(select(hits.t, t, active), last, hits.cut & ~hits.hit);
   hits.hit |= active | hits.cut;
-  // Depths are no proven bound in every fractal (definition.h).
+  // Depths are not a proven bound for every fractal (definition.h).
   if (SDF_CROSSES && any_lane(overshot))
     hits.t = select(hits.t, bisect_crossing(scene, index, rays, clear_at, hits.t, overshot), overshot);
   const MASK out = to_crossing & overshot;

@@ -1,9 +1,9 @@
-// What shading needs of a marched hit: the normal and the colour that the orbit gives it.
+// Shading data of a marched hit: normal and orbit colour.
 #ifndef SUNDOG_LIB_SDF_SURFACE_CL
 #define SUNDOG_LIB_SDF_SURFACE_CL
 #include "lib/sdf/march.cl"
 
-// The palette at `trap`, linear between its stops, the last of which joins the first.
+// The palette at `trap`, linear between stops and cyclic.
 static inline REAL3 palette_color(const Scene* scene, __global const SdfField* restrict field, REAL trap) {
   const REAL turns = fma(trap, (REAL)(field->palette_scale), (REAL)(field->palette_offset));
   const float count = (float)field->palette_count;
@@ -11,7 +11,7 @@ static inline REAL3 palette_color(const Scene* scene, __global const SdfField* r
   REAL3 color = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
   for (u32 i = 0; i < field->palette_count; ++i) {
     const REAL apart = fabs(place - (float)i);
-    // Round the circle of stops, from both sides: a stop alone is its own neighbour.
+    // Around the circle of stops, from both sides: a single stop is its own neighbour.
     const REAL weight = fmax(1.0f - apart, 0.0f) + fmax(1.0f - (count - apart), 0.0f);
     __global const float* stop = scene->sdf_parameters + field->palette_first + 3u * i;
     color = along3(color, weight, real3((REAL)(stop[0]), (REAL)(stop[1]), (REAL)(stop[2])));
@@ -34,8 +34,8 @@ static inline REAL trap_value(u32 color_by, SdfSample s, REAL3 p) {
   }
 }
 
-// Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). As wide as the
-// threshold, it leaves out what is finer than the pixel: on fractals the derivative itself is speckled.
+// Differences of the estimate at the corners of a tetrahedron (I. Quilez, Normals for an SDF). At the width
+// of the threshold they smooth details finer than the pixel; the derivative of a fractal is speckled.
 static inline REAL3 difference_normal(const Scene* scene, u32 index, REAL3 p, REAL width, MASK active) {
   REAL3 sum = real3((REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f));
   for (u32 i = 0; i < 4u; ++i) {
@@ -48,12 +48,12 @@ static inline REAL3 difference_normal(const Scene* scene, u32 index, REAL3 p, RE
   return sum;
 }
 
-// One copy that is called: the whole formula with its traps and its gradient is compiled once.
+// As a call, so that the whole formula with traps and gradient is compiled once.
 NEVER_INLINE void called_sample(const Scene* scene, u32 index, const REAL3* p, SdfSample* s) {
   *s = sdf_sample(index, *p, scene->sdf_parameters);
 }
 
-// The outward unit normal at p, a hit of march_rays, in the field's space. `cut`: it lies on the interval's
+// The outward unit normal at p, a hit of march_rays, in field space. `cut`: it lies on the interval's
 // boundary.
 static inline REAL3 sdf_normal(const Scene* scene, u32 index, REAL3 p, REAL threshold, MASK hit, MASK cut) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
@@ -64,7 +64,7 @@ static inline REAL3 sdf_normal(const Scene* scene, u32 index, REAL3 p, REAL thre
     called_sample(scene, index, &p, &s);
     gradient = s.gradient;
   }
-  // On its edges, and where a minimum changes over on the surface itself, a closed form may have no gradient.
+  // On edges, and where a minimum switches on the surface, a closed form may have no gradient.
   const MASK lost = exact ? hit & MASK_OF(dot3(gradient, gradient) < 1e-20f) : hit;
   if (any_lane(lost))
     gradient =
@@ -73,7 +73,7 @@ static inline REAL3 sdf_normal(const Scene* scene, u32 index, REAL3 p, REAL thre
   return any_lane(cut) ? select3(normal, cut_normal(field, p), cut) : normal;
 }
 
-// The point p in the field's own space.
+// The point p in field space.
 #ifdef SDF_DEEP
 static inline REAL3 trap_place(const Scene* scene, u32 index, REAL3 p) {
   return sdf_place(index, p, scene->sdf_parameters);
@@ -82,7 +82,7 @@ static inline REAL3 trap_place(const Scene* scene, u32 index, REAL3 p) {
 static inline REAL3 trap_place(const Scene* scene, u32 index, REAL3 p) { return p; }
 #endif
 
-// A factor on the material's ambient and diffuse colours at p, linear: what the orbit's trap gives.
+// A factor from the orbit trap on the material's ambient and diffuse colours at p, linear.
 static inline REAL3 sdf_color(const Scene* scene, u32 index, REAL3 p) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
   if (field->color_by == SDF_COLOR_NONE) return all3((float3)(1.0f));

@@ -1,15 +1,14 @@
-// What surfaces do to light: Phong's and Blinn's local terms (Phong 1975, Blinn 1977) and the perfect
-// reflection and transmission of Whitted's model (1980). A surface a lane; wo points to the viewer, wi to
-// where light comes from.
+// Phong's and Blinn's local terms (Phong 1975, Blinn 1977), and perfect reflection and transmission of
+// Whitted's model (1980). One surface per lane; wo points to the viewer, wi to the light.
 #ifndef SUNDOG_LIB_BSDF_CL
 #define SUNDOG_LIB_BSDF_CL
 #include "lib/core/directions.cl"
 #include "lib/core/optics.cl"
 #include "lib/shade/bsdf_terms.cl"
 
-// What layered materials (shared/layers.h) have in the place of the diffuse term.
+// Replacements for the diffuse term in layered materials (shared/layers.h).
 #if HAS_LAYERS
-// The frame of `lanes` of one material about ns, with the tangent along `along`.
+// Sets the frame about ns, with the tangent along `along`, for `lanes` of one material.
 static inline void turn_frame(__global const Layers* m, REAL3 along, MASK lanes, Bsdfs* bsdf) {
   const REAL3 flat = along3(along, -dot3(along, bsdf->ns), bsdf->ns);
   const MASK good = MASK_OF(dot3(flat, flat) > 1e-20f * dot3(along, along));
@@ -47,7 +46,7 @@ static inline void add_layers(const Scene* scene, const SurfaceInteractions* s, 
   }
 }
 static inline void start_opaque(Bsdfs* bsdf) { bsdf->there = (REAL)(1.0f); }
-// The colour of surfaces, of metals as of what scatters light below.
+// The surfaces' albedo, for metals as for diffuse materials.
 static inline REAL3 albedo_of(const Bsdfs* bsdf) {
   const MASK layered = MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
   return select3(bsdf->diffuse, scale3(bsdf->base, bsdf->there), layered);
@@ -88,7 +87,7 @@ static inline Bsdfs make_bsdfs(const Scene* scene, const SurfaceInteractions* s,
   return bsdf;
 }
 
-// x^e for x in [0, 1]. Whole exponents, which most are, by squaring.
+// x^e for x in [0, 1]. Integer exponents, the common case, by squaring.
 static inline REAL highlight(REAL x, float e) {
   if (HAS_FRACTIONAL_EXPONENTS && (e != floor(e) || e > GREATEST_WHOLE_EXPONENT))
     return select(real_exp(e * real_log(real_max(x, (REAL)(1e-37f)))), (REAL)(0.0f), MASK_OF(x < 1e-37f));
@@ -100,21 +99,21 @@ static inline REAL highlight(REAL x, float e) {
   return result;
 }
 
-// Cosine of the angle that a highlight falls off with: between the mirrored light and the viewer, or for
-// Blinn between the normal and the half vector.
+// Cosine that a highlight falls off with: between the reflected light and the viewer or, for Blinn, between
+// the normal and the half vector.
 static inline REAL highlight_cosine(u32 flags, REAL3 ns, REAL3 wo, REAL3 wi) {
   if (flags & MATERIAL_BLINN) return dot3(ns, safe_unit3(add3(wi, wo)));
   return -dot3(subtract3(wi, scale3(ns, 2.0f * dot3(ns, wi))), wo);
 }
 
-// The surfaces of `lanes` whose materials have one of the flags.
+// The surfaces of `lanes` whose materials have any of the flags.
 static inline MASK of_kind(const Bsdfs* bsdf, u32 flags, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)flags) != 0);
 }
 
 // Adds the highlights of the surfaces of `lanes`.
 #if HAS_MAPS
-// Colour and exponent may come from textures, the exponent not whole.
+// Colour and exponent may come from textures, so the exponent may be fractional.
 static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes,
                                    REAL3 light) {
   if (!any_lane(lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f))) return light;
@@ -146,20 +145,19 @@ static inline REAL3 add_highlights(const Scene* scene, const Bsdfs* bsdf, REAL3 
 }
 #endif
 
-// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with a beta of 0 a highlight
-// is the same from everywhere. This is pi times the BSDF times the cosine, in the classical units where a
-// white surface that faces a light of intensity 1 has the radiance 1. Perfect reflection and transmission are
-// not in it. For n.l > 0.
+// kd (n.l) + ks max(r.v, 0)^beta, or max(n.h, 0)^beta for Blinn, where 0^0 is 1: with beta 0 a highlight is
+// uniform. This is pi times the BSDF times the cosine, in the classical units where a white surface that
+// faces a light of intensity 1 has radiance 1. Excludes perfect reflection and transmission. For n.l > 0.
 static inline REAL3 bsdf_eval(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK lanes) {
   return add_highlights(scene, bsdf, wo, wi, lanes, scale3(bsdf->diffuse, dot3(bsdf->ns, wi)));
 }
 
-// How perfect reflection and transmission share the light of surfaces.
+// How surfaces divide light between perfect reflection and transmission.
 typedef struct SpecularSplits {
   REAL3 kr, kt;
-  MASK branches, transmits;  // does either; transmits
-  REAL eta, cos_i, cos_t;    // index behind over index before; cosines to ns, 1 where nothing bends
-  REAL f;                    // Fresnel's reflectance of a dielectric, 0 of others
+  MASK branches, transmits;  // has either; transmits
+  REAL eta, cos_i, cos_t;    // index behind over index before; cosines to ns, 1 if nothing bends
+  REAL f;                    // Fresnel reflectance of a dielectric, else 0
 } SpecularSplits;
 
 #if HAS_MAPS
@@ -178,9 +176,9 @@ static inline REAL3 transmission_of(const Bsdfs* bsdf, __global const Material* 
 }
 #endif
 
-// What both faces of a thin wall of an index reflect together at the cosine c: 2 R / (1 + R), the sum of all
-// reflections between them, where R is what one face reflects (Stokes 1862, "On the Intensity of the Light
-// Reflected from or Transmitted through a Pile of Plates", without polarisation).
+// Reflectance of both faces of a thin wall at the cosine c: 2 R / (1 + R), the sum of all reflections between
+// them, with the reflectance R of one face (Stokes 1862, "On the Intensity of the Light Reflected from or
+// Transmitted through a Pile of Plates", without polarisation).
 #if HAS_THIN_WALLS
 static inline REAL wall_reflectance(REAL c, REAL index) {
   const REAL r = fresnel_reflectance(c, refracted_cosine(c, index), index);
@@ -193,7 +191,7 @@ static inline MASK walls_of(MASK flags, MASK lanes) {
   return lanes & MASK_OF((flags & kind) == kind);
 }
 
-// What those walls reflect; `f` for the other surfaces.
+// The reflectance of those walls; `f` for other surfaces.
 static inline REAL reflected_by_walls(const Scene* scene, MASK materials, MASK flags, REAL c, REAL f,
                                       MASK lanes) {
   REAL reflected = f;
@@ -236,7 +234,7 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   const REAL bent = select(zero, fresnel_reflectance(split.cos_i, split.cos_t, split.eta), bends);
   const REAL f = reflected_by_walls(scene, bsdf->material, bsdf->flags, split.cos_i, bent, split.branches);
   split.f = select(zero, f, dielectric);
-  // Total internal reflection turns everything into reflection.
+  // Total internal reflection reflects everything.
   const MASK total = split.transmits & ~dielectric & MASK_OF(split.cos_t <= 0.0f);
   split.kr = select3(split.kr, add3(split.kr, split.kt), total);
   split.kt = select3(split.kt, none, total);
@@ -245,9 +243,8 @@ static inline SpecularSplits bsdf_specular(const Scene* scene, const Bsdfs* bsdf
   return split;
 }
 
-// The surfaces of `lanes` that are not there, since their materials are cut away or seen from a side that
-// they do not have: all light goes straight on. Rays pass as many of them as they may cross unseen
-// interfaces.
+// The surfaces of `lanes` that are absent, because their material is cut away or seen from its missing side:
+// light goes straight on. Rays pass as many of them as unseen interfaces.
 #if HAS_MAPS
 static inline MASK has_highlights(const Bsdfs* bsdf) { return MASK_OF(greatest3(bsdf->specular) > 0.0f); }
 #else
@@ -264,14 +261,14 @@ static inline MASK cut_away(const Bsdfs* bsdf, const SpecularSplits* split, MASK
   return lanes & thin & open & MASK_OF(rest.x + rest.y + rest.z == 0.0f) & ~has_highlights(bsdf);
 }
 
-// Where perfect reflection sends light; a shading normal must not send it inside.
+// Direction of perfect reflection; a shading normal must not send it inside.
 static inline REAL3 reflected_direction(const Bsdfs* bsdf, REAL3 wo) {
   const REAL3 d = negate3(wo), by_shading = reflect_direction(d, bsdf->ns);
   const MASK good = MASK_OF(dot3(by_shading, bsdf->ng) > 0.0f);
   return select3(reflect_direction(d, bsdf->ng), by_shading, good);
 }
 
-// Where transmission sends it; a shading normal must not send it outside again.
+// Direction of transmission; a shading normal must not send it outside again.
 static inline REAL3 transmitted_direction(const Bsdfs* bsdf, const SpecularSplits* split, REAL3 wo) {
   const REAL3 d = negate3(wo);
   const REAL3 by_shading = refract_direction(d, bsdf->ns, split->cos_i, split->cos_t, split->eta);

@@ -1,5 +1,5 @@
-// Random directions for surfaces, for integrators that follow one ray on: one of the terms is chosen (perfect
-// reflection and transmission, microfacets, diffuse, highlight), then a direction of it. A surface a lane.
+// Samples directions for integrators that continue with one ray: chooses a term (perfect reflection and
+// transmission, microfacets, diffuse, highlight), then a direction. One surface per lane.
 #ifndef SUNDOG_LIB_BSDF_SAMPLE_CL
 #define SUNDOG_LIB_BSDF_SAMPLE_CL
 #include "lib/core/directions.cl"
@@ -9,12 +9,12 @@
 
 typedef struct BsdfSamples {
   REAL3 wi;       // unit
-  REAL3 weight;   // BSDF times cosine over density: what light from wi counts for
+  REAL3 weight;   // BSDF times cosine over pdf: factor on light from wi
   REAL pdf;       // of wi, per steradian; of a specular sample the probability of its term
-  MASK specular;  // perfect reflection or transmission: bsdf_scatter() does not know it
+  MASK specular;  // perfect reflection or transmission, which bsdf_scatter() excludes
 } BsdfSamples;
 
-// The terms of surfaces for a viewer, and their shares among samples: as large as what they may return.
+// The terms of surfaces for a viewer, and their shares of samples, proportional to their maximum reflectance.
 typedef struct Lobes {
   SpecularSplits split;
   REAL mirror, through, facets, matte, glossy, all;
@@ -29,13 +29,13 @@ typedef struct Lobes {
 #endif
 } Lobes;
 
-// Density of directions whose cosine c to an axis is distributed as c^e, on its hemisphere.
+// Density of directions on the hemisphere of an axis, proportional to c^e for the cosine c.
 static inline REAL lobe_pdf(REAL c, REAL e) {
   const REAL value = (e + 1.0f) * (0.5f / M_PI_F) * pow(real_max(c, (REAL)(0.0f)), e);
   return select((REAL)(0.0f), value, MASK_OF(c > 0.0f));
 }
 
-// Densities of the diffuse and of the highlight's term for the direction wi.
+// Densities of the diffuse and highlight terms for the direction wi.
 static inline REAL diffuse_pdf(const Bsdfs* bsdf, REAL3 wi) {
   return real_max(dot3(bsdf->ns, wi), (REAL)(0.0f)) * (1.0f / M_PI_F);
 }
@@ -45,7 +45,7 @@ static inline REAL highlight_pdf(const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK bli
   return select(lobe_pdf(dot3(mirrored, wi), exponent), of_half, blinn);
 }
 
-// The greatest part of ks and its exponent of the materials of `lanes`.
+// The largest component of ks, and the exponent, of the materials of `lanes`.
 #if HAS_MAPS
 static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes, REAL* size,
                                    REAL* exponent) {
@@ -65,14 +65,14 @@ static inline void find_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 }
 #endif
 
-// What facets change of lobes; what they scatter, added to the light and the density of the others; and the
-// directions that they send the samples of `lanes` to, by the number `u_term` in [0, lobes->facets). Returns
-// those that go through the surface.
+// Changes of lobes by facets; light scattered by facets, and the pdf of its directions, added to those of the
+// others; directions of facet samples of `lanes`, by the number `u_term` in [0, lobes->facets). Returns the
+// samples that go through the surface.
 #if HAS_ROUGH
 static inline void add_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {
   const REAL zero = (REAL)(0.0f);
   lobes->rough = make_microfacets(scene, bsdf, &lobes->split, wo, lanes);
-  // What neither bends nor is frosted goes straight through, whatever the facets.
+  // Unbent and unfrosted transmission goes straight through, whatever the facets.
   const MASK sending = transmitting_facets(&lobes->rough);
   const REAL of_facets = lobes->mirror + select(zero, lobes->through, sending);
   lobes->facets = select(zero, of_facets, lobes->rough.rough);
@@ -106,8 +106,8 @@ static inline MASK send_by_facets(const Scene* scene, const Bsdfs* bsdf, const L
 }
 #endif
 
-// The same of layered materials, whose layers also take from all that lies below. Their place among the terms
-// is behind the facets: past_layers_of() is where they end that begin at `at`.
+// Likewise for layered materials, whose layers also attenuate everything below. Their terms follow the
+// facets: past_layers_of() is the end of those that begin at `at`.
 #if HAS_LAYERS
 static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {
   lobes->layers = make_shares(scene, bsdf, wo, lanes, &lobes->split);
@@ -153,8 +153,8 @@ static inline Lobes make_lobes(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, 
   return lobes;
 }
 
-// pi times the BSDF times the cosine of all terms that are not perfect, for the directions wi on either side
-// of the surfaces of `lanes`; `density`: that with which bsdf_sample() chooses them.
+// pi times the BSDF times the cosine of all imperfect terms, for directions wi on either side of the surfaces
+// of `lanes`; `pdf`: the density with which sample_lobes() chooses them.
 static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                  REAL3 wi, MASK lanes, REAL* pdf) {
   const REAL zero = (REAL)(0.0f);
@@ -170,7 +170,7 @@ static inline REAL3 bsdf_scatter(const Scene* scene, const Bsdfs* bsdf, const Lo
   return value;
 }
 
-// Directions of the highlight, and those of the diffuse term where `matte`.
+// Directions of the highlight, or of the diffuse term where `matte`.
 static inline REAL3 local_direction(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, REAL u_x, REAL u_y,
                                     MASK matte) {
   const REAL3 diffuse = direction_about(bsdf->ns, real_sqrt(u_x), u_y);
@@ -183,7 +183,7 @@ static inline REAL3 local_direction(const Bsdfs* bsdf, const Lobes* lobes, REAL3
   return select3(glossy, diffuse, matte);
 }
 
-// The samples of `specular` are reflected where `mirror`, and transmitted elsewhere.
+// Samples of `specular` are reflected where `mirror`, else transmitted.
 static inline void send_perfectly(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, MASK mirror, MASK specular,
                                   BsdfSamples* sample) {
   const REAL one = (REAL)(1.0f);
@@ -195,9 +195,9 @@ static inline void send_perfectly(const Bsdfs* bsdf, const Lobes* lobes, REAL3 w
   sample->weight = select3(sample->weight, scale3(part, 1.0f / select(one, chosen, specular)), specular);
 }
 
-// A direction for each surface of `lanes`, by the numbers u in [0, 1): `u_term` chooses the term, u_x and u_y
-// the direction. The weights' mean is the light that the surface returns of a white surrounding. A weight of
-// 0 ends the path.
+// Samples a direction for each surface of `lanes` with numbers in [0, 1): `u_term` chooses the term, u_x and
+// u_y the direction. The mean weight is the surface's reflectance of a white surrounding. A weight of 0 ends
+// the path.
 static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                        REAL u_term, REAL u_x, REAL u_y, MASK lanes) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
@@ -209,7 +209,7 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   BsdfSamples sample;
   sample.specular = specular;
   sample.wi = local_direction(bsdf, lobes, wo, u_x, u_y, matte | ~lanes);
-  // Lanes whose term sends light through the surface; what leaves on the other side is none of the term's.
+  // Lanes whose term transmits; a direction on the wrong side of its term is rejected.
   const MASK facets = lanes & ~specular & MASK_OF(at < scattered);
   const MASK below = send_by_facets(scene, bsdf, lobes, wo, at - perfect, u_x, u_y, facets, &sample.wi);
   send_by_layers(scene, bsdf, lobes, wo, at - scattered, u_x, u_y, lanes & ~specular, &sample.wi);
@@ -225,7 +225,7 @@ static inline BsdfSamples sample_lobes(const Scene* scene, const Bsdfs* bsdf, co
   return sample;
 }
 
-// Of sample_lobes() the specular samples, and which they are; the others' weights are 0.
+// The specular samples of sample_lobes(); the others' weights are 0.
 static inline BsdfSamples sample_perfect_lobes(const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo, REAL u_term,
                                                MASK lanes) {
   const REAL at = u_term * lobes->all;
@@ -238,7 +238,7 @@ static inline BsdfSamples sample_perfect_lobes(const Bsdfs* bsdf, const Lobes* l
   return sample;
 }
 
-// The share of the lobes that send light in more directions than single ones.
+// The share of lobes that are not perfectly specular.
 static inline REAL scattered_share(const Lobes* lobes) {
   return past_layers_of(lobes, lobes->matte + lobes->glossy + lobes->facets);
 }

@@ -1,5 +1,5 @@
-// What surfaces have of their materials: the terms, with the checker, textures and the wavelength that
-// decides. A surface a lane.
+// The terms that surfaces get from their materials, with checkerboard, textures and the deciding wavelength.
+// One surface per lane.
 #ifndef SUNDOG_LIB_BSDF_TERMS_CL
 #define SUNDOG_LIB_BSDF_TERMS_CL
 #include "lib/path/media.cl"
@@ -9,22 +9,22 @@
 #include "shared/layers.h"
 
 typedef struct Bsdfs {
-  REAL3 ng, ns;            // unit, both on the side of the viewer
+  REAL3 ng, ns;            // unit, both on the viewer's side
   REAL3 ambient, diffuse;  // ka and kd, with pattern and colour
   MASK material, flags;    // index; of the material
   MASK before, after;      // media on the viewer's side and behind
 #if HAS_DISPERSION
-  REAL row;  // of the wavelength that decides where light goes, in the table `spectra`
+  REAL row;  // of the wavelength that decides the ray's direction, in the table `spectra`
 #endif
 #if HAS_MAPS
   REAL3 specular, reflection, transmission;  // with textures
-  REAL3 emission;                            // a factor on the material's
+  REAL3 emission;                            // factor on the material's
   REAL exponent;
 #endif
 #if HAS_LAYERS
   REAL3 base;                // colour of layered materials, whose diffuse term is 0
-  REAL3 tangent, bitangent;  // unit, at right angles to ns
-  REAL there;                // the opacity
+  REAL3 tangent, bitangent;  // unit, orthogonal to ns
+  REAL there;                // opacity
   MASK coated;               // fuzz and coat are on the viewer's side
   MASK coated_behind;        // on the other side
 #endif
@@ -32,17 +32,17 @@ typedef struct Bsdfs {
   REAL metalness, roughness, glass;  // of layered materials, with textures
 #endif
 #if HAS_COAT_MAPS
-  REAL coat;  // a factor on the weight of a layered material's
+  REAL coat;  // factor on a layered material's coat weight
 #endif
 #if HAS_FUZZ_MAPS
-  REAL3 fuzz;  // a factor on the color of theirs
+  REAL3 fuzz;  // factor on a layered material's fuzz color
 #endif
 #if HAS_SPECULAR_MAPS
-  REAL3 tint;  // a factor on what a layered material's dielectric reflects
+  REAL3 tint;  // factor on the reflectance of a layered material's dielectric
 #endif
 } Bsdfs;
 
-// The light of materials' emission as their textures have it.
+// Emission multiplied by its texture.
 #if HAS_MAPS
 static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) {
   return multiply3(light, bsdf->emission);
@@ -51,8 +51,8 @@ static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) {
 static inline REAL3 mapped_emission(const Bsdfs* bsdf, REAL3 light) { return light; }
 #endif
 
-// Sets the wavelength that decides where light goes, as a row of the table `spectra`; and the index behind
-// surfaces of `lanes` over the index before them at that wavelength.
+// Sets the wavelength that decides the ray's direction, as a row of the table `spectra`; relative index of
+// the surfaces of `lanes`, behind over before, at that wavelength.
 #if HAS_DISPERSION
 static inline void set_wavelength_row(Bsdfs* bsdf, REAL row) { bsdf->row = row; }
 static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
@@ -65,8 +65,8 @@ static inline REAL index_behind(const Scene* scene, const Bsdfs* bsdf, MASK lane
 }
 #endif
 
-// The checker of the lanes of `lanes`, all of one material. It is fixed to each instance's own space, and
-// filtered by what a camera's ray of the same length sees: kernels without cones draw the same.
+// The checkerboard of `lanes`, all of one material. It is fixed in the instance's space, and filtered by the
+// footprint of a camera ray of the same length, so that kernels without cones draw the same.
 #if HAS_CHECKER
 static inline void add_checker(const Scene* scene, __global const Material* material,
                                const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {
@@ -90,7 +90,7 @@ static inline void add_checker(const Scene* scene, __global const Material* mate
                                const SurfaceInteractions* s, MASK lanes, Bsdfs* bsdf) {}
 #endif
 
-// The terms that textures change, for the lanes of `lanes`.
+// Applies textures to the terms of `lanes`.
 #if HAS_MAPS
 #if HAS_LAYERS
 static inline void keep_opacity(const Terms* terms, Bsdfs* bsdf) { bsdf->there = terms->there; }

@@ -1,12 +1,12 @@
-// How the cones that pixels see change where rays are reflected and refracted: by the curvature of surfaces
-// (Akenine-Moeller and others 2021, "Improved Shader and Texture Level of Detail Using Ray Cones") and, at
-// interfaces, by the refraction of neighbouring rays. A cone's width is negative behind its focus.
+// Changes of pixel cones by reflection and refraction: by the curvature of surfaces (Akenine-Moeller and
+// others 2021, "Improved Shader and Texture Level of Detail Using Ray Cones") and, at interfaces, by the
+// refraction of neighbouring rays. Behind its focus a cone's width is negative.
 #ifndef SUNDOG_LIB_CONES_CL
 #define SUNDOG_LIB_CONES_CL
 #include "lib/shade/bsdf.cl"
 
 #if HAS_CONES && HAS_SECONDARY
-// Of the hits of `lanes` on triangles: how their corners' normals turn along the edges, the mean of the
+// Curvature at triangle hits of `lanes`: how their corners' normals turn along the edges, the mean of the
 // three.
 static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL curvature = (REAL)(0.0f);
@@ -28,7 +28,7 @@ static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteract
   return curvature;
 }
 
-// Seen from the rays: above 0 where surfaces bulge towards them. In the world.
+// Curvature as seen by the rays, in world space: positive for surfaces that bulge towards them.
 static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL curvature = (REAL)(0.0f);
   u32 index;
@@ -36,8 +36,7 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     const MASK mine = take_alike(s->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     const float4 scale = instance->pattern_scale;
-    const float size =
-        cbrt(scale.x * scale.y * scale.z) / scale.w;  // of a unit of object space, in the world
+    const float size = cbrt(scale.x * scale.y * scale.z) / scale.w;  // per unit of object space, in the world
     const REAL own = HAS_MESH && instance->shape == SHAPE_MESH
                          ? triangle_curvatures(scene, s, mine)
                          : solid_curvatures(instance->shape, instance->parameters,
@@ -47,13 +46,13 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
   return select(-curvature, curvature, s->entering);
 }
 
-// The cones of reflected rays: neighbouring rays part by twice the angle between their normals.
+// Cones of reflected rays: neighbouring rays diverge by twice the angle between their normals.
 static inline void spread_reflected(REAL curvature, SceneRays* child) {
   child->cone_spread = fma(2.0f * curvature, child->cone_width, child->cone_spread);
 }
 
-// The cones of transmitted rays, those of `rays` before: Snell's law for rays beside each other at right
-// angles to the plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
+// Cones of transmitted rays, from those of `rays`: Snell's law for neighbouring rays perpendicular to the
+// plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
 static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
                                       SceneRays* child) {
   const REAL inverse = 1.0f / split->eta, spread = rays->cone_spread;

@@ -1,12 +1,12 @@
-// Indices of refraction that depend on the wavelength, which is a row of the table `spectra` (with a
-// fraction). A surface a lane.
+// Wavelength-dependent refractive indices; a wavelength is a (fractional) row of the table `spectra`. One
+// surface per lane.
 #ifndef SUNDOG_LIB_DISPERSION_CL
 #define SUNDOG_LIB_DISPERSION_CL
 #include "lib/path/media.cl"
 #include "shared/spectra.h"
 
 #if HAS_DISPERSION
-// A spectrum, whose rows begin at `first`, between two rows.
+// Interpolates a spectrum whose rows begin at `first`.
 static inline REAL spectrum_at(const Scene* scene, u32 first, REAL row, MASK lanes) {
   const MASK low = min(TO_MASK(row), (MASK)((int)SPECTRUM_ROWS - 2));
   __global const float* from = scene->spectra + first;
@@ -27,7 +27,7 @@ static inline REAL index_at(const Scene* scene, MASK medium, REAL row, MASK lane
   return index;
 }
 
-// Those interfaces of `lanes` whose relative index depends on the wavelength.
+// The interfaces of `lanes` whose relative index depends on the wavelength.
 static inline MASK disperses(const Scene* scene, MASK before, MASK after, MASK lanes) {
   MASK found = NO_LANES;
   u32 at;

@@ -1,5 +1,4 @@
-// From raw hits to what shading needs: where on which surface a ray arrived, on which side, and the surface's
-// coordinates there. A ray a lane.
+// Converts raw hits to shading data: position, surface, side, and surface coordinates. One ray per lane.
 #ifndef SUNDOG_LIB_INTERACTION_CL
 #define SUNDOG_LIB_INTERACTION_CL
 #include "lib/path/faces.cl"
@@ -12,7 +11,7 @@
 typedef struct SurfaceInteractions {
   REAL3 p;                // world
   REAL3 ng, ns;           // unit, both against the ray
-  REAL offset;            // distance off the surface at which a further ray starts
+  REAL offset;            // distance off the surface at which secondary rays start
   REAL3 color;            // vertex or field colour, a factor on ambient and diffuse
   MASK instance;          // index
   MASK material, flags;   // index; of the material
@@ -21,29 +20,29 @@ typedef struct SurfaceInteractions {
   REAL time;  // of the ray
 #endif
 #if HAS_UV
-  Coordinates at;  // u, v and how the point moves with them
+  Coordinates at;  // u, v and the point's derivatives
 #endif
 #if HAS_MAPS
   MASK prim;  // the hit's prim, u and v
   REAL b, c;
-  REAL footprint;  // width of what the ray sees of the surface, in the world
+  REAL footprint;  // width of the ray's footprint on the surface, in the world
 #endif
 #if HAS_CHECKER
-  REAL camera_footprint;  // the same of a camera's ray of this length
+  REAL camera_footprint;  // footprint of a camera ray of this length
 #endif
 #if HAS_RELIEF
-  MASK bent;  // ns is not the geometry's
-  REAL even;  // length of the mean of the normal map's normals in the footprint, 1 where they are alike
+  MASK bent;  // ns differs from the geometry's normal
+  REAL even;  // length of the normal map's mean normal in the footprint, 1 if uniform
 #endif
 #if HAS_PARALLAX
-  REAL3 shift;  // along the surface to where the ray meets the relief below it; u and v are those there
-  REAL sunk;    // how deep that is, of the relief's depth
-  REAL below;   // how far the surface is below another, in whose relief it lies; 0 elsewhere
-  REAL3 top;    // that other's normal
+  REAL3 shift;  // along the surface to where the ray hits the relief below it; u and v are those there
+  REAL sunk;    // depth of that point relative to the relief's
+  REAL below;   // depth below another surface in whose relief this one lies, or 0
+  REAL3 top;    // that surface's normal
 #endif
 } SurfaceInteractions;
 
-// Points p of the world, on such surfaces of instance `index`, in its own space.
+// World points p on such surfaces of instance `index`, in its own space.
 #if HAS_OBJECT_MOTION
 static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) { s->time = hits->time; }
 static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
@@ -58,7 +57,7 @@ static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceIntera
 static inline REAL time_of(const SurfaceInteractions* s) { return (REAL)(0.0f); }
 #endif
 
-// Directions of the world along such surfaces in the space of instance `index`, and its normals in the world.
+// World directions along such surfaces in the space of instance `index`, and its normals in the world.
 static inline REAL3 vectors_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 a) {
   return object_vectors(scene->instances + index, still_vectors(scene, index, a, time_of(s)));
 }
@@ -68,16 +67,16 @@ static inline REAL3 normals_of(const Scene* scene, u32 index, const SurfaceInter
 
 static inline REAL greatest_size(REAL3 a) { return greatest3(real3(fabs(a.x), fabs(a.y), fabs(a.z))); }
 
-// How far from the surface a new ray must start: a few of the float's spacings at the magnitudes that made
-// the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that a scene works
-// in any unit); `turned` is that of the point about which it was turned.
+// The distance from the surface at which new rays must start: a few float spacings at the magnitudes that
+// produced the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that
+// scenes work in any unit); `turned`: that of the point about which it was rotated.
 static inline REAL offset_distance(REAL3 o, REAL3 p, REAL turned) {
   return real_max(real_max(greatest_size(o), greatest_size(p)), turned) * 0x1p-19f;
 }
 
-// The same of the space in which the hit was found, along the normals `ng` there: how far that is from the
-// world's origin, and on a solid that is not flat its size. Triangles have their own, since corners that are
-// far away round the hit as well. rounding_offset() takes what is measured along `ng` to the world.
+// Likewise for the space in which the hit was found, along the normals `ng` there: its distance from the
+// world's origin and, on a curved solid, its size. Triangles have their own extent, since distant corners
+// also affect rounding. rounding_offset() converts lengths along `ng` to the world.
 static inline REAL space_rounding(__global const Instance* instance, REAL3 ng) {
   const u32 shape = instance->shape;
   const bool flat =
@@ -92,15 +91,14 @@ static inline REAL rounding_offset(REAL rounding, REAL3 outward) {
   return rounding * 0x1p-21f / nonzero(greatest_size(outward));
 }
 
-// Takes the positions on a sphere onto its surface by one Newton step; rounding of t is largest for far
-// origins.
+// Moves positions on a sphere onto its surface by one Newton step; rounding of t is largest for far origins.
 static inline REAL3 settle_on_sphere(const Scene* scene, u32 index, const SurfaceInteractions* s) {
   const REAL3 q = points_of(scene, index, s, s->p), gradient = normals_of(scene, index, s, q);
   return along3(s->p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
 }
 
-// Normals of the corners and their colours, interpolated, for the lanes of `lanes`, and the triangles'
-// extents. World space, unit.
+// Interpolated corner normals and colours for the lanes of `lanes`, and the triangles' extents. World space,
+// unit.
 NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hits, MASK lanes, REAL3* color,
                                    REAL* extent) {
   REAL3 normal = hits->ng;
@@ -119,8 +117,8 @@ NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hi
   return safe_unit3(moved_normals(scene, index, normal, time_of_hits(hits)));
 }
 
-// Shading normals `ns` of a mesh, turned against the rays; the geometric ones where they say nothing. One
-// that is turned from the viewer would light the back of things: it is bent no further than the silhouette.
+// Turns a mesh's shading normals `ns` against the rays; the geometric normals if unusable. A normal facing
+// away from the viewer would light the back of objects, so it is bent to the silhouette.
 static inline REAL3 facing_normals(REAL3 ns, REAL3 ng, MASK entering, REAL3 d) {
   const REAL3 facing = select3(negate3(ns), ns, entering);
   const REAL towards = dot3(facing, d);
@@ -130,7 +128,7 @@ static inline REAL3 facing_normals(REAL3 ns, REAL3 ng, MASK entering, REAL3 d) {
 }
 
 #if HAS_SDF
-// The colours of instance `index` where the world's rays (o, d) met it, at the distances t.
+// Field colours of instance `index` where the world rays (o, d) hit it, at the distances t.
 NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, const REAL3* d, REAL t) {
   __global const Instance* instance = scene->instances + index;
   const REAL3 p = along3(field_points(instance, *o), t, object_vectors(instance, *d));
@@ -142,7 +140,7 @@ static inline REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, 
 }
 #endif
 
-// What interactions hold in some scenes only; without the feature nothing.
+// Members of interactions that need a feature; empty without it.
 #if HAS_UV
 static inline void set_coordinates(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
   find_coordinates(scene, hits, &s->p, lanes, &s->at);
@@ -175,19 +173,19 @@ static inline void start_on_top(SurfaceInteractions* s) {
 static inline void start_on_top(SurfaceInteractions* s) {}
 #endif
 
-// What textures want to know of the hits of `lanes`, at the points s->p.
+// Sets texture data of the hits of `lanes`, at the points s->p.
 static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
   set_coordinates(scene, hits, lanes, s);
   keep_place(hits, s);
   start_on_top(s);
 }
 
-// Vertex colours count where the material says so, field colours always.
+// Vertex colours apply if the material says so, field colours always.
 static inline MASK has_color(const Faces* faces, MASK on_field) {
   return on_field | MASK_OF((faces->flags & (int)MATERIAL_VERTEX_COLOR) != 0);
 }
 
-// What the rays (o, d) met at the hits of `lanes`.
+// The interactions of the rays (o, d) at the hits of `lanes`.
 static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hits, const Faces* faces,
                             MASK lanes, SurfaceInteractions* s) {
   const REAL3 outward = safe_unit3(faces->outward), white = all3((float3)(1.0f));
@@ -228,9 +226,8 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   locate(scene, hits, lanes, s);
 }
 
-// Sets the footprints of surfaces that rays have met: the longer axis of the ellipse in which the cone that
-// the pixel sees meets the surface (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for
-// Real-Time Ray Tracing").
+// Sets the surfaces' footprints: the longer axis of the ellipse in which the pixel's cone meets the surface
+// (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for Real-Time Ray Tracing").
 #if HAS_CONES
 static inline REAL cone_widths(const SceneRays* rays, REAL t) {
   return fabs(fma(t, rays->cone_spread, rays->cone_width));

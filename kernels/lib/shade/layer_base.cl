@@ -1,6 +1,6 @@
-// The base of layered materials at one place: what a material has of it as numbers, or where a texture gives
-// its roughness or metalness or the coat's weight, what the grid of shared/layers.h has between its steps. A
-// surface a lane; the lanes of a call have one material.
+// The base of layered materials at a point: the material's numbers or, if a texture gives its roughness,
+// metalness or coat weight, values interpolated in the grid of shared/layers.h. One surface per lane; the
+// lanes of a call have one material.
 #ifndef SUNDOG_LIB_LAYER_BASE_CL
 #define SUNDOG_LIB_LAYER_BASE_CL
 #include "lib/shade/layer_lobes.cl"
@@ -8,24 +8,24 @@
 #if HAS_LAYERS
 typedef struct LayerBase {
   REAL metal;                    // metalness
-  REAL glass, alpha_x, alpha_y;  // these and the others are as in Layers
+  REAL glass, alpha_x, alpha_y;  // as in Layers, like the members below
   REAL straight, inner, shine_scale, matte_scale, matte_scale_bare;
 #if HAS_LAYER_MAPS
-  MASK step;  // of the grid, and the part of the way to the next
+  MASK step;  // of the grid, and interpolation weight
   REAL part;
 #endif
 #if HAS_COAT_MAPS
   REAL coat;       // factor on the coat's weight
-  MASK coat_step;  // of the weight, and the part of the way to the next
+  MASK coat_step;  // of the weight, and interpolation weight
   REAL coat_part;
-  REAL eta, eta_next;  // of the base at both
+  REAL eta, eta_next;  // of the base at both steps
 #endif
 #if HAS_FUZZ_MAPS
-  REAL3 fuzz;  // a factor on the fuzz's color
+  REAL3 fuzz;  // factor on the fuzz's color
 #endif
 #if HAS_SPECULAR_MAPS
-  REAL3 tint;   // a factor on what the dielectric's interface reflects,
-  REAL tinted;  // and its greatest, on what that takes from what lies below
+  REAL3 tint;   // factor on the reflectance of the dielectric's interface
+  REAL tinted;  // its largest component, for the loss of light below
 #endif
 } LayerBase;
 
@@ -35,8 +35,7 @@ static inline bool maps_coat(__global const Layers* m) { return m->coat_grid != 
 static inline bool has_coat_grids(__global const Layers* m) { return maps_coat(m) && m->coat_grid != 0u; }
 #endif
 
-// The coat's weight, how much of its inner reflections' darkening there is, and what the coat leaves where
-// its row has `row`.
+// The coat's weight, the strength of its darkening, and the light it transmits if its row has `row`.
 #if HAS_COAT_MAPS
 static inline REAL coat_weight(__global const Layers* m, const LayerBase* base) {
   return m->coat.w * base->coat;
@@ -53,7 +52,7 @@ static inline REAL darkening(__global const Layers* m, const LayerBase* base) { 
 static inline REAL past_coat(const LayerBase* base, REAL row) { return row; }
 #endif
 
-// What the dielectric's interface leaves where its row has `row`, and the colour of what it reflects.
+// The light that the dielectric's interface transmits if its row has `row`, and its reflected colour.
 #if HAS_SPECULAR_MAPS
 static inline REAL past_interface(const LayerBase* base, REAL row) {
   return fma(base->tinted, row - 1.0f, (REAL)(1.0f));
@@ -61,8 +60,8 @@ static inline REAL past_interface(const LayerBase* base, REAL row) {
 static inline REAL3 interface_tint(__global const Layers* m, const LayerBase* base) {
   return multiply3(all3(m->specular.xyz), base->tint);
 }
-// matte_scale_bare is 1 over the mean of what the interface leaves, by which that changes. Layers above leave
-// less at grazing angles as the interface does, so the mean of both changes by no more.
+// matte_scale_bare is 1 over the mean transmission of the interface, which the tint changes. Layers above
+// transmit less at grazing angles, like the interface, so the mean of both changes at most as much.
 static inline void tint_base(const Bsdfs* bsdf, LayerBase* base) {
   base->tint = bsdf->tint;
   base->tinted = greatest3(bsdf->tint);
@@ -78,7 +77,7 @@ static inline REAL3 interface_tint(__global const Layers* m, const LayerBase* ba
 static inline void tint_base(const Bsdfs* bsdf, LayerBase* base) {}
 #endif
 
-// What fuzz leaves where its row has `row`, and its color.
+// The light that fuzz transmits if its row has `row`, and its color.
 #if HAS_FUZZ_MAPS
 static inline REAL past_fibres(const LayerBase* base, REAL row) {
   return fma(greatest3(base->fuzz), row - 1.0f, (REAL)(1.0f));
@@ -91,8 +90,8 @@ static inline REAL past_fibres(const LayerBase* base, REAL row) { return row; }
 static inline REAL3 fuzz_color(__global const Layers* m, const LayerBase* base) { return all3(m->fuzz.xyz); }
 #endif
 
-// The light that fuzz leaves for the ground, of which matte_scale has the mean, goes evenly with its weight;
-// below a coat a little less of it returns.
+// Light that fuzz transmits to the ground, with mean matte_scale, is linear in its weight; below a coat
+// slightly less returns.
 #if HAS_FUZZ_MAPS
 static inline void set_fuzz(__global const Layers* m, const Bsdfs* bsdf, LayerBase* base) {
   base->fuzz = bsdf->fuzz;
@@ -112,7 +111,7 @@ static inline REAL layer_row(const Scene* scene, __global const Layers* layers, 
   const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + 1, low, lanes);
   return fma(x - TO_REAL(low), b - a, a);
 }
-// The same of a film, at the step of the coat's weight.
+// A film's row at the cosine c, at the step of the coat's weight.
 #if HAS_COAT_MAPS
 static inline REAL film_row(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 row,
                             REAL c, MASK lanes) {
@@ -139,13 +138,13 @@ static inline REAL3 film_rows(const Scene* scene, __global const Layers* m, cons
                film_row(scene, m, base, row + 2u, c, lanes));
 }
 
-// The place of a direction among the LAYER_TURNS rows by its turn about the normal.
+// Position of a direction among the LAYER_TURNS rows by its azimuth.
 static inline REAL turn_place(REAL3 w) {
   const REAL along = w.x * w.x, flat = real_max(fma(w.y, w.y, along), (REAL)(1e-12f));
   return along / flat * (float)(LAYER_TURNS - 1u);
 }
 
-// The gain of facets of two widths for a direction, of the rows from `first` on.
+// Gain of anisotropic facets for a direction, from the rows starting at `first`.
 static inline REAL turned_gain(const Scene* scene, u32 first, REAL3 w, MASK lanes) {
   const REAL y = turn_place(w);
   const REAL x = real_clamp(w.z, (REAL)(0.0f), (REAL)(1.0f)) * (float)(LAYER_STEPS - 1u);
@@ -170,10 +169,10 @@ static inline REAL coat_gain(const Scene* scene, __global const Layers* m, REAL3
 }
 
 #if HAS_LAYER_MAPS
-// Facets are as wide across as along: their gains are one row.
+// Whether facets are isotropic: their gains are one row.
 static inline bool round_facets(__global const Layers* m) { return m->narrowed == 1.0f; }
 
-// Where the grid by roughness of the coat's weight begins, behind the material's first.
+// Offset of the coat weight's grid by roughness from the material's first.
 #if HAS_COAT_MAPS
 static inline MASK grid_of_coat(__global const Layers* m, const LayerBase* base) {
   return has_coat_grids(m) ? base->coat_step * (int)m->coat_grid : NO_LANES;
@@ -182,7 +181,7 @@ static inline MASK grid_of_coat(__global const Layers* m, const LayerBase* base)
 static inline MASK grid_of_coat(__global const Layers* m, const LayerBase* base) { return NO_LANES; }
 #endif
 
-// A number between steps of the roughness, of the grid `ahead` numbers behind that of the coat's weight.
+// Interpolates a number by roughness, in the grid `ahead` entries after that of the coat's weight.
 static inline REAL number_in_grid(const Scene* scene, __global const Layers* m, const LayerBase* base,
                                   u32 ahead, u32 which, MASK lanes) {
   __global const float* from = scene->layer_rows + m->grid + ahead + which;
@@ -190,7 +189,7 @@ static inline REAL number_in_grid(const Scene* scene, __global const Layers* m, 
   const REAL a = gather_floats(from, low, lanes), b = gather_floats(from + LAYER_GRID_NUMBERS, low, lanes);
   return fma(base->part, b - a, a);
 }
-// A row of each step at the cosine c: number 0 is LAYER_SHINE, those from 1 on are gains.
+// Interpolates a row at the cosine c: row 0 is LAYER_SHINE, rows from 1 on are gains.
 static inline REAL row_in_grid(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 ahead,
                                MASK row, REAL c, MASK lanes) {
   const u32 size = LAYER_STEPS * (round_facets(m) ? 2u : 1u + LAYER_TURNS);
@@ -204,7 +203,7 @@ static inline REAL row_in_grid(const Scene* scene, __global const Layers* m, con
   return fma(base->part, far - near, near);
 }
 
-// The same between steps of the coat's weight too; gains are the same in all of these.
+// Also interpolates between steps of the coat's weight; gains are equal in all of these.
 #if HAS_COAT_MAPS
 static inline REAL grid_number(const Scene* scene, __global const Layers* m, const LayerBase* base, u32 which,
                                MASK lanes) {
@@ -240,8 +239,8 @@ static inline REAL grid_gain(const Scene* scene, __global const Layers* m, const
   return fma(y - TO_REAL(row), far - near, near);
 }
 
-// The index of a dielectric base over what lies above it, where that has as much of the coat's index as the
-// coat has weight; 1 over it where it is less (OpenPBR 1.1, "Coat", "Index of refraction").
+// The relative index of a dielectric base over what lies above it, which has the coat's index in proportion
+// to the coat's weight; inverted if below 1 (OpenPBR 1.1, "Coat", "Index of refraction").
 #if HAS_COAT_MAPS
 static inline REAL base_eta(__global const Layers* m, REAL weight) {
   const REAL above = fma(weight, (REAL)(m->coat_bends), (REAL)(1.0f));
@@ -249,7 +248,7 @@ static inline REAL base_eta(__global const Layers* m, REAL weight) {
   const REAL bounded = real_min(root, (REAL)(0.99949987f));
   return (1.0f + bounded) / (1.0f - bounded);
 }
-// The coat's weight where its texture has the factor `coat`, and what depends on it alone.
+// Sets the coat's weight for the texture value `coat`, and dependent members.
 static inline void weigh_coat(__global const Layers* m, REAL coat, LayerBase* base) {
   base->coat = (REAL)(1.0f);
   base->coat_step = NO_LANES;
@@ -274,7 +273,7 @@ static inline void step_by_coat(__global const Layers* m, LayerBase* base) {
 static inline void step_by_coat(__global const Layers* m, LayerBase* base) {}
 #endif
 
-// The base's facets as wide as `roughness` makes them, seen through the coat's.
+// Sets the base's facet widths for `roughness`, as seen through the coat's.
 static inline void widen_base(__global const Layers* m, REAL roughness, LayerBase* base) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), square = roughness * roughness;
   const REAL both = real_sqrt(real_sqrt(real_min(one, fma(square, square, (REAL)(m->haze)))));
@@ -330,8 +329,8 @@ static inline LayerBase base_of(const Scene* scene, __global const Layers* m, co
   return base;
 }
 
-// What a dielectric base's interface reflects at the cosine c. Between two steps of the coat's weight it is
-// what lies between those of both, as in the rows of what it leaves.
+// Reflectance of a dielectric base's interface at the cosine c. Interpolated between two steps of the coat's
+// weight, like the rows of transmitted light.
 #if HAS_COAT_MAPS
 static inline REAL base_reflectance(__global const Layers* m, const LayerBase* base, REAL c) {
   const REAL near = interface_reflectance(c, base->eta);
@@ -344,7 +343,7 @@ static inline REAL base_reflectance(__global const Layers* m, const LayerBase* b
 }
 #endif
 
-// What the base's interface leaves at the cosine c, and the gain of its facets for a direction.
+// Light that the base's interface transmits at the cosine c, and the gain of its facets for a direction.
 static inline REAL past_shine(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
                               MASK lanes) {
 #if HAS_LAYER_MAPS

@@ -1,7 +1,7 @@
-// The lobes of layered materials, each reciprocal, in the frame of the shading normal (z): microfacets of two
-// widths (GGX; Heitz 2014, "Understanding the Masking-Shadowing Function"), fuzz (Estevez and Kulla 2017,
-// "Production Friendly Microfacet Sheen BRDF") and a rough matte ground (Portsmouth, Kutz and Hill 2025,
-// "EON: A Practical Energy-Preserving Rough Diffuse BRDF"). A surface a lane.
+// The lobes of layered materials, all reciprocal, in the frame of the shading normal (z): anisotropic
+// microfacets (GGX; Heitz 2014, "Understanding the Masking-Shadowing Function"), fuzz (Estevez and Kulla
+// 2017, "Production Friendly Microfacet Sheen BRDF") and a rough matte ground (Portsmouth, Kutz and Hill
+// 2025, "EON: A Practical Energy-Preserving Rough Diffuse BRDF"). One surface per lane.
 #ifndef SUNDOG_LIB_LAYER_LOBES_CL
 #define SUNDOG_LIB_LAYER_LOBES_CL
 #include "lib/core/optics.cl"
@@ -14,7 +14,7 @@
 
 static inline REAL square1(REAL x) { return x * x; }
 
-// The square of the width of facets as they are seen from w, times the square of its sine.
+// The squared width of facets as seen from w, times the squared sine of w.
 static inline REAL stretched2(REAL3 w, REAL alpha_x, REAL alpha_y) {
   return fma(square1(alpha_x * w.x), (REAL)(1.0f), square1(alpha_y * w.y));
 }
@@ -29,7 +29,7 @@ static inline REAL facets_at(REAL3 h, REAL alpha_x, REAL alpha_y) {
   return 1.0f / (M_PI_F * alpha_x * alpha_y * real_max(width * width, (REAL)(1e-30f)));
 }
 
-// A facet that wo sees, by its visible area (as visible_normal() of lib/shade/rough.cl, with two widths).
+// Samples a facet seen by wo, by visible area (visible_normal() of lib/shade/rough.cl, anisotropic).
 static inline REAL3 seen_facet(REAL3 wo, REAL alpha_x, REAL alpha_y, REAL u_x, REAL u_y) {
   const REAL3 stretched =
       safe_unit3(real3(alpha_x * wo.x, alpha_y * wo.y, real_max(wo.z, (REAL)(LEAST_COSINE))));
@@ -39,8 +39,8 @@ static inline REAL3 seen_facet(REAL3 wo, REAL alpha_x, REAL alpha_y, REAL u_x, R
   return safe_unit3(real3(alpha_x * h.x, alpha_y * h.y, real_max(h.z, (REAL)(LEAST_COSINE))));
 }
 
-// pi times the lobe times the cosine of white facets in single reflection, the density of wi, and what
-// further reflections add to it per 1 of colour, by the gains of both directions (lib/shade/microfacets.cl).
+// Single reflection of white facets (pi times the lobe times the cosine), the pdf of wi, and the contribution
+// of multiple reflections per unit of colour, by the gains of both directions (lib/shade/microfacets.cl).
 typedef struct FacetLobe {
   REAL value, pdf, more;
 } FacetLobe;
@@ -64,8 +64,8 @@ static inline REAL interface_reflectance(REAL c, REAL eta) {
   return fresnel_reflectance(c, refracted_cosine(c, eta), eta);
 }
 
-// A metal's reflectance by its colours straight on and near the edge (Hoffman 2023, "Generalization of
-// Adobe's Fresnel Model": F82).
+// A metal's reflectance by its colours at normal incidence and near the edge (Hoffman 2023, "Generalization
+// of Adobe's Fresnel Model": F82).
 static inline REAL metal_share(REAL c, REAL f0, float tint) {
   const float bar = 1.0f / 7.0f, left = 1.0f - bar, left5 = left * left * left * left * left;
   const REAL away = real_clamp(1.0f - c, (REAL)(0.0f), (REAL)(1.0f)), away2 = away * away;
@@ -78,8 +78,8 @@ static inline REAL3 metal_shares(REAL c, REAL3 f0, float4 tint) {
   return real3(metal_share(c, f0.x, tint.x), metal_share(c, f0.y, tint.y), metal_share(c, f0.z, tint.z));
 }
 
-// pi times fuzz times the cosine: fibres that stand up, of the width alpha, seen between each other by
-// Neubelt and Pettineo's term (2013).
+// pi times fuzz times the cosine: upright fibres of width alpha, with the visibility term of Neubelt and
+// Pettineo (2013).
 static inline REAL fuzz_lobe(REAL3 wo, REAL3 wi, REAL3 h, float alpha) {
   const REAL sine2 = real_clamp(1.0f - h.z * h.z, (REAL)(1e-12f), (REAL)(1.0f));
   const REAL fibres = (2.0f + 1.0f / alpha) * 0.5f * real_exp(real_log(sine2) * (0.5f / alpha));
@@ -87,7 +87,7 @@ static inline REAL fuzz_lobe(REAL3 wo, REAL3 wi, REAL3 h, float alpha) {
   return fibres * wi.z / (4.0f * real_max(between, (REAL)(1e-4f)));
 }
 
-// The part of light that single reflections in a rough white matte ground return, over A of the paper.
+// The albedo of single reflections in a rough white matte ground, over A of the paper.
 static inline REAL matte_part(REAL c, float roughness) {
   const REAL d = 1.0f - c;
   const REAL g =
@@ -99,7 +99,7 @@ static inline REAL matte_share(REAL color, REAL single, REAL further, float mean
   return fma(color, single, color * color * mean / (1.0f - color * (1.0f - mean)) * further);
 }
 
-// pi times the matte ground of the colour times the cosine.
+// pi times the matte lobe times the cosine.
 static inline REAL3 matte_lobe(REAL3 wo, REAL3 wi, REAL3 color, float roughness) {
   const float a = 1.0f / (1.0f + 0.28779341f * roughness);   // 1/2 - 2/(3 pi)
   const float mean = a * (1.0f + 0.072488212f * roughness);  // 2/3 - 28/(15 pi)
@@ -113,12 +113,12 @@ static inline REAL3 matte_lobe(REAL3 wo, REAL3 wi, REAL3 color, float roughness)
                matte_share(color.z, single, further, mean));
 }
 
-// The part of a lobe of these widths that a mirror stands for, where reflected rays are sent.
+// The share of a lobe of these widths that a mirror ray represents, if reflected rays are sent.
 static inline REAL mirror_share(REAL alpha_x, REAL alpha_y) {
   const REAL smooth = 1.25f * (1.0f - real_sqrt(real_sqrt(alpha_x * alpha_y)));
   return real_min(smooth * smooth, (REAL)(1.0f));
 }
-// What it leaves of the lobe where `mirrored`, else all.
+// The rest of the lobe where `mirrored`, else all.
 static inline REAL share_left(REAL alpha_x, REAL alpha_y, MASK mirrored) {
   return 1.0f - select((REAL)(0.0f), mirror_share(alpha_x, alpha_y), mirrored);
 }

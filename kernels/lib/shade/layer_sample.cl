@@ -1,14 +1,13 @@
-// Layered materials as part of a BSDF with a density, for integrators that follow one ray on, and what their
-// layers take from the terms below them: perfect reflection and transmission, facets of glass. A surface a
-// lane.
+// Sampling of layered materials, for integrators that continue with one ray, and the attenuation by layers of
+// the terms below: perfect reflection and transmission, facets of glass. One surface per lane.
 #ifndef SUNDOG_LIB_LAYER_SAMPLE_CL
 #define SUNDOG_LIB_LAYER_SAMPLE_CL
 #include "lib/shade/layers.cl"
 
 #if HAS_LAYERS
-// What fuzz and coat leave of light between the cosines c_o and c_i to the normal, where the first is on the
-// viewer's side, and the second behind the surface where it is below 0. Thin walls of an index have the same
-// layers on both sides, and light that goes through passes both.
+// The light that fuzz and coat transmit between the cosines c_o, on the viewer's side, and c_i, which is
+// negative behind the surface. Thin walls with an index have the same layers on both sides, so transmitted
+// light passes both.
 static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf, REAL c_o,
                                    REAL c_i, MASK lanes) {
   const REAL3 white = all3((float3)(1.0f));
@@ -28,16 +27,16 @@ static inline REAL3 left_by_layers(const Scene* scene, __global const Layers* m,
   return select3(left, scale3(multiply3(tint_i, darkening), of_i), back);
 }
 
-// What remains of the light `through` surfaces, of which layers leave `left`. They are there as much as the
-// surface is: light that passes where nothing is loses nothing.
+// Attenuates light `through` surfaces by `left`, the layers' transmission. Layers are present as far as the
+// surface is opaque: light through its absent part loses nothing.
 static inline REAL3 left_where_there(const Bsdfs* bsdf, REAL3 through, REAL3 left) {
   const REAL open = 1.0f - bsdf->there;
   const REAL3 beside = real3(open, open, open);
   return add3(multiply3(left, subtract3(through, beside)), beside);
 }
 
-// The shares of samples for the viewer in wo, as large as what the lobes may return; and what the layers
-// leave of perfect reflection and transmission.
+// The shares of samples for the viewer in wo, proportional to the lobes' maximum reflectance; and the layers'
+// attenuation of perfect reflection and transmission.
 static inline LayerShares make_shares(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
                                       SpecularSplits* split) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), c = dot3(bsdf->ns, wo);
@@ -74,8 +73,8 @@ static inline REAL sum_of_shares(const LayerShares* shares) {
   return shares->fuzz + shares->coat + (shares->shine + shares->matte);
 }
 
-// Adds pi times the BSDF times the cosine of the layers of `lanes` to what they leave of `value`, and the
-// density of their samples, times the sum of the shares, to `chosen`.
+// Attenuates `value` and adds pi times the BSDF times the cosine of the layers of `lanes`; adds the pdf of
+// their samples, times the sum of the shares, to `chosen`.
 static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const LayerShares* shares, REAL3 wo,
                                  REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
   const MASK layered = layered_lanes(bsdf, lanes);
@@ -100,7 +99,7 @@ static inline void layer_scatter(const Scene* scene, const Bsdfs* bsdf, const La
   }
 }
 
-// Directions that layers send light from wo to; `at` in [0, the sum of the shares) chooses the kind of lobe.
+// Samples directions of the layers for wo; `at` in [0, sum of the shares) chooses the lobe.
 static inline REAL3 layer_direction(const Scene* scene, const Bsdfs* bsdf, const LayerShares* shares,
                                     REAL3 wo, REAL at, REAL u_x, REAL u_y, MASK lanes) {
   const REAL one = (REAL)(1.0f);

@@ -1,8 +1,8 @@
-// Layered materials (shared/layers.h): what fuzz and coat let through is shared by the lesser of both
-// directions' parts, which is reciprocal and never more than there is: with T(w) what a layer leaves for the
-// direction w, a layer's own light is 1 - T(wo) and that from below at most T(wo). The matte ground has
-// T(wo) T(wi) over a constant in its place (Kelemen and Szirmay-Kalos 2001), which for it is exact. A surface
-// a lane; the lanes of a call have one material.
+// Layered materials (shared/layers.h): the light that fuzz and coat transmit is the minimum over both
+// directions, which is reciprocal and conserves energy: with a layer's transmission T(w) for the direction w,
+// its own light is 1 - T(wo) and that from below at most T(wo). The matte ground uses T(wo) T(wi) over a
+// constant instead (Kelemen and Szirmay-Kalos 2001), which is exact for it. One surface per lane; the lanes
+// of a call have one material.
 #ifndef SUNDOG_LIB_LAYERS_CL
 #define SUNDOG_LIB_LAYERS_CL
 #include "lib/core/directions.cl"
@@ -10,15 +10,15 @@
 #include "lib/shade/layer_base.cl"
 
 #if HAS_LAYERS
-// How much of the samples each kind of lobe gets.
+// The shares of samples of the lobes.
 typedef struct LayerShares {
   REAL fuzz, coat, shine, matte;
 #if HAS_CAUSTICS
-  REAL least;  // facets narrower than this are left out; 0: none are
+  REAL least;  // narrower facets are excluded; 0: none
 #endif
 } LayerShares;
 
-// 0 where facets of these widths are left out, else 1.
+// 0 if facets of these widths are excluded, else 1.
 #if HAS_CAUSTICS
 static inline REAL if_wide(const LayerShares* shares, REAL alpha_x, REAL alpha_y) {
   return select((REAL)(1.0f), (REAL)(0.0f), MASK_OF(alpha_x * alpha_y < shares->least * shares->least));
@@ -36,7 +36,7 @@ static inline REAL3 out_of_frame(const Bsdfs* bsdf, REAL3 w) {
   return along3(along3(scale3(bsdf->tangent, w.x), w.y, bsdf->bitangent), w.z, bsdf->ns);
 }
 
-// What fuzz, and fuzz with the coat, leave for a direction at the cosine c; 1 without them.
+// Transmission of fuzz, and of fuzz and coat, for a direction at the cosine c; 1 without them.
 static inline REAL past_fuzz(const Scene* scene, __global const Layers* m, const LayerBase* base, REAL c,
                              MASK lanes) {
   if (m->fuzz.w == 0.0f) return (REAL)(1.0f);
@@ -48,7 +48,7 @@ static inline REAL past_layers(const Scene* scene, __global const Layers* m, con
   return m->coat.w == 0.0f ? left : left * past_coat(base, layer_row(scene, m, LAYER_COAT, c, lanes));
 }
 
-// What the coat's colour takes on a way through it at the cosine c.
+// Transmission of the coat's colour at the cosine c.
 #if HAS_COAT_MAPS
 static inline REAL coat_tint(__global const Layers* m, const LayerBase* base, float color, REAL way) {
   const REAL straight = real_max(1.0f - coat_weight(m, base) * (1.0f - color), (REAL)(1e-6f));
@@ -66,9 +66,9 @@ static inline REAL3 coat_tints(__global const Layers* m, const LayerBase* base, 
                coat_tint(m, base, m->coat.z, way));
 }
 
-// What reflections between the coat and a base of the colour `color` leave of the light from it (OpenPBR 1.1,
-// "Coat", "Darkening"): (1 - K) / (1 - E K), where K is sent back and E the base's albedo straight on, of
-// which what the base lets through is a part.
+// Attenuation by reflections between the coat and a base of the colour `color` (OpenPBR 1.1, "Coat",
+// "Darkening"): (1 - K) / (1 - E K), with the coat's internal reflectance K and the base's normal albedo E,
+// which includes transmitted light.
 static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* base, REAL3 color) {
   const REAL3 one = all3((float3)(1.0f));
   if (m->darkening == 0.0f) return one;
@@ -86,8 +86,8 @@ static inline REAL3 coat_darkening(__global const Layers* m, const LayerBase* ba
   return along3(scale3(one, 1.0f - darker), darker, left);
 }
 
-// What the base's interface reflects at the cosine c: of the dielectric's opaque share, `most` of each colour
-// at most, and of the metal.
+// The reflected colour of the base's interface at the cosine c: of the dielectric's opaque share, with
+// components of at most `most`, and of the metal.
 static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, const LayerBase* base,
                                 REAL3 color, REAL c, REAL most, MASK lanes) {
   const REAL opaque = (1.0f - base->metal) * (1.0f - base->glass);
@@ -105,8 +105,8 @@ static inline REAL3 shine_color(const Scene* scene, __global const Layers* m, co
   return along3(scale3(of_glass, opaque), base->metal * m->metal, of_metal);
 }
 
-// pi times the BSDF times the cosine of the layers of `lanes`, between directions of the frame. In `mirrored`
-// coat and shine are without the share that mirror_layers() sends as a reflected ray.
+// pi times the BSDF times the cosine of the layers of `lanes`, between directions in the frame. Where
+// `mirrored`, coat and shine lack the share that mirror_layers() sends as a reflected ray.
 static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, const Bsdfs* bsdf,
                                   const LayerBase* base, const LayerShares* shares, REAL3 wo, REAL3 wi,
                                   MASK mirrored, MASK lanes, REAL* pdf) {
@@ -158,13 +158,13 @@ static inline REAL3 layered_value(const Scene* scene, __global const Layers* m, 
   return add3(value, multiply3(own, select3(all3((float3)(1.0f)), tint, coated)));
 }
 
-// The surfaces of `lanes` that are layered, seen from the side that shows their layers or from their inside.
+// The layered surfaces of `lanes`, seen from the side that shows their layers or from inside.
 static inline MASK layered_lanes(const Bsdfs* bsdf, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
 }
 
-// pi times the BSDF times the cosine of the layers of `lanes`, beside the reflected ray of mirror_layers(),
-// which meets the lights of `met` by itself.
+// pi times the BSDF times the cosine of the layers of `lanes`, in addition to the reflected ray of
+// mirror_layers(), which hits the lights of `met` itself.
 static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, REAL3 wi, MASK met,
                                   MASK lanes, REAL3 light) {
   MASK layered = layered_lanes(bsdf, lanes & MASK_OF(dot3(bsdf->ng, wi) > 0.0f));
@@ -185,8 +185,8 @@ static inline REAL3 layered_light(const Scene* scene, const Bsdfs* bsdf, REAL3 w
   return sum;
 }
 
-// The reflection of `lanes` for integrators that send a separate reflected ray: the smoother the surface, the
-// more. An interface mirrors no more than its layer takes from those below, which rough ones take less of at
+// The reflection of `lanes` for integrators that send a separate reflected ray: larger for smoother surfaces.
+// An interface reflects at most what its layer takes from those below, which rough layers take less of at
 // grazing angles than Fresnel's equations say.
 static inline void mirror_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes,
                                  SpecularSplits* split) {

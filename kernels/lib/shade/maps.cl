@@ -1,5 +1,5 @@
-// What textures make of materials: the terms of surfaces, each times the value of its texture. Opacity shows
-// what is behind a surface: it takes from all terms and adds to the straight transmission. A surface a lane.
+// Applies textures to materials: multiplies the surfaces' terms by texture values. Opacity shows what is
+// behind a surface: it attenuates all terms and adds straight transmission. One surface per lane.
 #ifndef SUNDOG_LIB_MAPS_CL
 #define SUNDOG_LIB_MAPS_CL
 #include "lib/shade/interaction.cl"
@@ -8,25 +8,25 @@
 #include "shared/metal_rough.h"
 
 #if HAS_MAPS
-// The terms of surfaces that textures change.
+// The terms that textures change.
 typedef struct Terms {
   REAL3 ambient, diffuse, specular, reflection, transmission;
-  REAL3 emission;  // a factor on the material's
+  REAL3 emission;  // factor on the material's
   REAL exponent;
 #if HAS_LAYERS
-  REAL there;  // the opacity
+  REAL there;  // opacity
 #endif
 #if HAS_LAYER_MAPS
   REAL metalness, roughness, glass;  // of layered materials
 #endif
 #if HAS_COAT_MAPS
-  REAL coat;  // a factor on the weight of a layered material's
+  REAL coat;  // factor on a layered material's coat weight
 #endif
 #if HAS_SPECULAR_MAPS
-  REAL3 tint;  // a factor on what a layered material's dielectric reflects
+  REAL3 tint;  // factor on the reflectance of a layered material's dielectric
 #endif
 #if HAS_FUZZ_MAPS
-  REAL3 fuzz;  // a factor on the color of a layered material's
+  REAL3 fuzz;  // factor on a layered material's fuzz color
 #endif
 } Terms;
 
@@ -64,7 +64,7 @@ static inline void start_fuzz(Terms* terms) { terms->fuzz = all3((float3)(1.0f))
 static inline void start_fuzz(Terms* terms) {}
 #endif
 
-// The terms of surfaces before their materials' own are added.
+// Initial terms, before the material's own are added.
 static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   const REAL3 none = all3((float3)(0.0f));
   Terms terms;
@@ -81,10 +81,10 @@ static inline Terms start_terms(REAL3 ambient, REAL3 diffuse) {
   return terms;
 }
 
-// Textures ask for the place on an object, not for u and v alone; heights for its size.
+// Textures need the position on an object, not only u and v; heights need its size.
 #define TEXTURES_PLACED (HAS_RELIEF || (TEXTURE_MAPPINGS & ~1u))
 
-// What surfaces know in some scenes only: their coordinates, and where their heights put a point.
+// Texture inputs that need a feature: coordinates, and the point in a relief.
 #if HAS_UV
 static inline void take_coordinates(const SurfaceInteractions* s, TexturePoints* at) {
   at->u = s->at.u;
@@ -102,7 +102,7 @@ static inline REAL3 shifted_points(const SurfaceInteractions* s) { return add3(s
 static inline REAL3 shifted_points(const SurfaceInteractions* s) { return s->p; }
 #endif
 
-// The surfaces of `lanes` as textures see them.
+// The texture inputs of the surfaces of `lanes`.
 static inline void texture_points(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                   TexturePoints* at) {
   at->instance = s->instance;
@@ -131,7 +131,7 @@ static inline bool has_slot(__global const MaterialMaps* maps, u32 slot) {
   return TEXTURE_KINDS && maps->slot[slot] != NO_TEXTURE;
 }
 
-// The values of a slot, 1 where it has no texture.
+// The values of a slot, 1 without a texture.
 static inline REAL4 slot_values(const Scene* scene, __global const MaterialMaps* maps, u32 slot,
                                 const TexturePoints* at, MASK lanes) {
   const REAL one = (REAL)(1.0f);
@@ -144,8 +144,8 @@ typedef struct SlotValues {
   REAL4 of[MAP_COUNT];
 } SlotValues;
 
-// Those of the slots in the bits of `wanted`, where they have textures. One loop, because compilers repeat a
-// texture's code wherever it is called.
+// Reads the slots in the bits of `wanted` that have textures. A single loop, because compilers duplicate a
+// texture's code at each call.
 static inline void read_slots(const Scene* scene, __global const MaterialMaps* maps, u32 wanted,
                               const TexturePoints* at, MASK lanes, SlotValues* values) {
   for (u32 slot = 0; slot < MAP_COUNT; ++slot)
@@ -171,7 +171,7 @@ static inline void map_term(__global const MaterialMaps* maps, const SlotValues*
   if (has_slot(maps, slot)) scale_term(term, values->of[slot], lanes);
 }
 
-// The terms of `lanes`, all of one material by metalness and roughness (shared/metal_rough.h).
+// The terms of `lanes`, all of one metal-rough material (shared/metal_rough.h).
 static inline void metal_rough_terms(__global const MaterialMaps* maps, const SlotValues* values, REAL3 tint,
                                      MASK lanes, Terms* terms) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
@@ -184,7 +184,7 @@ static inline void metal_rough_terms(__global const MaterialMaps* maps, const Sl
   const REAL3 base = multiply3(multiply3(real3(color.x, color.y, color.z), all3(maps->base.xyz)), tint);
   const REAL exponent = rough_exponent(roughness), energy = highlight_energy(exponent),
              lobe = metal_highlight(energy, mirror), left = 1.0f - mirror - lobe * metalness;
-  // A texture of the highlight is that of what is no metal.
+  // A highlight texture applies to the non-metal part.
   const REAL4 shine = has_slot(maps, MAP_SPECULAR) ? values->of[MAP_SPECULAR] : white;
   const REAL3 plain = scale3(real3(shine.x, shine.y, shine.z), maps->reflectance * (1.0f - metalness));
   const REAL3 diffuse = multiply3(
@@ -197,7 +197,7 @@ static inline void metal_rough_terms(__global const MaterialMaps* maps, const Sl
   terms->exponent = select(terms->exponent, exponent, lanes);
 }
 
-// The ambient and diffuse terms, which often share a texture, and those that metalness and roughness make.
+// The ambient and diffuse terms, which often share a texture, and those of metal-rough materials.
 static inline void map_colors(__global const MaterialMaps* maps, const SlotValues* values, bool metal,
                               bool shared, REAL3 tint, MASK lanes, Terms* terms) {
   if (HAS_METAL_ROUGH && metal) {
@@ -208,8 +208,8 @@ static inline void map_colors(__global const MaterialMaps* maps, const SlotValue
   map_term(maps, values, shared ? MAP_DIFFUSE : MAP_AMBIENT, lanes, &terms->ambient);
 }
 
-// Metalness, roughness and transmission of a layered material's base. The other terms are those of what is no
-// metal, those of rays those of what transmits as much as the material may.
+// Metalness, roughness and transmission of a layered material's base. The other terms are those of the
+// non-metal part; ray terms those of maximum transmission.
 #if HAS_LAYER_MAPS
 static inline REAL mapped_share(__global const MaterialMaps* maps, const SlotValues* values, u32 slot,
                                 REAL plain) {
@@ -218,7 +218,7 @@ static inline REAL mapped_share(__global const MaterialMaps* maps, const SlotVal
 static inline void keep_share(REAL3* term, REAL share, MASK lanes) {
   scale_term(term, real4(share, share, share, share), lanes);
 }
-// What textures of metalness and of transmission leave of rays through the surface.
+// The fraction of rays through the surface that metalness and transmission textures leave.
 static inline REAL transmitting_part(__global const MaterialMaps* maps, const SlotValues* values,
                                      float metalness) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
@@ -242,7 +242,7 @@ static inline void map_base_terms(const Scene* scene, u32 material, __global con
   keep_share(&terms->reflection, part, lanes);
   keep_share(&terms->transmission, part, lanes);
 }
-// The same of what shadow rays pass, of the material of this number.
+// Likewise for shadow rays, for the material of this index.
 #define BASE_SLOTS (1u << MAP_METALNESS | 1u << MAP_GLASS)
 static inline void stop_at_base(const Scene* scene, u32 material, __global const MaterialMaps* maps,
                                 const SlotValues* values, MASK lanes, REAL3* passed) {
@@ -257,7 +257,7 @@ static inline void map_base_terms(const Scene* scene, u32 material, __global con
                                   const SlotValues* values, MASK lanes, Terms* terms) {}
 #endif
 
-// The weight of a layered material's coat.
+// The coat weight of a layered material.
 #if HAS_COAT_MAPS
 static inline void map_coat_weight(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
                                    Terms* terms) {
@@ -281,7 +281,7 @@ static inline void map_shares(__global const MaterialMaps* maps, const SlotValue
 }
 #endif
 
-// What a layered material's dielectric reflects, and its fuzz.
+// The reflectance of a layered material's dielectric, and its fuzz.
 #if HAS_SPECULAR_MAPS
 static inline void map_tint(__global const MaterialMaps* maps, const SlotValues* values, MASK lanes,
                             Terms* terms) {
@@ -302,7 +302,7 @@ static inline void map_fuzz(__global const MaterialMaps* maps, const SlotValues*
                             Terms* terms) {}
 #endif
 
-// Adds a clear layer's mirror, which leaves less of what lies below.
+// Adds the mirror of a clear layer, which attenuates what lies below.
 static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
   const REAL kept = 1.0f - coat;
   const REAL4 below = real4(kept, kept, kept, kept);
@@ -313,7 +313,7 @@ static inline void map_coat(REAL coat, MASK lanes, Terms* terms) {
   terms->reflection = select3(terms->reflection, add3(terms->reflection, real3(coat, coat, coat)), lanes);
 }
 
-// Takes what is not there from the terms of `lanes`; it shows what lies behind.
+// Attenuates the terms of `lanes` by their opacity; the rest shows what lies behind.
 static inline void map_opacity(REAL opacity, MASK lanes, Terms* terms) {
   const REAL4 part = real4(opacity, opacity, opacity, opacity);
   scale_term(&terms->ambient, part, lanes);
@@ -363,8 +363,8 @@ static inline void map_material(const Scene* scene, u32 index, const TexturePoin
 }
 
 #if HAS_RELIEF
-// A highlight on normals that differ within the footprint is as wide as theirs together, and as much weaker
-// (Toksvig 2005, "Mipmapping Normal Maps").
+// Widens a highlight on normals that vary within the footprint, and weakens it accordingly (Toksvig 2005,
+// "Mipmapping Normal Maps").
 static inline void widen_highlights(REAL even, REAL* exponent, REAL3* specular) {
   const REAL e = *exponent, wide = e * even / nonzero(fma(e, 1.0f - even, even));
   const MASK uneven = MASK_OF(even < 1.0f);
@@ -378,7 +378,7 @@ static inline void even_highlights(const SurfaceInteractions* s, Terms* terms) {
 static inline void even_highlights(const SurfaceInteractions* s, Terms* terms) {}
 #endif
 
-// The same for all of `lanes`, which have MaterialMaps.
+// Applies textures to all of `lanes`, which have MaterialMaps.
 NEVER_INLINE void map_terms(const Scene* scene, const SurfaceInteractions* s, MASK lanes, Terms* terms) {
   TexturePoints at;
   texture_points(scene, s, lanes, &at);

@@ -1,19 +1,19 @@
-// Reflection and transmission by microfacets of the GGX distribution as a BSDF with a density, for
-// integrators that follow one ray on (Walter and others 2007, "Microfacet Models for Refraction through Rough
-// Surfaces"; facets by their visible area, Heitz 2018). A surface a lane.
+// Sampled reflection and transmission by GGX microfacets, for integrators that continue with one ray (Walter
+// and others 2007, "Microfacet Models for Refraction through Rough Surfaces"; visible normals, Heitz 2018).
+// One surface per lane.
 #ifndef SUNDOG_LIB_MICROFACETS_CL
 #define SUNDOG_LIB_MICROFACETS_CL
 #include "lib/shade/rough.cl"
 
 #if HAS_ROUGH
-// Light that glass sends on after further meetings with its facets: as much as is lost at the first, spread
-// evenly, m(wo) m(wi) over the mean of m where m is what a direction loses (Kulla and Conty 2017, "Revisiting
-// Physically Based Shading at Imageworks", whose sides share light so that the lobe is reciprocal too: the
-// part that goes through from the thinner side, times its mean of m, is the other's times its own and eta^2).
+// Multiple scattering of rough glass: the energy lost by single scattering, distributed as m(wo) m(wi) over
+// the mean of m, where m is a direction's loss (Kulla and Conty 2017, "Revisiting Physically Based Shading at
+// Imageworks"; the sides share it so that the lobe stays reciprocal: the share transmitted from the thinner
+// side, times its mean m, is the other's times its own mean and eta^2).
 #if HAS_ROUGH_GLASS
 typedef struct FurtherLight {
-  REAL lost;               // m(wo): also the share of the samples
-  REAL through;            // the part that goes behind the surface
+  REAL lost;               // m(wo), also the share of the samples
+  REAL through;            // fraction transmitted
   REAL mean, mean_behind;  // of m on the viewer's side and behind
 } FurtherLight;
 
@@ -41,22 +41,22 @@ static inline void set_further(const Scene* scene, const SpecularSplits* split, 
 #endif
 
 typedef struct Microfacets {
-  MASK rough, bends;  // has facets; they also transmit as interfaces that bend light
-  MASK mends;         // the lobe is scaled by gains: see microfacet_gain()
-  MASK glass;         // of those that transmit the dielectrics whose further light is a lobe of its own
+  MASK rough, bends;  // has facets; they also refract
+  MASK mends;         // the lobe is scaled by gains: microfacet_gain()
+  MASK glass;         // refracting dielectrics with a separate multiple-scattering lobe
   REAL alpha, lambda_o;
   REAL gain;  // of the viewer's side
 #if HAS_THIN_WALLS
-  MASK frosted;  // thin walls with facets that transmit
+  MASK frosted;  // thin walls with transmitting facets
 #endif
 #if HAS_ROUGH_GLASS
   FurtherLight further;
 #endif
 } Microfacets;
 
-// What makes up for the light that is lost between facets: lobes are multiplied by the gains of both
-// directions (the scaling of Turquin 2019, "Practical multiple scattering compensation for microfacet
-// models", made reciprocal: host/compile/lobe_energy.h).
+// Compensation for energy lost between facets: lobes are multiplied by the gains of both directions (the
+// scaling of Turquin 2019, "Practical multiple scattering compensation for microfacet models", made
+// reciprocal: host/compile/lobe_energy.h).
 static inline REAL microfacet_gain(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
   return lobe_energy_at(scene, LOBE_GAINS, c, alpha, lanes);
 }
@@ -71,9 +71,8 @@ static inline void start_further(const Scene* scene, const SpecularSplits* split
                                  Microfacets* facets) {}
 #endif
 
-// Frosted thin walls transmit by the facets that they reflect by: to the direction of the reflection,
-// mirrored through the surface (KHR_materials_transmission). Each facet has the shares of both faces
-// together.
+// Frosted thin walls transmit by the facets that reflect: to the reflected direction, mirrored through the
+// surface (KHR_materials_transmission). A facet has the shares of both faces together.
 #if HAS_THIN_WALLS
 static inline void find_frosted(const Bsdfs* bsdf, const SpecularSplits* split, Microfacets* facets) {
   const int kind = (int)(MATERIAL_THIN | MATERIAL_FROSTED);
@@ -105,7 +104,7 @@ static inline Microfacets make_microfacets(const Scene* scene, const Bsdfs* bsdf
   return facets;
 }
 
-// The distribution at facets whose normal h is at the cosine c to n.
+// The distribution at facets with normal h, by its cosine to n.
 static inline REAL facet_pdf(REAL3 n, REAL3 h, REAL alpha) {
   const REAL c = dot3(n, h), a = alpha * alpha;
   const REAL3 off = along3(h, -c, n);
@@ -113,22 +112,21 @@ static inline REAL facet_pdf(REAL3 n, REAL3 h, REAL alpha) {
   return a / (M_PI_F * real_max(width * width, (REAL)(1e-36f)));
 }
 
-// The normals, on the side of the viewer, of the facets that send light from wi to wo: `below` from behind.
+// The facet normals, on the viewer's side, that send light from wi to wo; `below`: from behind.
 static inline REAL3 facet_between(REAL3 n, REAL3 wo, REAL3 wi, REAL eta, MASK below) {
   const REAL3 h = safe_unit3(add3(wo, scale3(wi, select((REAL)(1.0f), eta, below))));
   return select3(h, negate3(h), MASK_OF(dot3(n, h) < 0.0f));
 }
 
-// The chance that facets with this split reflect rather than transmit.
+// The probability that facets with this split reflect instead of transmitting.
 static inline REAL facet_reflects(const Microfacets* facets, const SpecularSplits* split) {
   const REAL r = greatest3(split->kr), t = greatest3(split->kt);
   const REAL part = r / real_max(r + t, (REAL)(1e-30f));
   return select((REAL)(1.0f), part, transmitting_facets(facets));
 }
 
-// Adds further light to pi times the BSDF times the cosine, and its samples to the density, of glass for
-// directions at the cosine c; and directions drawn of it by the number u_side, of which `rest` is left for
-// the others.
+// Adds multiple scattering of glass to pi times the BSDF times the cosine, and its pdf, for directions at the
+// cosine c; samples its directions by the number u_side, passing `rest` on to the others.
 #if HAS_ROUGH_GLASS
 static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
                                REAL c, MASK lanes, REAL3* value, REAL* pdf) {
@@ -137,7 +135,7 @@ static inline void add_further(const Scene* scene, const Bsdfs* bsdf, const Micr
   const FurtherLight* further = &facets->further;
   const REAL one = (REAL)(1.0f);
   const MASK below = MASK_OF(c < 0.0f);
-  const REAL there = select(eta, 1.0f / eta, below);  // the index behind over the one before, seen from wi
+  const REAL there = select(eta, 1.0f / eta, below);  // index behind over before, as seen from wi
   const REAL lost_i = real_max(1.0f - glass_value(scene, there, fabs(c), facets->alpha, glass), (REAL)(0.0f));
   const REAL part = select(one - further->through, further->through, below);
   const REAL mean = select(further->mean, further->mean_behind, below);
@@ -176,9 +174,9 @@ static inline MASK draw_further(const Bsdfs* bsdf, const Microfacets* facets, RE
 }
 #endif
 
-// pi times the BSDF times the cosine of single reflections and refractions by facets of the normals h, and
-// the density of wi among them. `below`: of transmission. Of frosted walls wi is then mirrored, for which
-// refraction's change of solid angle, with an eta of 1, is that of reflection.
+// pi times the BSDF times the cosine of single reflection and refraction by facets with normals h, and the
+// pdf of wi. `below`: of transmission. For frosted walls wi is mirrored, for which refraction's Jacobian with
+// eta 1 equals reflection's.
 static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
                                 REAL3 wo, REAL3 wi, REAL3 h, MASK below, MASK good, REAL* pdf) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), cos_i = dot3(bsdf->ns, wi);
@@ -200,7 +198,7 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   const MASK mends = good & facets->mends;
   if (any_lane(mends)) {
     const REAL more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha, mends), (REAL)(-1.0f));
-    // Light that meets a further facet of a frosted wall may leave it on either side.
+    // Multiply scattered light of a frosted wall may leave on either side.
     const REAL3 kept = select3(color, add3(split.kr, split.kt), frosted_of(facets));
     const REAL3 mended = real3(color.x * fma(kept.x, more, one), color.y * fma(kept.y, more, one),
                                color.z * fma(kept.z, more, one));
@@ -209,9 +207,8 @@ static inline REAL3 facet_light(const Scene* scene, const Bsdfs* bsdf, const Mic
   return select3(all3((float3)(0.0f)), scale3(color, size), good);
 }
 
-// pi times the BSDF times the cosine of the facets of `lanes`, and the density of wi among the directions
-// that they send light from wo to. Behind an interface the density is that of directions there; the BSDF has
-// no factor for radiance in media of other indices.
+// pi times the BSDF times the cosine of the facets of `lanes`, and the pdf of wi for wo. Behind an interface
+// the pdf is over directions there; the BSDF has no factor for radiance in media of different index.
 static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets, REAL eta,
                                   REAL3 wo, REAL3 wi, MASK lanes, REAL* pdf) {
   const REAL zero = (REAL)(0.0f);
@@ -231,8 +228,8 @@ static inline REAL3 facet_scatter(const Scene* scene, const Bsdfs* bsdf, const M
   return value;
 }
 
-// Directions that facets send light from wo to; the numbers u in [0, 1) choose the facet, and `u_side`
-// between its reflection and its transmission, which is `below`.
+// Samples facet directions for wo; the numbers u in [0, 1) choose the facet, and `u_side` its reflection or
+// transmission, which is `below`.
 static inline REAL3 facet_direction(const Scene* scene, const Bsdfs* bsdf, const Microfacets* facets,
                                     REAL3 wo, REAL u_side, REAL u_x, REAL u_y, MASK lanes, MASK* below) {
   Bsdfs facet = *bsdf;

@@ -1,29 +1,28 @@
-// Parallax: rays continue below a surface until they meet its height map, and light is held off by what rises
-// on its way (Brawley and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct
-// Bump Mapping Using Reverse Height Map Tracing"). The surface itself is where heights are 1. A surface a
-// lane.
+// Parallax: rays continue below a surface until they hit its height map, and heights occlude light (Brawley
+// and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct Bump Mapping Using
+// Reverse Height Map Tracing"). The surface itself is at height 1. One surface per lane.
 #ifndef SUNDOG_LIB_PARALLAX_CL
 #define SUNDOG_LIB_PARALLAX_CL
 #include "lib/shade/maps.cl"
 
 #if HAS_PARALLAX
-#define PARALLAX_SLANT 0.05f  // rays that run closer along the surface are taken as of this sine
-#define PARALLAX_STEPS 128    // at most
-#define PARALLAX_LEAST 8.0f   // steps, and one more for each texel that a way crosses
-#define PARALLAX_UNKNOWN 48   // of heights without texels
-#define PARALLAX_HALVINGS 6   // of the step in which a ray meets the heights
-#define PARALLAX_BIAS 0.01f   // of the depth: what heights must rise above a way to hold light off
+#define PARALLAX_SLANT 0.05f  // minimum sine of rays along the surface
+#define PARALLAX_STEPS 128    // maximum
+#define PARALLAX_LEAST 8.0f   // minimum, plus one for each texel crossed
+#define PARALLAX_UNKNOWN 48   // for heights without texels
+#define PARALLAX_HALVINGS 6   // bisections of the step in which a ray hits the heights
+#define PARALLAX_BIAS 0.01f   // relative to the depth: minimum height above a ray to occlude it
 
-// Straight ways through the layer of heights, from 0 to 1.
+// Straight paths through the layer of heights, from 0 to 1.
 typedef struct ReliefWays {
-  REAL u, v;        // how the coordinates change
-  REAL3 p;          // and the point in the object's own units, along the surface
-  REAL begin, end;  // depths, 0 at the surface and 1 where heights are 0
-  MASK steps;       // one a texel, or a pixel where those are wider
+  REAL u, v;        // change of the coordinates
+  REAL3 p;          // change of the point in object units, along the surface
+  REAL begin, end;  // depths, 0 at the surface and 1 at height 0
+  MASK steps;       // one per texel, or per pixel if those are wider
 } ReliefWays;
 
-// The ways of directions d (unit) between the depths `begin` and `end`. `along` receives how far they lead
-// along the surface, in the world.
+// The paths of directions d (unit) between the depths `begin` and `end`. `along` receives their extent along
+// the surface, in the world.
 static inline ReliefWays relief_ways(const Scene* scene, __global const MaterialMaps* maps,
                                      const SurfaceInteractions* s, const TexturePoints* at, REAL3 d,
                                      REAL begin, REAL end, MASK lanes, REAL3* along) {
@@ -55,7 +54,7 @@ static inline ReliefWays relief_ways(const Scene* scene, __global const Material
   return ways;
 }
 
-// How far the heights are above the ways at t.
+// Height above the paths at t.
 static inline REAL height_above(const Scene* scene, __global const MaterialMaps* maps,
                                 const TexturePoints* at, const ReliefWays* ways, REAL t, MASK lanes) {
   TexturePoints there = *at;
@@ -66,12 +65,11 @@ static inline REAL height_above(const Scene* scene, __global const MaterialMaps*
          fma(t, ways->end - ways->begin, ways->begin);
 }
 
-// How ways come to the heights: they begin, go in steps until one ends below, halve that step, and look at
-// both its ends.
+// Stages of the search: begin, step until one ends below, bisect that step, and evaluate both its ends.
 enum { PARALLAX_BEGIN, PARALLAX_STEP, PARALLAX_HALVE, PARALLAX_BELOW, PARALLAX_ABOVE };
 
-// Where ways that begin at the surface meet the heights: the first step that ends below them, halved. The
-// heights are looked up in one place, because compilers repeat a texture's code wherever it is called.
+// Where paths from the surface hit the heights: in the first step that ends below them, bisected. Heights are
+// looked up in one place, because compilers duplicate a texture's code at each call.
 static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps* maps,
                                 const TexturePoints* at, const ReliefWays* ways, MASK lanes) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), inverse = 1.0f / TO_REAL(ways->steps);
@@ -82,7 +80,7 @@ static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps*
     const REAL over = height_above(scene, maps, at, ways, t, stage == PARALLAX_STEP ? open : lanes);
     const MASK under = MASK_OF(over >= 0.0f);
     if (stage == PARALLAX_ABOVE) {
-      // The heights are straight between here and there, unless they have a step.
+      // Interpolate the heights linearly, unless they have a discontinuity.
       const REAL share = real_clamp(over / nonzero(over - high), zero, one);
       return select(below, fma(share, below - above, above), MASK_OF(over < 0.0f) & MASK_OF(high > 0.0f));
     }
@@ -100,7 +98,7 @@ static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps*
       below = select(below, t, under);
       above = select(t, above, under);
     }
-    // What is next to look at.
+    // Choose the next stage.
     ++k;
     if (stage <= PARALLAX_STEP) {
       open &= MASK_OF(ways->steps >= k);
@@ -126,7 +124,7 @@ static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s
   return found;
 }
 
-// Takes what textures see of the surfaces of `lanes` to where rays of the directions d meet their heights.
+// Moves the texture inputs of the surfaces of `lanes` to where rays of the directions d hit their heights.
 NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
   const MASK deep = has_parallax(scene, s, lanes & s->entering);
   if (!any_lane(deep)) return;

@@ -1,6 +1,6 @@
-// Coordinates on surfaces: u and v, and how the point moves with them (dpdu and dpdv, world space), from
-// which tangent frames are made. Longitudes start at +x and turn towards -z, latitudes and heights go up with
-// y: a picture on any solid reads from left to right for who looks at its outside:
+// Surface coordinates: u and v, and the point's derivatives (dpdu and dpdv, world space), which define
+// tangent frames. Longitudes start at +x and turn towards -z; latitudes and heights increase with y, so a
+// picture on any solid reads from left to right from outside:
 //   sphere          u longitude, v latitude, both over [0, 1]
 //   cylinder, cone  u longitude, v height; caps as disks
 //   disk            u along x, v along -z (bottom caps: +z), [0, 1] over the square round it
@@ -28,23 +28,23 @@ static inline float3 corner_of(__global const TriangleBlock* block, u32 corner, 
 typedef struct Coordinates {
   REAL u, v;
   REAL3 dpdu, dpdv;
-  REAL length;  // how long a unit of u and v is, in the world: their geometric mean; 0 where it is not known
+  REAL length;  // world length of a unit of u and v (geometric mean); 0: unknown
 } Coordinates;
 
-// Directions at right angles to n.
+// Arbitrary directions perpendicular to n.
 static inline REAL3 any_tangents(REAL3 n) {
   const REAL zero = (REAL)(0.0f);
   return select3(real3(zero, n.z, -n.y), real3(-n.z, zero, n.x), MASK_OF(fabs(n.x) > fabs(n.y)));
 }
 
-// Of surfaces without coordinates, whose normals are n.
+// For surfaces without coordinates, with normals n.
 static inline SurfacePoints points_without_place(REAL3 n) {
   const REAL3 tangent = any_tangents(n);
   const SurfacePoints points = {(REAL)(0.0f), (REAL)(0.0f), tangent, cross3(n, tangent)};
   return points;
 }
 
-// The hits of `lanes` on triangles of a mesh.
+// For hits of `lanes` on mesh triangles.
 static inline void on_triangles(const Scene* scene, const Hits* hits, MASK lanes, SurfacePoints* at) {
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -66,7 +66,7 @@ static inline void on_triangles(const Scene* scene, const Hits* hits, MASK lanes
   }
 }
 
-// Vectors of object space in world space: by the inverse of object_from_world's linear part.
+// Transforms vectors from object to world space by the inverse of object_from_world's linear part.
 static inline REAL3 world_vectors(__global const Instance* instance, REAL3 a) {
   const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
                r2 = instance->object_from_world[2].xyz;
@@ -76,7 +76,7 @@ static inline REAL3 world_vectors(__global const Instance* instance, REAL3 a) {
                 (REAL)(inverse));
 }
 
-// The coordinates of the hits of `lanes`, at the points p of the world.
+// The coordinates of the hits of `lanes`, at the world points p.
 NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const REAL3* p, MASK lanes,
                                    Coordinates* at) {
   const REAL3 zero = all3((float3)(0.0f));

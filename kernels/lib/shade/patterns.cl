@@ -1,6 +1,5 @@
-// Patterns that are computed, each a number t that mixes two colours, by the place q in the pattern's own
-// units and the width w of what is seen there: above a cell's size a pattern becomes its mean. A point a
-// lane.
+// Procedural patterns: each gives a number t that mixes two colours, from the position q in pattern units and
+// the footprint w, above a cell's size of which a pattern becomes its mean. One point per lane.
 #ifndef SUNDOG_LIB_PATTERNS_CL
 #define SUNDOG_LIB_PATTERNS_CL
 #include "lib/core/lanes.h"
@@ -22,17 +21,17 @@ typedef uint16 UMASK;
 static inline REAL fraction(REAL x) { return x - floor(x); }
 static inline REAL smooth_step(REAL s) { return s * s * (3.0f - 2.0f * s); }
 
-// What is narrower than this is not filtered: the difference of two integrals would be rounding alone.
+// Narrower footprints are not filtered: the difference of two integrals would be mere rounding.
 #define PATTERN_SHARP 1e-3f
 
-// How much more of the width w around x lies in the cell that holds x, between whole numbers, than in those
-// beside it; 0 above w = 2.
+// The fraction of the width w around x in the cell of x, between integers, minus that in the neighbouring
+// cells; 0 above w = 2.
 static inline REAL own_part(REAL x, REAL w) {
   const REAL f = fraction(x);
   return real_min(2.0f * real_min(f, 1.0f - f), real_min(w, real_max(2.0f - w, (REAL)(0.0f))));
 }
 
-// 1 on the last `share` of each unit of x, else 0: the mean likewise.
+// 1 on the last `share` of each unit of x, else 0; filtered.
 static inline REAL pulse(REAL x, float share, REAL w) {
   const REAL a = x - 0.5f * w, b = x + 0.5f * w, zero = (REAL)(0.0f);
   const REAL turns_between = floor(b) - floor(a);
@@ -43,7 +42,7 @@ static inline REAL pulse(REAL x, float share, REAL w) {
   return select(sharp, fma(turns_between, (REAL)(share), to - from) / select((REAL)(1.0f), w, wide), wide);
 }
 
-// How much of the width of what is seen of a plane with the unit normal n lies along each axis.
+// The fraction of a footprint on a plane with unit normal n along each axis.
 static inline REAL3 sines_to_axes(REAL3 n) {
   const REAL3 rest = subtract3(all3((float3)(1.0f)), multiply3(n, n));
   const REAL zero = (REAL)(0.0f);
@@ -51,10 +50,10 @@ static inline REAL3 sines_to_axes(REAL3 n) {
                real_sqrt(real_max(rest.z, zero)));
 }
 
-// How much of the odd cells is seen: a box filter along each axis (Quilez 2011, "Checkerboard filtering"),
-// whose ripples above two cells are left out.
+// The visible fraction of odd cells: a box filter along each axis (Quilez 2011, "Checkerboard filtering"),
+// without its ripples above two cells.
 static inline REAL checker_pattern(REAL3 q, REAL3 w) {
-  const float off = 0x1p-17f;  // off the lattice, so that a face on a cell's border is one colour
+  const float off = 0x1p-17f;  // off the lattice, so that a face on a cell's border has one colour
   const float sharp = 1e-5f;
   const REAL x = q.x + off, y = q.y + off, z = q.z + off;
   const REAL wx = real_max(w.x, (REAL)(sharp)), wy = real_max(w.y, (REAL)(sharp)),
@@ -78,8 +77,8 @@ static inline UMASK lattice_hash(MASK x, MASK y, MASK z) {
 }
 static inline REAL unit_of_hash(UMASK h) { return TO_REAL(AS_MASK(h >> 8)) * 0x1p-24f; }
 
-// A corner's part of noise: a number in [-1, 1], or the product of one of twelve gradients with the way from
-// the corner (Perlin 2002, "Improving Noise").
+// A corner's noise: a number in [-1, 1], or the product of one of twelve gradients with the vector from the
+// corner (Perlin 2002, "Improving Noise").
 static inline REAL corner_noise(UMASK h, REAL x, REAL y, REAL z, bool gradient) {
   if (!gradient) return 2.0f * unit_of_hash(h) - 1.0f;
   const MASK k = AS_MASK(h & 15u);
@@ -88,7 +87,7 @@ static inline REAL corner_noise(UMASK h, REAL x, REAL y, REAL z, bool gradient) 
   return select(a, -a, MASK_OF((k & 1) != 0)) + select(b, -b, MASK_OF((k & 2) != 0));
 }
 
-// Noise on the lattice of whole numbers, in [-1, 1].
+// Noise on the integer lattice, in [-1, 1].
 NEVER_INLINE REAL lattice_noise(REAL3 q, bool gradient) {
   const REAL3 low = real3(floor(q.x), floor(q.y), floor(q.z));
   const REAL3 f = subtract3(q, low);
@@ -111,7 +110,7 @@ NEVER_INLINE REAL lattice_noise(REAL3 q, bool gradient) {
   return fma(s.z, planes[1] - planes[0], planes[0]);
 }
 
-// Octaves of noise, each twice as fine and `gain` times as strong; what is finer than the footprint fades.
+// Octaves of noise, each twice as fine and `gain` times as strong; fades details finer than the footprint.
 static inline REAL octave_noise(REAL3 q, REAL w, u32 octaves, float gain, bool gradient) {
   REAL sum = (REAL)(0.0f);
   float strength = 1.0f, all = 0.0f, frequency = 1.0f;
@@ -126,7 +125,7 @@ static inline REAL octave_noise(REAL3 q, REAL w, u32 octaves, float gain, bool g
   return sum / fmax(all, 1e-6f);
 }
 
-// Distance to the nearest of one point a cell (Worley 1996, "A Cellular Texture Basis Function").
+// Distance to the nearest of one point per cell (Worley 1996, "A Cellular Texture Basis Function").
 static inline REAL cell_distance(REAL3 q, REAL w) {
   const REAL3 low = real3(floor(q.x), floor(q.y), floor(q.z));
   const REAL3 f = subtract3(q, low);
@@ -144,8 +143,8 @@ static inline REAL cell_distance(REAL3 q, REAL w) {
   return fma(seen, real_min(real_sqrt(nearest), (REAL)(1.0f)) - mean, mean);
 }
 
-// Veins: bands across x that noise disturbs (after Perlin 1985, "An Image Synthesizer"; a smoothed triangle
-// wave in place of the sine).
+// Veins: bands across x disturbed by noise (after Perlin 1985, "An Image Synthesizer"; a smoothed triangle
+// wave replaces the sine).
 static inline REAL marble_pattern(REAL3 q, REAL w, u32 octaves, float gain, float turbulence) {
   const REAL x = fma(octave_noise(q, w, octaves, gain, true), (REAL)(turbulence), q.x);
   const REAL t = smooth_step(fabs(2.0f * fraction(x) - 1.0f));
@@ -153,7 +152,7 @@ static inline REAL marble_pattern(REAL3 q, REAL w, u32 octaves, float gain, floa
   return fma(seen, t - 0.5f, (REAL)(0.5f));
 }
 
-// Rings about y, light to dark and quickly back.
+// Rings about y, from light to dark and quickly back.
 static inline REAL wood_pattern(REAL3 q, REAL w, u32 octaves, float gain, float turbulence) {
   const float late = 0.85f;
   const REAL r = real_sqrt(fma(q.x, q.x, q.z * q.z));

@@ -1,13 +1,13 @@
-// Relief that is not in the geometry: shading normals bent by normal maps (in the tangent space of
-// Mikkelsen 2008, which bakers use) and by heights (Blinn 1978, as a surface gradient: Mikkelsen 2010, "Bump
-// Mapping Unparametrized Surfaces on the GPU"). A surface a lane.
+// Relief that is not in the geometry: shading normals from normal maps (in the tangent space of Mikkelsen
+// 2008, which bakers use) and from heights (Blinn 1978, as a surface gradient: Mikkelsen 2010, "Bump Mapping
+// Unparametrized Surfaces on the GPU"). One surface per lane.
 #ifndef SUNDOG_LIB_RELIEF_CL
 #define SUNDOG_LIB_RELIEF_CL
 #include "lib/shade/maps.cl"
 
 #if HAS_RELIEF
-// A unit direction from 15 and 16 bits on the octahedron (Meyer and others 2010); the top bit is the sign of
-// the frame.
+// Decodes a unit direction from 15 and 16 bits (octahedral: Meyer and others 2010); the top bit is the sign
+// of the frame.
 static inline float4 unpack_tangent(u32 bits) {
   const float x = (float)(bits & 0xFFFFu) * (2.0f / 65535.0f) - 1.0f,
               y = (float)(bits >> 16 & 0x7FFFu) * (2.0f / 32767.0f) - 1.0f;
@@ -16,7 +16,7 @@ static inline float4 unpack_tangent(u32 bits) {
   return (float4)(t * rsqrt(fmax(dot(t, t), 1e-20f)), bits >> 31 ? -1.0f : 1.0f);
 }
 
-// Tangents of the hits of `lanes` on triangles, interpolated, in object space, and their frames' signs.
+// Interpolated tangents of the triangle hits of `lanes`, in object space, and their frames' signs.
 static inline void mesh_tangents(const Scene* scene, const SurfaceInteractions* s, MASK lanes, REAL3* tangent,
                                  REAL* sign) {
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
@@ -30,16 +30,16 @@ static inline void mesh_tangents(const Scene* scene, const SurfaceInteractions* 
   }
 }
 
-#define EVEN_ROUNDING 0.01f  // what bytes may take from a normal's length
+#define EVEN_ROUNDING 0.01f  // how much a normal's length may lose to 8-bit rounding
 
-// The frames of surfaces: outward shading normal, tangent along u and bitangent along v, in the world, as a
-// normal map's baker had them.
+// The surfaces' frames: outward shading normal, tangent along u and bitangent along v, in the world, as used
+// by a normal map's baker.
 typedef struct TangentFrames {
   REAL3 normal, tangent, bitangent;
 } TangentFrames;
 
 #if HAS_MESH
-// Those of `lanes` on meshes by the meshes' tangents.
+// Frames of `lanes` on meshes from the meshes' tangents.
 static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                TangentFrames* frame) {
   u32 index;
@@ -51,7 +51,7 @@ static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s,
     REAL sign = (REAL)(1.0f);
     mesh_tangents(scene, s, mine, &tangent, &sign);
     tangent = moved_vectors(scene, index, world_vectors(instance, tangent), time_of(s));
-    // Mirrored instances turn the frame round.
+    // Mirrored instances reverse the frame.
     const float3 r0 = instance->object_from_world[0].xyz, r1 = instance->object_from_world[1].xyz,
                  r2 = instance->object_from_world[2].xyz;
     if (dot(cross(r0, r1), r2) < 0.0f) sign = -sign;
@@ -77,7 +77,7 @@ static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInte
   return frame;
 }
 
-// The normals of `lanes`, all of one material, by its normal map.
+// The normals of `lanes`, all of one material, from its normal map.
 static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMaps* maps,
                                    const TexturePoints* at, const TangentFrames* frame, MASK lanes,
                                    REAL* even) {
@@ -93,14 +93,14 @@ static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMa
   return add3(add3(scale3(frame->tangent, u), scale3(frame->bitangent, v)), scale3(frame->normal, z));
 }
 
-// The same by its heights, from three of them: here, and a step along each of dpdu and dpdv.
+// Normals from heights, by three samples: here, and a step along each of dpdu and dpdv.
 static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMaps* maps,
                                    const SurfaceInteractions* s, const TexturePoints* at, REAL3 normal,
                                    MASK lanes) {
   const REAL least = maps->height_texels > 0.0f ? at->uv_length / maps->height_texels : (REAL)(1e-9f);
   const REAL step = real_max(at->footprint, least);
   REAL here = (REAL)(0.0f), slope[2];
-  for (u32 k = 0; k < 3u; ++k) {  // one place for all three: compilers repeat a texture's code at each call
+  for (u32 k = 0; k < 3u; ++k) {  // a single call, because compilers duplicate a texture's code
     const REAL3 along = k < 2u ? s->at.dpdu : s->at.dpdv;
     const REAL part = step / nonzero(length3(along));
     TexturePoints there = *at;
@@ -126,8 +126,8 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
   return along3(along3(normal, -height * slope[0], across_u), -height * slope[1], across_v);
 }
 
-// Bends the normals of the surfaces of `lanes` that rays of the directions d have met. `bent` receives those
-// that were.
+// Bends the normals of the surfaces of `lanes` hit by rays of the directions d. `bent` receives the changed
+// lanes.
 NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
   s->bent = NO_LANES;
   s->even = (REAL)(1.0f);
@@ -157,9 +157,9 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
   s->bent = mapped;
 }
 
-// The part of light from wi that the bent normals of `lanes` return: none from behind the surface, and near
-// its terminator less, as microfacets of the bend's slope hide each other (Conty Estevez and others 2019, "A
-// Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"; against others:
+// The fraction of light from wi that bent normals of `lanes` reflect: none from behind the surface, and less
+// near its terminator, as microfacets of the bend's slope occlude each other (Conty Estevez and others 2019,
+// "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"; alternatives:
 // docs/textures.md).
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-6f);

@@ -1,5 +1,5 @@
-// What stands in the relief of another surface: rays that have met a surface with heights below it continue
-// to these heights, and what they meet on the way comes first. A ray a lane.
+// Objects in the relief of another surface: rays that have hit a surface with heights below it continue to
+// these heights, and hits on the way come first. One ray per lane.
 #ifndef SUNDOG_LIB_RELIEF_HITS_CL
 #define SUNDOG_LIB_RELIEF_HITS_CL
 #include "lib/path/segment.cl"
@@ -8,7 +8,7 @@
 #if HAS_PARALLAX
 #define RELIEF_FACES 4  // of the surface's own object that a ray passes below it
 
-// The depths of the reliefs of `lanes`, in the world; 0 for surfaces without.
+// The depths of the reliefs of `lanes`, in the world; 0 without a relief.
 static inline REAL relief_depths(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL depth = (REAL)(0.0f);
   u32 index;
@@ -23,8 +23,8 @@ static inline REAL relief_depths(const Scene* scene, const SurfaceInteractions* 
   return depth;
 }
 
-// The nearest hits between `hits`, on surfaces with reliefs, and the distances `ends`, of other objects than
-// those surfaces'. Returns the lanes that have one.
+// The nearest hits between `hits`, on surfaces with reliefs, and the distances `ends`, on other objects.
+// Returns the lanes that have one.
 static inline MASK meet_in_reliefs(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK entering,
                                    REAL ends, MASK lanes, Hits* others, u32* counts) {
   SceneRays below = *rays;
@@ -44,8 +44,8 @@ static inline MASK meet_in_reliefs(const Scene* scene, const SceneRays* rays, co
   return found;
 }
 
-// The lanes of `lanes` whose rays see the surfaces that they have met. Those that are part of an interface
-// where solids touch count as unseen: what stands there belongs to neither.
+// The lanes of `lanes` whose rays see the surfaces that they have hit. Parts of an interface between touching
+// solids count as unseen: what is there belongs to neither.
 #if HAS_MEDIA
 static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                   const Faces* faces, MASK lanes) {
@@ -70,14 +70,14 @@ static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, con
 }
 #endif
 
-// How far rays of the directions d run below surfaces with reliefs as deep as `depth` until they leave them.
+// The length of rays of the directions d through reliefs of the depth `depth`.
 static inline REAL ways_through(const SurfaceInteractions* s, REAL3 d, REAL depth) {
   return depth / real_max(fabs(dot3(s->ng, d)), (REAL)(PARALLAX_SLANT));
 }
 
-// Takes the hits of `lanes` on surfaces with reliefs to what rays meet before their heights. `met` receives
-// how far below those surfaces that is. In the relief of a transparent surface opaque things alone are met: a
-// ray would not know that it is outside of the surface's solid in one and inside behind it.
+// Moves the hits of `lanes` on surfaces with reliefs to hits before their heights. `met` receives the depth
+// below those surfaces. In the relief of a transparent surface only opaque hits count: a ray would not know
+// that it is outside the surface's solid in the relief and inside behind it.
 NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK lanes, Encounters* met,
                                 u32* counts) {
   met->below = (REAL)(0.0f);
@@ -119,26 +119,26 @@ static inline void take_depth(const Encounters* from, MASK lanes, Encounters* to
   to->top = select3(to->top, from->top, lanes);
 }
 
-// Where a ray in direction wi leaves the relief in which the surface lies, which holds none: `way` receives
-// how far that is.
+// Where a ray in direction wi leaves the relief that contains the surface, which has none: `way` receives the
+// distance.
 static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* way) {
   const REAL zero = (REAL)(0.0f), rise = real_max(dot3(s->top, wi), zero);
   *way = select(zero, s->below / real_max(rise, (REAL)(PARALLAX_SLANT)), MASK_OF(rise > 0.0f));
   return along3(along3(s->p, *way, wi), real_max(s->below - *way * rise, zero), s->top);
 }
-// The side on which it leaves.
+// The normal of the surface through which it leaves.
 static inline REAL3 leaving_normal(const SurfaceInteractions* s) {
   return select3(s->ng, s->top, MASK_OF(s->below > 0.0f));
 }
 
-// How far behind the surfaces of `lanes` rays of the directions d have met their heights.
+// How far behind the surfaces of `lanes` rays of the directions d have hit their heights.
 static inline REAL ways_to_heights(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
   const MASK deep = lanes & MASK_OF(s->sunk > 0.0f);
   if (!any_lane(deep)) return (REAL)(0.0f);
   return select((REAL)(0.0f), s->sunk * ways_through(s, d, relief_depths(scene, s, deep)), deep);
 }
 
-// Where rays that have come in the directions d continue behind the surfaces of `lanes`.
+// Where rays of the directions d continue behind the surfaces of `lanes`.
 static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
   const REAL3 behind = along3(s->p, -s->offset, s->ng);
   return along3(behind, ways_to_heights(scene, s, d, lanes), d);
@@ -161,7 +161,7 @@ static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions*
 }
 #endif
 
-// Takes the lanes of `active` to what they meet next, in reliefs too, as next_interfaces().
+// next_interfaces() including reliefs: moves the lanes of `active` to what they hit next.
 static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                    Encounters* met, u32* counts) {
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
@@ -169,8 +169,8 @@ static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK act
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
-// The same to their next visible surfaces, as next_surfaces(). The rays of `camera` pass what is hidden from
-// them.
+// next_surfaces() including reliefs: moves them to their next visible surfaces. The rays of `camera` pass
+// objects that are hidden from them.
 static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
                                 Encounters* met, u32* counts) {
   MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);

@@ -1,5 +1,5 @@
-// Rough reflection and transmission: microfacets of the GGX distribution (Walter and others 2007), each a
-// perfect mirror or interface of its own. A surface a lane.
+// Rough reflection and transmission: GGX microfacets (Walter and others 2007), each a perfect mirror or
+// interface. One surface per lane.
 #ifndef SUNDOG_LIB_ROUGH_CL
 #define SUNDOG_LIB_ROUGH_CL
 #include "lib/core/directions.cl"
@@ -7,15 +7,14 @@
 #include "shared/lobe_energy.h"
 
 #if HAS_ROUGH || HAS_LAYERS
-// Where the tables that host/compile/lobe_energy.h makes have a lobe's width alpha and a cosine c to the
-// normal, from 0 to 1.
+// Position in the tables of host/compile/lobe_energy.h of the width alpha and the cosine c, both from 0 to 1.
 static inline float2 lobe_place(float c, float alpha) {
   const float a = clamp(alpha, LEAST_LOBE_ALPHA, 1.0f), x = clamp(c, 0.0f, 1.0f);
   return (float2)(LOBE_COLUMN(x, a), sqrt(a));
 }
 
-// One of these tables, by alpha and then by the cosine c; `first` is its first value's index. 1 elsewhere
-// than in `lanes`.
+// Looks up one of these tables by alpha and the cosine c; `first` is its first value's index. 1 outside
+// `lanes`.
 static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
   REAL energy = (REAL)(1.0f);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
@@ -33,7 +32,7 @@ static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL al
 #endif
 
 #if HAS_ROUGH
-// The width of facets of the surfaces of `lanes`: 0 elsewhere.
+// The facet width of the surfaces of `lanes`: 0 elsewhere.
 #if HAS_LAYER_MAPS
 static inline REAL mapped_width(const Bsdfs* bsdf, REAL width, MASK lanes) {
   const MASK layered = lanes & MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
@@ -52,8 +51,8 @@ static inline REAL facet_width(const Scene* scene, const Bsdfs* bsdf, MASK lanes
   return mapped_width(bsdf, width, lanes);
 }
 
-// The normal of a facet that wo sees, by its visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
-// Normals with Spherical Caps"). `alpha` is the width of the distribution.
+// Samples the normal of a facet seen by wo, by visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
+// Normals with Spherical Caps"). `alpha` is the width.
 static inline REAL3 visible_normal(REAL3 n, REAL3 wo, REAL alpha, REAL u_x, REAL u_y) {
   REAL3 s, t;
   tangent_frame(n, &s, &t);
@@ -66,25 +65,24 @@ static inline REAL3 visible_normal(REAL3 n, REAL3 wo, REAL alpha, REAL u_x, REAL
   return safe_unit3(add3(scale3(n, facet.z), add3(scale3(s, facet.x), scale3(t, facet.y))));
 }
 
-// Smith's measure of how much facets hide each other from a direction at the cosine c to the normal.
+// Smith's masking function for a direction at the cosine c to the normal.
 static inline REAL smith_lambda(REAL c, REAL alpha) {
   const REAL square = real_max(c * c, (REAL)(1e-12f));
   return 0.5f * (real_sqrt(1.0f + alpha * alpha * (1.0f - square) / square) - 1.0f);
 }
 
-// The part of light that facets send on without a second reflection, for white ones that are seen at the
-// cosine c.
+// The albedo of single scattering by white facets seen at the cosine c.
 static inline REAL lobe_energy(const Scene* scene, REAL c, REAL alpha, MASK lanes) {
   return lobe_energy_at(scene, 0u, c, alpha, lanes);
 }
 
-// The surfaces of `lanes` whose facets give back the light that meets more than one of them.
+// The surfaces of `lanes` whose facets scatter multiply.
 static inline MASK giving_back(const Bsdfs* bsdf, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)MATERIAL_SCATTERS_ONCE) == 0);
 }
 
-// Dielectrics that facets bend light at, among the surfaces of `lanes`, and the value of their table of
-// host/compile/lobe_energy.h, by the index behind over the one before, eta; 1 elsewhere.
+// Refracting rough dielectrics among the surfaces of `lanes`, and the value of their table in
+// host/compile/lobe_energy.h by eta, the index behind over before; 1 elsewhere.
 #if HAS_ROUGH_GLASS
 static inline MASK rough_glass(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
   MASK glass = NO_LANES;
@@ -117,7 +115,7 @@ static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha,
   }
   return value;
 }
-// One of the tables behind it, which are by index and alpha alone; `rows` of each index.
+// Looks up one of the tables by index and alpha that follow; `rows` per index.
 static inline REAL glass_row(const Scene* scene, u32 first, u32 rows, REAL thick, REAL alpha, MASK lanes) {
   REAL value = (REAL)(1.0f);
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
@@ -140,14 +138,14 @@ static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha,
 }
 #endif
 
-// Facets of surfaces: what rays meet in place of the surface.
+// Facets of surfaces, which replace the surface.
 typedef struct Facets {
-  MASK rough, glass;  // glass: of those the dielectrics that bend light
+  MASK rough, glass;  // glass: the refracting dielectrics among them
   REAL alpha, lambda_o, energy;
-  Bsdfs bsdf;  // the surface's, with the facet's normal where it is rough
+  Bsdfs bsdf;  // the surface's, with the facet's normal if rough
 } Facets;
 
-// The energy of rough glass in place of a mirror's.
+// The energy of rough glass instead of a mirror's.
 #if HAS_ROUGH_GLASS
 static inline void mend_glass(const Scene* scene, const Bsdfs* bsdf, REAL cosine, Facets* facets) {
   const MASK bends = facets->rough & MASK_OF((bsdf->flags & (int)MATERIAL_TRANSMITS) != 0) &
@@ -178,9 +176,9 @@ static inline Facets make_facets(const Scene* scene, const Bsdfs* bsdf, REAL3 wo
   return facets;
 }
 
-// What light of a lobe of the given colour counts for: the part that is not hidden on its way out, and what
-// is lost to further reflections among the facets, by scaling (Turquin 2019, "Practical multiple scattering
-// compensation for microfacet models"). `side` is 1 for directions before the surface, -1 behind it.
+// The weight of light from a lobe of the given colour: its unmasked fraction on the way out, scaled for
+// losses by multiple scattering (Turquin 2019, "Practical multiple scattering compensation for microfacet
+// models"). `side` is 1 for directions before the surface, -1 behind it.
 static inline REAL3 facet_weight(const Facets* facets, const Bsdfs* bsdf, REAL3 wi, float side, REAL3 color,
                                  MASK mends) {
   const REAL c = side * dot3(bsdf->ns, wi);

@@ -1,5 +1,5 @@
-// Samples of images: texels of tiled levels, decoded, and filtered between (Williams 1983, "Pyramidal
-// Parametrics"). No image support of the device is needed. A point a lane, all of one image.
+// Samples images: fetches, decodes and filters texels of tiled mip levels (Williams 1983, "Pyramidal
+// Parametrics"), without the device's image support. One point per lane, all in one image.
 #ifndef SUNDOG_LIB_TEXELS_CL
 #define SUNDOG_LIB_TEXELS_CL
 #include "lib/core/lanes.h"
@@ -26,7 +26,7 @@ static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
 #define HAS_WIDE_TEXELS (HAS_FORMAT(TEXEL_RGBA16) | HAS_FORMAT(TEXEL_RGBA_HALF))  // of 8 bytes
 
 #if HAS_TEXEL_PAGES
-// Word `word` of the texels that begin at `unit`, the same of all lanes.
+// Word `word`, equal in all lanes, of the texels at `unit`.
 static inline MASK paged_words(const Scene* scene, MASK unit, u32 word, MASK lanes) {
   const int page = (int)scene->info->texel_page;
   __global const u32* pages[TEXEL_PAGES] = {scene->texels0, scene->texels1, scene->texels2, scene->texels3};
@@ -40,7 +40,7 @@ static inline MASK paged_words(const Scene* scene, MASK unit, u32 word, MASK lan
   }
   return words;
 }
-// The words `word`, of 0 to 3, of the texels that begin at `unit`.
+// The words `word`, 0 to 3, of the texels at `unit`.
 static inline MASK texel_words(const Scene* scene, MASK unit, MASK word, MASK lanes) {
   MASK words = NO_LANES;
   for (u32 k = 0; k < 4u; ++k) {
@@ -55,7 +55,7 @@ static inline MASK texel_words(const Scene* scene, MASK unit, MASK word, MASK la
 }
 #endif
 
-// Halves, which are finite, in the low bits of words.
+// Converts finite halves in the low bits of words.
 static inline REAL floats_of_halves(MASK bits) {
   return AS_REAL((bits & 0x8000) << 16 | (bits & 0x7FFF) << 13) * 0x1p112f;
 }
@@ -66,14 +66,14 @@ static inline REAL floats_of_bytes(const Scene* scene, MASK bytes, bool srgb, MA
   return srgb ? gather_floats(scene->texture_values, bytes, lanes) : TO_REAL(bytes) * (1.0f / 255.0f);
 }
 
-// A level of an image, which differs from lane to lane.
+// A mip level per lane.
 typedef struct TexelLevels {
   MASK first, width, height;
 } TexelLevels;
 
 static inline TexelLevels levels_of_image(const Scene* scene, __global const TextureNode* node, MASK number,
                                           MASK lanes) {
-  // Most batches see one level. Numbers are right in lanes that are not asked for too.
+  // Most batches use one level. Values must be valid in inactive lanes too.
   const u32 bits = lane_bits(lanes), one = (u32)MASK_LANE(number, lowest_bit(bits ? bits : 1u));
   if (LANES > 1 && !any_lane(lanes & MASK_OF(number != (MASK)((int)one)))) {
     __global const TexelLevel* same = scene->texel_levels + node->first + one;
@@ -87,18 +87,18 @@ static inline TexelLevels levels_of_image(const Scene* scene, __global const Tex
   return level;
 }
 
-// Texels as they are stored.
+// Undecoded texels.
 typedef struct StoredTexels {
-  MASK words, more;  // the second word of texels of 8 bytes
-  MASK byte;         // of smaller ones: where they begin in their tile
+  MASK words, more;  // the second word of 8-byte texels
+  MASK byte;         // of smaller texels: offset in their tile
 } StoredTexels;
 
-// The texels (x, y) of levels.
+// Fetches the texels (x, y) of levels.
 static inline StoredTexels fetch_texels(const Scene* scene, const TexelLevels* level, u32 format, MASK x,
                                         MASK y, MASK lanes) {
   const int size = (int)(format & TEXEL_SIZE_MASK);
   const MASK tile = (y >> 2) * ((level->width + 3) >> 2) + (x >> 2), in_tile = (y & 3) * 4 + (x & 3);
-  // A tile begins at a unit; the units of its texels follow.
+  // A tile starts at a unit boundary; its texels' units follow.
   const MASK byte = in_tile << size;
   const MASK unit = level->first + (tile << size) + (byte >> 4), word = (byte >> 2) & 3;
   StoredTexels texels = {NO_LANES, NO_LANES, byte};
@@ -107,7 +107,7 @@ static inline StoredTexels fetch_texels(const Scene* scene, const TexelLevels* l
   return texels;
 }
 
-// Their linear values. Bytes of colours are looked up in a table.
+// Decodes to linear values. Colour bytes use a table.
 static inline REAL4 decode_texels(const Scene* scene, const StoredTexels* texels, u32 flags, MASK lanes) {
   const u32 format = flags >> TEXTURE_FORMAT_SHIFT & 15u;
   const bool srgb = flags & TEXTURE_SRGB;
@@ -131,7 +131,7 @@ static inline REAL4 decode_texels(const Scene* scene, const StoredTexels* texels
                floats_of_words(texels->more, format), floats_of_words(texels->more >> 16 & 0xFFFF, format));
 }
 
-// Coordinates in [0, 1] for ones that repeat or are mirrored. What is not a number becomes 0.
+// Wraps coordinates to [0, 1]. NaN becomes 0.
 static inline REAL wrap(REAL x, u32 mode) {
   x = select((REAL)(0.0f), x, MASK_OF(fabs(x) < 1e9f));
   if (mode == WRAP_REPEAT) return x - floor(x);
@@ -139,7 +139,7 @@ static inline REAL wrap(REAL x, u32 mode) {
   return real_clamp(x, (REAL)(0.0f), (REAL)(1.0f));
 }
 
-// The texels' numbers for ones that are off a row of `size` by one at most; for any, ones of the row.
+// Wraps texel indices at most one off a row of `size`; valid for any index.
 static inline MASK wrap_texel(MASK x, MASK size, u32 mode) {
   if (mode == WRAP_REPEAT) {
     x = select(x, x + size, MASK_OF(x < 0));
@@ -148,13 +148,13 @@ static inline MASK wrap_texel(MASK x, MASK size, u32 mode) {
   return clamp(x, NO_LANES, size - 1);
 }
 
-// The four texels about a point in each lane's level, as they are stored, and where the point lies between.
+// The four texels around a point in each lane's level, and interpolation weights.
 typedef struct StoredCells {
   StoredTexels corner[4];
   REAL s, t;
 } StoredCells;
 
-// Those at (u, v) in [0, 1]^2, v down; of a nearest texel only the first.
+// Fetches the texels at (u, v) in [0, 1]^2, v down; for nearest sampling only the first.
 static inline void fetch_cells(const Scene* scene, __global const TextureNode* node, MASK number, REAL u,
                                REAL v, MASK lanes, StoredCells* cells) {
   const TexelLevels level = levels_of_image(scene, node, number, lanes);
@@ -175,7 +175,7 @@ static inline void fetch_cells(const Scene* scene, __global const TextureNode* n
     cells->corner[k] = fetch_texels(scene, &level, format, k & 1u ? x1 : x0, k & 2u ? y1 : y0, lanes);
 }
 
-// Their values between them.
+// Interpolates them.
 static inline REAL4 filter_cells(const Scene* scene, u32 flags, const StoredCells* cells, MASK lanes) {
   REAL4 rows[2];
   for (u32 row = 0; row < 2u; ++row) {
@@ -186,7 +186,7 @@ static inline REAL4 filter_cells(const Scene* scene, u32 flags, const StoredCell
   return mix4(rows[0], rows[1], cells->t);
 }
 
-// The image at (u, v), v up, where `footprint` is the width of what is seen, in texels of the greatest level.
+// The image at (u, v), v up; `footprint` in texels of the largest level.
 NEVER_INLINE REAL4 sample_image(const Scene* scene, __global const TextureNode* node, REAL at_u, REAL at_v,
                                 REAL footprint, MASK lanes) {
   const u32 flags = node->flags;
@@ -200,7 +200,7 @@ NEVER_INLINE REAL4 sample_image(const Scene* scene, __global const TextureNode* 
   const REAL between = level - TO_REAL(number);
   const MASK two = blends ? lanes & MASK_OF(between > 0.0f) : NO_LANES;
   const u32 levels = any_lane(two) ? 2u : 1u;
-  // All texels before the first is decoded: what is waited for is then fetched at once.
+  // Fetch all texels before decoding the first, so that memory accesses overlap.
   StoredCells cells[2];
   for (u32 k = 0; k < levels; ++k)
     fetch_cells(scene, node, number + (int)k, u, v, k ? two : lanes, &cells[k]);

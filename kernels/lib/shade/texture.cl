@@ -1,5 +1,4 @@
-// Values of textures at points of surfaces: each node of a texture in turn (shared/textures.h). A point a
-// lane.
+// Evaluates textures at surface points, node by node (shared/textures.h). One point per lane.
 #ifndef SUNDOG_LIB_TEXTURE_CL
 #define SUNDOG_LIB_TEXTURE_CL
 #include "lib/core/transform.cl"
@@ -8,15 +7,15 @@
 #include "lib/shade/texels.cl"
 
 #if HAS_MAPS
-// What textures know of points of surfaces.
+// Inputs of textures at surface points.
 typedef struct TexturePoints {
   REAL u, v;       // v up
-  REAL uv_length;  // how long a unit of u and v is: their geometric mean, in the world; 0: unknown
-  REAL3 p, n;      // the point and the normal in the object's own units; n need not be unit
-  REAL scale;      // units of the object on a unit of the world
-  REAL footprint;  // width of what the ray sees of the surface, in the world
+  REAL uv_length;  // world length of a unit of u and v (geometric mean); 0: unknown
+  REAL3 p, n;      // point and normal in object units; n need not be unit
+  REAL scale;      // object units per world unit
+  REAL footprint;  // width of the ray's footprint on the surface, in the world
   MASK instance, prim;
-  REAL b, c;  // of a triangle: barycentric coordinates of its second and third corner
+  REAL b, c;  // barycentric coordinates of a triangle's second and third corner
 } TexturePoints;
 
 #if TEXTURE_KINDS
@@ -25,15 +24,15 @@ typedef struct TexturePoints {
 #define HAS_KIND(kind) (TEXTURE_KINDS >> (kind) & 1u)
 #define HAS_MAPPING(mapping) (TEXTURE_MAPPINGS & (1u << (mapping)))
 
-// Where points lie in a node's own coordinates, and units of the node on a unit of the world.
+// Points in a node's coordinates, and node units per world unit.
 typedef struct MappedPoints {
   REAL3 q;
   REAL density;
-  REAL3 across;  // by axis: how much of the footprint lies along it, which has no depth along the normal
+  REAL3 across;  // fraction of the footprint along each axis; it has no extent along the normal
 } MappedPoints;
 
-// How far lane i is from a triangle's first corner in a further set with edges d1 and d2. Where u and v of
-// the first set have moved along the surface, by a step of a bump or by parallax, the others move with them.
+// Offset of lane i from a triangle's first corner in a further set with edges d1 and d2. If u and v of the
+// first set have moved along the surface, by a bump's step or by parallax, the others move with them.
 #if EXTRA_UVS && HAS_MESH
 static inline float2 moved_corners(const TexturePoints* at, __global const Vertex* v0,
                                    __global const Vertex* v1, __global const Vertex* v2, u32 i, float2 d1,
@@ -53,7 +52,7 @@ static inline float2 moved_corners(const TexturePoints* at, __global const Verte
 }
 #endif
 
-// u, v and their unit's length of the set `set` for triangles; solids have the first set alone.
+// u, v and their unit's length in the set `set` for triangles; solids have only the first set.
 #if EXTRA_UVS && HAS_MESH
 static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
   REAL3 coordinates = real3(at->u, at->v, at->uv_length);
@@ -68,7 +67,7 @@ static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* 
     __global const Vertex* v0 = scene->vertices + corner[0];
     __global const Vertex* v1 = scene->vertices + corner[1];
     __global const Vertex* v2 = scene->vertices + corner[2];
-    // Areas of the first set, whose unit's length is known.
+    // By areas relative to the first set, whose unit's length is known.
     const float known = fabs((v1->u - v0->u) * (v2->v - v0->v) - (v2->u - v0->u) * (v1->v - v0->v));
     const float area = fabs(d1.x * d2.y - d2.x * d1.y);
     const float2 uv = uv0 + moved_corners(at, v0, v1, v2, i, d1, d2);
@@ -90,7 +89,7 @@ static inline REAL3 rows_times(__global const TextureNode* node, REAL3 p) {
   return real3(row_times(node->rows[0], p), row_times(node->rows[1], p), row_times(node->rows[2], p));
 }
 
-// u and v of a mapping as the texture's.
+// Transforms u and v of a mapping to the texture's.
 static inline MappedPoints map_uv(__global const TextureNode* node, REAL u, REAL v, REAL density) {
   const float4 a = node->uv_rows[0], b = node->uv_rows[1];
   const MappedPoints mapped = {real3(fma((REAL)(a.x), u, fma((REAL)(a.y), v, (REAL)(a.z))),
@@ -116,7 +115,7 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
     return map_uv(node, u, v, at->scale * real_rsqrt(real_max(area, (REAL)(1e-12f))));
   }
   if (TEXEL_FORMATS && node->kind == TEXTURE_IMAGE) return map_uv(node, q.x, q.y, at->scale);
-  // A pattern's placement turns and scales alike along all axes, so that normals go with it as vectors do.
+  // A pattern's placement rotates and scales uniformly, so normals transform like vectors.
   const float4 x = node->rows[0], y = node->rows[1], z = node->rows[2];
   const REAL3 n = unit3(real3(dot3(all3(x.xyz), at->n), dot3(all3(y.xyz), at->n), dot3(all3(z.xyz), at->n)));
   const MappedPoints mapped = {q, node->scale * at->scale, sines_to_axes(n)};
@@ -129,7 +128,7 @@ static inline REAL4 mapped_image(const Scene* scene, __global const TextureNode*
   return sample_image(scene, node, mapped.q.x, mapped.q.y, at->footprint * mapped.density, lanes);
 }
 
-// The image on the six sides of a box, mixed by how far the normal faces them.
+// The image on six sides of a box, blended by the normal's components.
 static inline REAL4 image_on_box(const Scene* scene, __global const TextureNode* node,
                                  const TexturePoints* at, MASK lanes) {
   const REAL3 q = rows_times(node, at->p), n = unit3(rows_times(node, at->n)), zero = all3((float3)(0.0f));
@@ -163,7 +162,7 @@ static inline REAL4 image_values(const Scene* scene, __global const TextureNode*
 }
 #endif
 
-// The number that a pattern gives.
+// The number of a pattern.
 static inline REAL pattern_value(__global const TextureNode* node, MappedPoints mapped, REAL w) {
   const REAL3 q = mapped.q;
   const float a = node->parameter[0], b = node->parameter[1], c = node->parameter[2];
@@ -178,7 +177,7 @@ static inline REAL pattern_value(__global const TextureNode* node, MappedPoints 
   return real_clamp(q.x, (REAL)(0.0f), (REAL)(1.0f));
 }
 
-// The colours of meshes' vertices.
+// Vertex colours of meshes.
 #if HAS_KIND(13) && HAS_MESH
 static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, MASK lanes) {
   const REAL one = (REAL)(1.0f);
@@ -206,7 +205,7 @@ static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, M
 }
 #endif
 
-// What a node's kind gives at points.
+// The value of a node's kind at points.
 static inline REAL4 node_values(const Scene* scene, __global const TextureNode* node, const TexturePoints* at,
                                 MASK lanes) {
   const REAL zero = (REAL)(0.0f);
@@ -221,7 +220,7 @@ static inline REAL4 node_values(const Scene* scene, __global const TextureNode* 
   return real4(t, t, t, t);
 }
 
-// A ramp's colour at t: between the stops on either side of it, beyond the last ones theirs.
+// A ramp's colour at t: interpolated between stops, constant beyond the ends.
 static inline REAL4 ramp_color(const Scene* scene, __global const TextureNode* node, REAL t) {
   __global const float* stop = scene->texture_values + node->first;
   REAL3 color = all3((float3)(stop[1], stop[2], stop[3]));
@@ -245,7 +244,7 @@ static inline REAL4 scale_value(REAL4 value, float4 factor, float4 offset) {
       fma(value.z, (REAL)(factor.z), (REAL)(offset.z)), fma(value.w, (REAL)(factor.w), (REAL)(offset.w)));
 }
 
-// The values that wait for the nodes which take them, and a node's own with theirs.
+// The stack of operands, and a node's value combined with them.
 #if TEXTURE_STACK > 1
 typedef struct ValueStack {
   REAL4 value[TEXTURE_STACK];

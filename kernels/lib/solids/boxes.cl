@@ -1,14 +1,13 @@
-// The box and the round box: for each where a ray meets it, the coordinates of a point p on it and the
-// curvature there.
+// The box and the round box: ray intersection, coordinates of a surface point p, and curvature there.
 #ifndef SUNDOG_LIB_BOXES_CL
 #define SUNDOG_LIB_BOXES_CL
 #include "lib/solids/spans.cl"
 #include "lib/solids/surface_points.cl"
 
-// A ray for boxes around the origin.
+// A ray prepared for boxes around the origin.
 typedef struct BoxRay {
   REAL3 o, d, inverse;
-  bool flat;  // of some lane a component is too small to divide by: see leave_out_flat()
+  bool flat;  // in some lane, a component is too small to divide by: leave_out_flat()
 } BoxRay;
 
 #define FLAT(component) MASK_OF(fabs(component) < 1e-37f)
@@ -22,7 +21,7 @@ static inline BoxRay make_box_ray(REAL3 o, REAL3 d) {
   return ray;
 }
 
-// Where a line enters and leaves a box, and the slab of each axis.
+// Entry and exit of a line at a box, and at the slab of each axis.
 typedef struct BoxSpan {
   REAL3 enters, leaves;
   Span span;
@@ -34,7 +33,7 @@ static inline void cut_slab(REAL o, REAL inverse, float h, REAL* enter, REAL* le
   *leave = (side - o) * inverse;
 }
 
-// A direction without a component along an axis is inside the slab always or never. Returns the lanes that
+// A direction without a component along an axis is always or never inside the slab. Returns the lanes that
 // may be inside.
 static inline MASK leave_out_flat(REAL o, REAL d, float h, REAL* enter, REAL* leave) {
   const MASK flat = FLAT(d);
@@ -61,14 +60,14 @@ static inline BoxSpan box_span(const BoxRay* ray, float3 h) {
   return box;
 }
 
-// A face across an axis with its normal's sign, that of d, as the part of a hit until finish_faces().
+// A hit's part until finish_faces(): the face across an axis, with the sign of d.
 #define BOX_FACE 0x100
 #define BOX_AXIS 3
 static inline MASK axis_face(int axis, REAL d) {
   return (AS_MASK(d) & (int)0x80000000) | (MASK)(BOX_FACE | axis);
 }
 
-// Unit normals of the faces among hits of `lanes`; their parts become their axes.
+// Sets the unit normals of face hits in `lanes`; their parts become axes.
 static inline REAL axis_normal(MASK here, MASK face) {
   return select((REAL)(0.0f), AS_REAL((face & (int)0x80000000) | as_int(1.0f)), here);
 }
@@ -81,7 +80,7 @@ static inline void finish_faces(MASK lanes, SolidHits* hits) {
   hits->part = select(face, axis, faces);
 }
 
-// A box with these half sizes; the face is the one that p is nearest to.
+// A box with these half sizes; the face nearest to p.
 static inline SurfacePoints points_on_faces(REAL3 p, float3 half_size) {
   const REAL3 q = real3(p.x / half_size.x, p.y / half_size.y, p.z / half_size.z);
   const REAL3 size = real3(fabs(q.x), fabs(q.y), fabs(q.z));
@@ -125,7 +124,7 @@ static inline void unite_spans(Span* whole, Span part) {
 static inline REAL component(REAL3 v, u32 axis) { return axis == 0u ? v.x : axis == 1u ? v.y : v.z; }
 
 // A rounded box is convex, and the union of three boxes, twelve cylinders along the edges and eight spheres
-// at the corners: the line is inside from the least entry to the greatest exit of any of them.
+// at the corners: the line is inside from the first entry to the last exit of any of them.
 static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                         SolidHits* hits) {
   const float3 half_size = parameters.xyz;
@@ -148,7 +147,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
     const REAL3 c = subtract3(near, center);
     unite_spans(&span, round_span(c, d, r));
 #pragma unroll 1
-    for (u32 axis = 0; axis < 3u; ++axis) {  // each edge once: from the corner on its negative end
+    for (u32 axis = 0; axis < 3u; ++axis) {  // each edge once, from its corner on the negative end
       if (corner & (1u << axis)) continue;
       const REAL3 keep =
           all3((float3)(axis == 0u ? 0.0f : 1.0f, axis == 1u ? 0.0f : 1.0f, axis == 2u ? 0.0f : 1.0f));
@@ -171,7 +170,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
 static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, parameters.xyz);
 }
-// Of its faces; its edges count as flat.
+// Of the faces; edges count as flat.
 static inline REAL curvature_of_round_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
 
 #endif

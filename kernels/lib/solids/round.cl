@@ -1,5 +1,5 @@
-// The sphere, and what lies in planes or goes round the y axis: for each solid where a ray meets it, the
-// coordinates of a point p on it and the mean of the two principal curvatures there (shared/shapes.h).
+// The sphere, planar solids and solids of revolution about y: ray intersection, coordinates of a surface
+// point p and the mean curvature there (shared/shapes.h).
 #ifndef SUNDOG_LIB_ROUND_CL
 #define SUNDOG_LIB_ROUND_CL
 #include "lib/solids/spans.cl"
@@ -38,7 +38,7 @@ static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK par
 
 static inline REAL curvature_of_plane(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
 
-// A ring in the plane y = height, inner <= radius <= outer, normal towards `side` of y.
+// A ring in the plane y = height, inner <= radius <= outer, with its normal towards `side` of y.
 static inline void offer_ring(REAL3 o, REAL3 d, float height, float inner, float outer, float side, int part,
                               REAL t_min, MASK active, SolidHits* hits) {
   const REAL t = (height - o.y) / d.y;
@@ -53,7 +53,7 @@ static inline void closest_in_disk(float4 parameters, REAL3 o, REAL3 d, REAL t_m
   offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0, t_min, active, hits);
 }
 
-// Of the square round a unit disk, which is looked at from above, or from below.
+// Coordinates on the square around a unit disk, seen from above or, if `below`, from below.
 static inline SurfacePoints points_in_plane(REAL3 p, MASK below) {
   const REAL zero = (REAL)(0.0f), up = select((REAL)(-1.0f), (REAL)(1.0f), below);
   const SurfacePoints at = {0.5f + 0.5f * p.x, fma(0.5f * up, p.z, (REAL)(0.5f)),
@@ -79,7 +79,7 @@ static inline SurfacePoints points_on_rectangle(float4 parameters, REAL3 p, MASK
 }
 static inline REAL curvature_of_rectangle(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
 
-// A cylinder or cone; `growth`: of the radius with the height.
+// Coordinates on a cylinder or cone; `growth`: of the radius with height.
 static inline SurfacePoints on_tube(REAL3 p, float growth) {
   const REAL3 up = all3((float3)(0.0f, 1.0f, 0.0f));
   SurfacePoints at;
@@ -90,7 +90,7 @@ static inline SurfacePoints on_tube(REAL3 p, float growth) {
   return at;
 }
 
-// Of the side of a cylinder or cone; caps are flat.
+// For the side of a cylinder or cone; caps are flat.
 static inline REAL tube_curvature(REAL3 p, MASK part) {
   return select((REAL)(0.0f), 0.5f / nonzero(radius_about_y(p)), MASK_OF(part == 0));
 }
@@ -124,7 +124,7 @@ static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) 
 static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                    SolidHits* hits) {
   const float m = 0.5f * (parameters.x + parameters.y), k = 0.5f * (parameters.y - parameters.x);
-  // Measured from the point of the ray nearest to the origin, the coefficients keep their digits.
+  // Relative to the ray's point nearest to the origin, the coefficients keep their precision.
   const REAL shift = -dot3(o, d) / dot3(d, d);
   const REAL3 s = along3(o, shift, d);
   const REAL ro = fma((REAL)(k), s.y, (REAL)(m)), rd = k * d.y;

@@ -1,6 +1,6 @@
-// The exact solids in object space, a ray or a point a lane. Each row of shared/shapes.h has three functions
-// here: closest_in_NAME() offers hits, nearest t in (t_min, t_max] with the outward normal (directions need
-// not be unit length); points_on_NAME() gives coordinates, curvature_of_NAME() the mean curvature of a point.
+// The exact solids in object space, one ray or point per lane. Each row of shared/shapes.h has three
+// functions: closest_in_NAME() offers hits, nearest t in (t_min, t_max] with the outward normal (directions
+// need not be unit); points_on_NAME() gives coordinates, curvature_of_NAME() the mean curvature of a point.
 #ifndef SUNDOG_LIB_SOLIDS_CL
 #define SUNDOG_LIB_SOLIDS_CL
 #include "lib/solids/boxes.cl"
@@ -8,8 +8,8 @@
 #include "lib/solids/torus.cl"
 #include "shared/bvh.h"
 
-// The nearest hits of the lanes of `active` in (t_min, hits->t]; sets `found`, and the rest where there is
-// one.
+// The nearest hits of the lanes of `active` in (t_min, hits->t]; sets `found`, and the other members if there
+// is one.
 ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
 #define CLOSEST(constant, type, name)                                             \
@@ -24,7 +24,7 @@ ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3
 #undef CLOSEST
 }
 
-// The coordinates of points p on the `part`s of a solid; `at` stays where the shape is none.
+// Coordinates of points p on the `part`s of a solid; `at` is unchanged for other shapes.
 static inline void points_on_solid(u32 shape, float4 parameters, REAL3 p, MASK part, SurfacePoints* at) {
 #define POINTS(constant, type, name) \
   if (HAS_##constant && shape == SHAPE_##constant) *at = points_on_##name(parameters, p, part);
@@ -32,7 +32,7 @@ static inline void points_on_solid(u32 shape, float4 parameters, REAL3 p, MASK p
 #undef POINTS
 }
 
-// Of unit shapes, at points p: the mean of the two principal curvatures.
+// Mean curvature of unit shapes at points p.
 static inline REAL solid_curvatures(u32 shape, float4 parameters, REAL3 p, MASK part) {
 #define CURVATURES(constant, type, name) \
   if (HAS_##constant && shape == SHAPE_##constant) return curvature_of_##name(parameters, p, part);

@@ -1,4 +1,4 @@
-// Where lines enter and leave things, and the nearest hit so far on a solid, a ray a lane.
+// Entries and exits of lines, and the nearest hit so far on a solid, one ray per lane.
 #ifndef SUNDOG_LIB_SPANS_CL
 #define SUNDOG_LIB_SPANS_CL
 #include "lib/core/config.h"
@@ -11,7 +11,7 @@ typedef struct SolidHits {
   MASK found;
 } SolidHits;
 
-// Takes t as the hit where it is the nearest so far.
+// Accepts the hit at t if it is the nearest so far.
 static inline void offer(REAL t, REAL3 ng, MASK part, MASK valid, REAL t_min, SolidHits* hits) {
   const MASK nearer = valid & MASK_OF(t > t_min) & MASK_OF(t <= hits->t);
   hits->t = select(hits->t, t, nearer);
@@ -20,7 +20,7 @@ static inline void offer(REAL t, REAL3 ng, MASK part, MASK valid, REAL t_min, So
   hits->found |= nearer;
 }
 
-// The same of a box's face: axis_face(), from which finish_faces() makes the normal.
+// For a box's face, by axis_face(); finish_faces() computes the normal.
 static inline void offer_face(REAL t, MASK face, MASK valid, REAL t_min, SolidHits* hits) {
   const MASK nearer = valid & MASK_OF(t > t_min) & MASK_OF(t <= hits->t);
   hits->t = select(hits->t, t, nearer);
@@ -30,15 +30,15 @@ static inline void offer_face(REAL t, MASK face, MASK valid, REAL t_min, SolidHi
 
 static inline REAL3 up_or_down(REAL side) { return real3((REAL)(0.0f), side, (REAL)(0.0f)); }
 
-// Where a line enters and leaves something.
+// Entry and exit of a line.
 typedef struct Span {
   REAL enter, leave;
   MASK crosses;
 } Span;
 
-// Rays from so far off, in a solid's own space, that rounding there comes near its size, begin anew where
-// they are nearest to its middle: of one that is flattened by 1e-7 each ray comes from so far. Returns how
-// much sooner each then meets it. Twice, since the way itself is rounded.
+// Rays from so far away, in a solid's space, that rounding approaches its size start again at their point
+// nearest to its centre: for a solid flattened by 1e-7 all rays are so far. Returns the distance by which
+// each moved. Done twice, since the move itself is rounded.
 #define FAR_OFF 0x1p14f
 static inline REAL come_near(REAL3* o, REAL3 d, MASK active) {
   REAL shift = (REAL)(0.0f);
@@ -53,8 +53,8 @@ static inline REAL come_near(REAL3* o, REAL3 d, MASK active) {
   return shift;
 }
 
-// |o + t d| = r in the space of the given vectors (2-D when a component is zero in both), robust where the
-// origin is far off (Haines et al. 2019, Ray Tracing Gems, chapter 7).
+// o + t d| = r in the space of the given vectors (2-D if a component is zero in both), robust for
+// far origins (Haines et al. 2019, Ray Tracing Gems, chapter 7).
 static inline Span round_span(REAL3 o, REAL3 d, float r) {
   const REAL a = dot3(d, d), inverse = 1.0f / a, b = -dot3(o, d);
   const REAL3 nearest = along3(o, b * inverse, d);

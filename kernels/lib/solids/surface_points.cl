@@ -1,18 +1,17 @@
-// Coordinates on surfaces of revolution and what else solids share, a point a lane.
+// Coordinates on surfaces of revolution and other shared functions, one point per lane.
 #ifndef SUNDOG_LIB_SURFACE_POINTS_CL
 #define SUNDOG_LIB_SURFACE_POINTS_CL
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 
-// Coordinates on a surface in object space (shade/parametrize.cl): u and v, and how the point moves with
-// them.
+// Coordinates on a surface in object space (shade/parametrize.cl): u and v, and the point's derivatives.
 typedef struct SurfacePoints {
   REAL u, v;
   REAL3 dpdu, dpdv;
 } SurfacePoints;
 
-// The angle of (x, y) in turns, [0, 1): an odd polynomial on Chebyshev's nodes (error 1e-8 turns) of the
-// lesser coordinate over the greater one, which has the same bits on every device.
+// The angle of (x, y) in turns, [0, 1): an odd polynomial at Chebyshev nodes (error 1e-8 turns) of the
+// smaller over the larger coordinate, with the same bits on every device.
 static inline REAL turns(REAL x, REAL y) {
   const REAL ax = fabs(x), ay = fabs(y), most = real_max(ax, ay);
   const REAL t = real_min(ax, ay) / select(most, (REAL)(1.0f), MASK_OF(most == 0.0f)), z = t * t;
@@ -29,13 +28,13 @@ static inline REAL turns(REAL x, REAL y) {
   turn = select(turn, 0.5f - turn, MASK_OF(x < 0.0f));
   return select(turn, real_min(1.0f - turn, (REAL)(0x1.fffffep-1f)), MASK_OF(y < 0.0f));
 }
-// How points move with their longitude, which turns from +x to -z.
+// Derivative of points by longitude, which turns from +x to -z.
 static inline REAL3 round_tangents(REAL3 p) {
   return scale3(real3(p.z, (REAL)(0.0f), -p.x), (REAL)(2.0f * M_PI_F));
 }
 static inline REAL radius_about_y(REAL3 p) { return real_sqrt(fma(p.x, p.x, p.z * p.z)); }
 
-// The directions away from the y axis, unit; at the axis any.
+// Unit directions away from the y axis; arbitrary on the axis.
 static inline REAL3 away_from_axis(REAL3 p, REAL r) {
   const MASK off = MASK_OF(r > 0.0f);
   const REAL inverse = 1.0f / select((REAL)(1.0f), r, off);

@@ -1,5 +1,5 @@
-// One ray against a torus about the y axis: (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1, minor radius
-// r. All four roots are isolated by the extrema of the quartic.
+// Intersects one ray with a torus about the y axis: (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1,
+// minor radius r. The extrema of the quartic isolate all four roots.
 #ifndef SUNDOG_LIB_TORUS_CL
 #define SUNDOG_LIB_TORUS_CL
 #include "lib/core/config.h"
@@ -18,7 +18,7 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
   const float3 e = d / length_d;
   const float shift = -dot(o, e);  // the line's point nearest to the centre, in units of length
   const float3 s = o + shift * e;
-  // A little beyond the ball around the torus, or rounding takes the change of sign at its equator for none.
+  // Slightly beyond the ball around the torus; otherwise rounding hides the change of sign at its equator.
   const float reach2 = 1.001f * (1.0f + r) * (1.0f + r) - dot(s, s);
   if (!(reach2 > 0.0f)) return false;
   const float reach = sqrt(reach2);
@@ -35,8 +35,8 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
     float x = roots[i];
     float3 p = s + x * e;
     float off = 0.0f;
-    // Newton on the distance itself, which keeps more digits than the quartic: twice, and along a silhouette,
-    // where the quartic has lost most of them, to the end.
+    // Newton's method on the distance, which is more precise than the quartic: two steps, and along a
+    // silhouette, where the quartic has lost its digits, until it converges.
     for (u32 step = 0; step < 8u; ++step) {
       const float rho = sqrt(fma(p.x, p.x, p.z * p.z));
       const float ring = rho - 1.0f, tube = sqrt(fma(ring, ring, p.y * p.y));

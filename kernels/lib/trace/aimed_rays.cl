@@ -1,6 +1,6 @@
-// The rays of a batch prepared for the tests of boxes and triangles: the members of SlabRay and ShearRay, to
-// the bit, a ray a lane. A test takes its ray out of the arrays, which costs it no more than a structure of
-// that ray alone would.
+// Rays of a batch prepared for tests of boxes and triangles: the members of SlabRay and ShearRay, to the bit,
+// one ray per lane. A test reads its ray from the arrays, which costs no more than a structure of that ray
+// would.
 #ifndef SUNDOG_LIB_AIMED_RAYS_CL
 #define SUNDOG_LIB_AIMED_RAYS_CL
 #include "lib/core/config.h"
@@ -16,13 +16,13 @@ typedef struct PreparedRays {
   MASK x, y, z;
 } PreparedRays;
 
-// Where the near and the far planes of an axis lie in Bvh8Node, `offset` its lower ones.
+// Offsets of the near and far planes of an axis in Bvh8Node; `offset`: its lower planes.
 static inline void aim_planes(REAL rcp, int offset, MASK* near, MASK* far) {
   *near = offset + (MASK_OF(rcp < 0.0f) & 24);
   *far = offset * 2 + 24 - *near;
 }
 
-// Ray i; the others stay as they are.
+// Prepares ray i; the others are unchanged.
 static inline void aim_ray(PreparedRays* rays, u32 i, float3 o, float3 d) {
   const SlabRay slabs = make_slab_ray(o, d);
   set3(&rays->rcp_near, i, slabs.rcp_near);
@@ -47,7 +47,7 @@ static inline void aim_ray(PreparedRays* rays, u32 i, float3 o, float3 d) {
   REAL_LANE(rays->sz, i) = shear.sz;
 }
 
-// All lanes.
+// Prepares all lanes.
 static inline PreparedRays aimed(const REAL3* o, const REAL3* d) {
   PreparedRays rays;
   aim_planes(aim_slabs(o->x, d->x, &rays.rcp_near.x, &rays.rcp_far.x, &rays.shift_near.x, &rays.shift_far.x),
@@ -76,7 +76,7 @@ static inline PreparedRays aimed(const REAL3* o, const REAL3* d) {
 
 static inline void blend3(REAL3* a, const REAL3* b, MASK lanes) { *a = select3(*a, *b, lanes); }
 
-// Sets the lanes of `bits`, as make_slab_ray and make_shear_ray would; the others stay as they are.
+// Prepares the lanes of `bits`, like make_slab_ray and make_shear_ray; the others are unchanged.
 NEVER_INLINE void aim_rays(PreparedRays* rays, const REAL3* o, const REAL3* d, u32 bits) {
   if (!(bits & (bits - 1u))) {
     aim_ray(rays, lowest_bit(bits), get3(o, lowest_bit(bits)), get3(d, lowest_bit(bits)));

@@ -1,4 +1,4 @@
-// What the rays of a batch met, a ray a lane, and the exact solids offered to them.
+// Hits of a batch, one ray per lane, and tests of exact solids.
 #ifndef SUNDOG_LIB_HITS_CL
 #define SUNDOG_LIB_HITS_CL
 #include "lib/core/config.h"
@@ -8,7 +8,7 @@
 #include "lib/core/turns.cl"
 #include "lib/solids/solids.cl"
 
-// The members of Hit; `instance` is -1 (NO_INSTANCE) where nothing was hit, and t then the ray's t_max.
+// The members of Hit; without a hit, `instance` is -1 (NO_INSTANCE) and t the ray's t_max.
 typedef struct Hits {
   REAL t, u, v;
   MASK prim, instance;
@@ -18,7 +18,7 @@ typedef struct Hits {
   __global const float4* moves;  // the scene's table
 #endif
 #if HAS_TURNS
-  __global const Turn* turns;  // the same
+  __global const Turn* turns;  // the scene's table
 #endif
 } Hits;
 
@@ -33,8 +33,8 @@ static inline Hits no_hits(REAL t_max) {
   return hits;
 }
 
-// The times of the rays, and their origins and directions as instance `index` would have had them when the
-// shutter opened (core/motion.cl); solids_origins(): each lane of `bits` for the instance of its own.
+// The rays' times; their origins and directions moved with instance `index` back to when the shutter opened
+// (core/motion.cl); solids_origins(): each lane of `bits` with its own instance.
 #if HAS_OBJECT_MOTION
 static inline REAL time_of_hits(const Hits* hits) { return hits->time; }
 #else
@@ -137,9 +137,9 @@ static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
   return hits;
 }
 
-// What solids offer is in (t_min, t], where t is the distance of the hit so far, and of equal distances the
-// lower index counts: after a hit by an index up to `index` the end is the number below its distance. Rays
-// do not begin before 0, so these numbers are neighbours as integers are.
+// Solids offer hits in (t_min, t], where t is the distance of the hit so far; at equal distances the lower
+// index wins, so after a hit on an index up to `index` the interval ends at the next lower float. Distances
+// are not negative, so neighbouring floats are neighbouring integers.
 static inline REAL number_below(REAL t) { return AS_REAL(AS_MASK(t) - 1); }
 static inline REAL number_above(REAL t) { return AS_REAL(AS_MASK(t) + 1); }
 static inline SolidHits begin_solids(const Hits* hits, MASK index) {
@@ -148,7 +148,7 @@ static inline SolidHits begin_solids(const Hits* hits, MASK index) {
   return solid;
 }
 
-// The lanes of `found` take what solids have offered, but for the instance, which they have.
+// The lanes of `found` take the hits that solids offered; their instances are set already.
 static inline void take_solids(SolidHits* solid, MASK found, Hits* hits) {
   const REAL zero = (REAL)(0.0f);
   finish_faces(found, solid);
@@ -159,7 +159,7 @@ static inline void take_solids(SolidHits* solid, MASK found, Hits* hits) {
   hits->ng = select3(hits->ng, solid->ng, found);
 }
 
-// Solids of one shape, `index` a lane, in (t_min, hits->t] for the lanes of `active`; object-space rays.
+// Tests solids of a shape, `index` per lane, in (t_min, hits->t] for lanes of `active`; rays in object space.
 ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 o, REAL3 d, REAL t_min,
                                 MASK active, Hits* hits) {
   SolidHits solid = begin_solids(hits, index);
@@ -169,9 +169,9 @@ ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 
   take_solids(&solid, solid.found, hits);
 }
 
-// The instances [first, last), all solids, for the lanes of `active`; world-space rays, whose hits so far are
-// of other instances or of `first`. With `any`, lanes that have found something are done, and only their
-// instance is set. The loop stands in the function, so that rays and hits stay in registers.
+// Tests the instances [first, last), all solids, for the lanes of `active`; world-space rays, whose hits so
+// far are on other instances or on `first`. With `any`, lanes with a hit are done, and only their instance is
+// set. The loop is in this function to keep rays and hits in registers.
 NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
                              const REAL3* rays_o, const REAL3* rays_d, const REAL* rays_t_min, MASK active,
                              bool any, Hits* hits) {

@@ -1,18 +1,18 @@
-// All that rays to a light meet on their way, found in one walk: of surfaces that may let light through each
-// (multi-hit traversal, Gribble, Naveros and Kerzner 2014), of others any. A ray that passes four interfaces
-// is so walked once, not five times.
+// All hits of rays to a light in one walk: each surface that may transmit light (multi-hit traversal,
+// Gribble, Naveros and Kerzner 2014), and any opaque one. A ray through four interfaces is walked once, not
+// five times.
 #ifndef SUNDOG_LIB_LISTED_HITS_CL
 #define SUNDOG_LIB_LISTED_HITS_CL
 #include "lib/core/config.h"
 #define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && (HAS_SHADOW_FILTERS || HAS_MEDIA) && !HAS_SDF && BATCH > 1)
 
-// Of more, the nearest are kept.
+// Of more hits, the nearest are kept.
 #define MOST_LISTED 8u
 
-// The triangles that a ray met, in no order; `place` as in finish_triangle().
+// The triangles that a ray hit, unordered; `place` as in finish_triangle().
 typedef struct HitList {
   u32 count;
-  bool full;  // behind the farthest there may be others
+  bool full;  // there may be more hits behind the farthest
   float t[MOST_LISTED], u[MOST_LISTED], v[MOST_LISTED];
   u32 place[MOST_LISTED], instance[MOST_LISTED];
 } HitList;
@@ -21,7 +21,7 @@ typedef struct HitList {
 #include "lib/trace/hits.cl"
 #include "lib/trace/triangles.cl"
 
-// The lanes of `lanes` whose hits let no light through.
+// The lanes of `lanes` whose hits are opaque.
 static inline MASK opaque_hits(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   MASK found = NO_LANES;
   u32 index;
@@ -61,7 +61,7 @@ static inline void add_listed(HitList* list, float t, float u, float v, u32 plac
   list->instance[at] = instance;
 }
 
-// Whether rays in a medium of `priority` do not see the instance: it is filled by one of a lower priority.
+// Whether rays in a medium of `priority` do not see the instance, because its own medium's priority is lower.
 static inline bool is_overruled(const Scene* scene, u32 index, int priority) {
   __global const Instance* instance = scene->instances + index;
   if (!(instance->flags & INSTANCE_TRANSMITS) || instance->material == NO_MATERIAL || instance->touch > 0.0f)
@@ -71,8 +71,7 @@ static inline bool is_overruled(const Scene* scene, u32 index, int priority) {
          scene->media[material->medium].priority < priority;
 }
 
-// The hits of a block in the mesh of `instance`, all of them listed. Returns how far the ray still is to
-// look.
+// Lists all hits of a block in the mesh of `instance`. Returns the remaining t_max.
 static inline float list_block(u32 index, const BlockTest* test, u32 instance, float t_max, HitList* list) {
   float t[8], u[8], v[8];
   vstore8(test->t, 0, t);
@@ -85,7 +84,7 @@ static inline float list_block(u32 index, const BlockTest* test, u32 instance, f
   return list->full ? list->t[farthest_listed(list)] : t_max;
 }
 
-// Takes the nearest of the list behind t_min as *hit when it goes before that. Returns whether it does.
+// Replaces *hit by the nearest listed hit behind t_min if that comes first. Returns whether it does.
 static inline bool take_nearest(__global const TriangleBlock* restrict blocks, const HitList* list,
                                 float t_min, Hit* hit) {
   bool taken = false;

@@ -1,5 +1,5 @@
-// One ray against the eight children of a BVH node. Slabs are widened to be conservative (Ize 2013), so that
-// what is found does not depend on the order of visits.
+// Tests one ray against the eight children of a BVH node. Slabs are widened to be conservative (Ize 2013), so
+// results do not depend on the order of visits.
 #ifndef SUNDOG_LIB_NODES_CL
 #define SUNDOG_LIB_NODES_CL
 #include "lib/core/config.h"
@@ -24,7 +24,7 @@ static inline __global const BvhNode* node_at(__global const u32* nodes, u32 ind
   return (__global const BvhNode*)nodes + index;
 }
 
-// A ray prepared for slab tests: a plane at b is crossed at fma(b, rcp, shift). near_* and far_* are float
+// A ray prepared for slab tests: it crosses a plane at b at fma(b, rcp, shift). near_* and far_* are float
 // offsets into Bvh8Node and byte offsets into CompactNode's boxes, by the direction's signs.
 typedef struct SlabRay {
 #if !WIDE_VECTORS
@@ -34,18 +34,18 @@ typedef struct SlabRay {
   u32 near_x, near_y, near_z, far_x, far_y, far_z;
 } SlabRay;
 
-// A component too small to divide by stands for a slope that never crosses a slab within a float's range.
+// Replaces components too small to divide by: such a ray crosses no slab within a float's range.
 #define LEAST_COMPONENT 1e-18f
 static inline float3 safe_reciprocal(float3 d) {
   return 1.0f / select(d, copysign((float3)(LEAST_COMPONENT), d), fabs(d) < LEAST_COMPONENT);
 }
 
-// Distances that matter only to rays along an axis: they may run in a face, or in the plane through 0, where
-// widening by parts of a coordinate is nothing.
+// Distances that matter only to axis-parallel rays, which may run in a face, or in the plane through 0, where
+// relative widening is nothing.
 #define along_face(rcp) ((rcp) * (rcp) * 1e-25f)
 
-// Factors of a reciprocal by which a slab is entered earlier and left later, and the shifts of its near and
-// of its far planes for an origin that lies `at` (origin times reciprocal) along the ray; V is their type.
+// Factors on a reciprocal that make a slab's entry earlier and exit later, and shifts of its near and far
+// planes for `at` (origin times reciprocal); V is their type.
 #define NEARER 0.9999997f
 #define FARTHER 1.0000003f
 #define shift_to_near(V, at, slack) (-((at) + fma(fabs(at), (V)(2.4e-7f), slack)))
@@ -62,7 +62,7 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
   const float3 near = o * ray.rcp_near, far = o * ray.rcp_far;
   ray.shift_near = shift_to_near(float3, near, slack);
   ray.shift_far = shift_to_far(float3, far, slack);
-  // By the sign of the reciprocal: a component of -0 has a negative one.
+  // By the sign of the reciprocal, because -0 has a negative one.
   ray.near_x = rcp.x < 0.0f ? 24u : 0u;
   ray.near_y = rcp.y < 0.0f ? 32u : 8u;
   ray.near_z = rcp.z < 0.0f ? 40u : 16u;
@@ -72,12 +72,12 @@ static inline SlabRay make_slab_ray(float3 o, float3 d) {
   return ray;
 }
 
-// A child's key is the bits of its entry distance (non-negative floats order like integers) with the slot in
+// A child's key: the bits of its entry distance (non-negative floats order like integers) with the slot in
 // the lowest three.
 #define KEY_SLOT 7u
 
 #if WIDE_VECTORS
-// One axis of make_slab_ray for a ray a lane. Returns the reciprocal.
+// One axis of make_slab_ray with one ray per lane. Returns the reciprocal.
 static inline REAL aim_slabs(REAL o, REAL d, REAL* rcp_near, REAL* rcp_far, REAL* shift_near,
                              REAL* shift_far) {
   const REAL least = AS_REAL((AS_MASK(d) & (int)0x80000000) | as_int(LEAST_COMPONENT));
@@ -90,8 +90,8 @@ static inline REAL aim_slabs(REAL o, REAL d, REAL* rcp_near, REAL* rcp_far, REAL
   return rcp;
 }
 
-// Distances to the near and the far side of the eight children's boxes, cut to [t_min, t_max], as the floats'
-// bits: a child is crossed where near <= far.
+// Entry and exit distances of the eight children's boxes, clipped to [t_min, t_max], as float bits: a child
+// is crossed if near <= far.
 ALWAYS_INLINE void slab_distances(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                   int8* near, int8* far) {
   __global const float* bounds = node->lower_x;
@@ -111,7 +111,7 @@ ALWAYS_INLINE void slab_distances(__global const BvhNode* node, const SlabRay* r
   *far = min(min(far_x, far_y), min(far_z, (int8)(as_int(t_max))));
 }
 
-// The lanes of v in descending order: Batcher's bitonic network (1968). No branch depends on the data.
+// Sorts lanes in descending order: Batcher's bitonic network (1968), without branches.
 ALWAYS_INLINE uint8 sort_descending(uint8 v) {
   uint8 w = v.s10325476;
   v = select(min(v, w), max(v, w), (int8)(-1, 0, 0, -1, -1, 0, 0, -1));
@@ -145,8 +145,8 @@ ALWAYS_INLINE uint8 permute(uint8 v, uint8 order) {
 #endif
 }
 
-// The lanes of v that are set in `lanes`, in a row from the first; then zeros. Where there is no instruction
-// for it, whatever comes of packing is not worth having.
+// Packs the lanes of v that are set in `lanes` to the front, followed by zeros. Without an instruction for
+// it, packing does not pay.
 #if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
 #define HAS_PACKING 1
 ALWAYS_INLINE uint8 packed(uint8 v, u32 lanes) {
@@ -156,10 +156,9 @@ ALWAYS_INLINE uint8 packed(uint8 v, u32 lanes) {
 #define HAS_PACKING 0
 #endif
 
-// Writes the children crossed in [t_min, t_max] and their entry distances, farthest first, and returns their
-// number. Overwrites eight places of the stack however many there are: without a branch, since how many
-// children a ray crosses cannot be foretold, but for that it is mostly four or fewer, which when packed take
-// half the network.
+// Pushes the children crossed in [t_min, t_max] with their entry distances, farthest first, and returns their
+// number. Always overwrites eight stack places to avoid a branch, since the number of crossed children is
+// unpredictable; but it is usually at most four, and packed they take half the sorting network.
 ALWAYS_INLINE u32 push_crossed(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                u32* stack, float* stack_t) {
   int8 near, far;
@@ -182,8 +181,8 @@ ALWAYS_INLINE u32 push_crossed(__global const BvhNode* node, const SlabRay* ray,
   return count;
 }
 
-// The same for rays to which any hit will do: in the order of the slots where packing them is quicker than
-// sorting, for nearest first saves them no visits that are worth it. stack_t may stay as it is.
+// push_crossed() for any-hit rays: in slot order if packing is faster than sorting, because nearest-first
+// order hardly saves them visits. stack_t may remain unset.
 ALWAYS_INLINE u32 push_in_any_order(__global const BvhNode* node, const SlabRay* ray, float t_min,
                                     float t_max, u32* stack, float* stack_t) {
 #if HAS_PACKING
@@ -198,7 +197,7 @@ ALWAYS_INLINE u32 push_in_any_order(__global const BvhNode* node, const SlabRay*
 #endif
 }
 
-// The children crossed in [t_min, t_max]; writes their keys.
+// Writes the keys of the children crossed in [t_min, t_max].
 ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
                                  u32* keys) {
   int8 near, far;
@@ -212,7 +211,7 @@ static inline float3 grid_step(u32 scale) {
                   as_float((scale >> 16 & 0xFFu) << 23));
 }
 
-// Distance to the plane of slot `slot` whose bytes begin at `plane`.
+// Distance to a plane of slot `slot`; the planes' bytes begin at `plane`.
 static inline int grid_distance(__global const BvhNode* node, u32 plane, u32 slot, float step, float from) {
   const u32 at = plane + slot;
   return as_int(fma((float)(node->quantized[at >> 2] >> (at & 3u) * 8u & 0xFFu), step, from));
@@ -266,7 +265,7 @@ ALWAYS_INLINE u32 push_children(__global const BvhNode* node, u32 crossed, const
     crossed &= crossed - 1u;
     order_pair(&b, &c);
     order_pair(&a, &b);
-    // Four and more are rare: insertion into what already waits.
+    // Four or more are rare: insert into the stack.
     const u32 base = at;
     stack[at] = child_word(node, c & KEY_SLOT);
     stack_t[at] = as_float(c & ~KEY_SLOT);

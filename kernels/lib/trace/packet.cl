@@ -1,5 +1,5 @@
-// Sixteen rays that run close together go through the two-level BVH as one (packet_nodes.cl, packet_mesh.cl).
-// Where few rays remain, they continue alone.
+// Traces sixteen coherent rays through the two-level BVH as a packet (packet_nodes.cl, packet_mesh.cl). When
+// few rays remain, they continue singly.
 #ifndef SUNDOG_LIB_PACKET_CL
 #define SUNDOG_LIB_PACKET_CL
 #include "lib/core/config.h"
@@ -9,7 +9,7 @@
 #include "lib/trace/packet_mesh.cl"
 #include "lib/trace/packet_nodes.cl"
 
-// So few rays in the scene or in an instance go alone.
+// This few rays in the scene or in an instance continue singly.
 #ifndef PACKET_LEAST
 #define PACKET_LEAST 2
 #endif
@@ -21,7 +21,7 @@ static inline void packet_in_solid(const Scene* scene, const PacketRays* rays, P
   if (any) end_lanes(hits, lanes_of(active));
 }
 
-// The rays of `active` against an instance; world space.
+// Tests the rays of `active` against an instance; world space.
 NEVER_INLINE void packet_in_instance(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 active,
                                      u32 index, bool any) {
   __global const Instance* instance = scene->instances + index;
@@ -38,7 +38,7 @@ NEVER_INLINE void packet_in_instance(const Scene* scene, const PacketRays* rays,
     packet_in_object(scene, index, rays, hits->found, active, &object);
     if (aim_packet(&object)) {
       const int16 lanes = lanes_of(active);
-      const float16 t = hits->found->t;  // of the others, for afterwards
+      const float16 t = hits->found->t;  // of the other rays, restored afterwards
       hits->found->t = select((float16)(-1.0f), t, lanes);
       renew_bounds(hits);
       packet_in_mesh(scene, &object, hits, instance->root, index, any);
@@ -54,13 +54,13 @@ NEVER_INLINE void packet_in_leaf(const Scene* scene, const PacketRays* rays, Pac
                                  u32 word, bool any) {
   const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
   for (u32 i = first; i <= last; ++i) {
-    if (any) active &= ~lane_bits(as_int16(hits->found->t));  // these have found something
+    if (any) active &= ~lane_bits(as_int16(hits->found->t));  // these have a hit
     if (active) packet_in_instance(scene, rays, hits, active, i, any);
   }
   renew_bounds(hits);
 }
 
-// The bounded instances; `rays` in world space and aimed.
+// Traces the bounded instances; `rays` in world space and prepared.
 NEVER_INLINE void packet_in_scene(const Scene* scene, const PacketRays* rays, PacketHits* hits, bool any) {
   const u32 live = ALL_RAYS & ~lane_bits(as_int16(hits->found->t)), root = scene->info->tlas_root;
   if (root & BVH_LEAF) {

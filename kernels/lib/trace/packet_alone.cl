@@ -1,4 +1,4 @@
-// Rays of a packet that continue alone.
+// Traces rays of a packet singly.
 #ifndef SUNDOG_LIB_PACKET_ALONE_CL
 #define SUNDOG_LIB_PACKET_ALONE_CL
 #include "lib/core/config.h"
@@ -7,7 +7,7 @@
 #include "lib/trace/packet_nodes.cl"
 #include "lib/trace/walk.cl"
 
-// The rays of `active` by themselves, from `word` of the scene BVH or of `instance`'s mesh BVH on. Returns
+// Traces the rays of `active` singly from `word` of the scene BVH or of `instance`'s mesh BVH on. Returns
 // whether any hits something nearer.
 NEVER_INLINE bool walk_lanes(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 active,
                              u32 word, u32 instance, bool any) {

@@ -1,5 +1,4 @@
-// Packets of rays in a mesh. A ray's test of a triangle is that of triangles.cl to the bit, and so are the
-// hits.
+// Packets of rays in a mesh. Tests and hits equal those of triangles.cl to the bit.
 #ifndef SUNDOG_LIB_PACKET_MESH_CL
 #define SUNDOG_LIB_PACKET_MESH_CL
 #include "lib/core/config.h"
@@ -8,7 +7,7 @@
 #include "lib/trace/packet_alone.cl"
 #include "lib/trace/packet_nodes.cl"
 
-// So few rays in a leaf are tested one after another, when the nearest hit is wanted and when any.
+// This few rays in a leaf are tested singly, for nearest hits and for any hits.
 #ifndef LEAF_LEAST
 #define LEAF_LEAST 4
 #endif
@@ -16,7 +15,7 @@
 #define ANY_LEAF_LEAST 8
 #endif
 
-// The triangles of a block that some ray may hit: not those with all corners on one side of all rays.
+// The triangles of a block that some ray may hit: excludes those with all corners on one side of all rays.
 ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const PacketRays* rays) {
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
   float8 least_x = (float8)(INFINITY), least_y = least_x, most_x = -least_x, most_y = -least_x;
@@ -38,7 +37,7 @@ ALWAYS_INLINE u32 triangles_in_packet(__global const TriangleBlock* block, const
 
 EDGE_FUNCTION(edge_function16, float16)
 
-// The triangle at `place` against all rays. Returns whether it is a hit of any.
+// Tests the triangle at `place` against all rays. Returns whether any hits it.
 ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 place, const PacketRays* rays,
                                    PacketHits* hits, u32 instance, bool any) {
   __global const float* corners = blocks[place >> 3].v0_x + (place & 7u);
@@ -79,8 +78,7 @@ ALWAYS_INLINE bool packet_triangle(__global const TriangleBlock* blocks, u32 pla
   return true;
 }
 
-// The rays of `active` one after another through the blocks of a leaf. Returns whether any hits something
-// nearer.
+// Tests the rays of `active` singly against the blocks of a leaf. Returns whether any hits something nearer.
 NEVER_INLINE bool lanes_in_blocks(__global const TriangleBlock* blocks, const PacketRays* rays,
                                   PacketHits* hits, u32 active, u32 first, u32 last, u32 instance, bool any) {
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];

@@ -1,34 +1,34 @@
-// How packets of rays go through the nodes of a BVH: a node's eight children are tested at once against the
-// interval that the rays span, and a child that not all of them cross for certain against each ray.
+// Traverses a BVH's nodes with packets: tests a node's eight children at once against the interval of all
+// rays, and each ray against children that not all rays certainly cross.
 #ifndef SUNDOG_LIB_PACKET_NODES_CL
 #define SUNDOG_LIB_PACKET_NODES_CL
 #include "lib/core/config.h"
 #if PACKETS
 #include "lib/trace/packet_rays.cl"
 
-// So few rays in a node continue alone.
+// This few rays in a node continue singly.
 #ifndef NODE_LEAST
 #define NODE_LEAST 1
 #endif
 
-// A child's box: node * 8 + slot, perhaps with ALL_CROSS: every ray crosses it.
+// A child's box: node * 8 + slot; ALL_CROSS: every ray crosses it.
 #define ALL_CROSS 0x80000000u
 #define NO_BOX 0xFFFFFFFFu
 #define NO_NODE 0xFFFFFFFFu
 
-// Boxes that wait, each below the bits of its entry distance; nearest last.
+// Waiting boxes, each below the bits of its entry distance; nearest last.
 typedef struct PacketWalk {
   ulong waiting[BVH_STACK + 1];
   u32 top;
-  u32 first;  // a node to begin with
+  u32 first;  // the start node
 } PacketWalk;
 
 ALWAYS_INLINE int8 crossing_at(float8 planes, const Crossing* crossing, u32 axis) {
   return as_int8(fma(planes, (float8)(crossing->rcp[axis]), (float8)(crossing->shift[axis])));
 }
 
-// Returns the nearest child that the interval crosses, or NO_BOX, and puts the others onto the stack. With
-// `any` the order is that of the slots: sorting would cost more than it saves.
+// Returns the nearest child that the interval crosses, or NO_BOX, and pushes the others. With `any` in slot
+// order, because sorting costs more than it saves.
 ALWAYS_INLINE u32 open_node(__global const u32* restrict nodes, u32 index, const PacketRays* rays,
                             const PacketHits* hits, PacketWalk* walk, bool any) {
   __global const BvhNode* node = node_at(nodes, index);
@@ -73,7 +73,7 @@ ALWAYS_INLINE u32 open_node(__global const u32* restrict nodes, u32 index, const
   return (u32)least;
 }
 
-// The entry or the exit distances of the slabs of one axis for each ray.
+// Each ray's entry or exit distance of a slab along one axis.
 ALWAYS_INLINE int16 slab_distance(float bound, float16 rcp, float16 shift) {
   return as_int16(fma((float16)(bound), rcp, shift));
 }
@@ -91,8 +91,8 @@ ALWAYS_INLINE u32 rays_in_child(__global const Bvh8Node* node, u32 slot, const P
   return lane_bits(near <= far);
 }
 
-// Finds the next place where something is to be done: a leaf, or a node that few rays cross. Writes its
-// word and the rays that cross it; returns false at the end.
+// Finds the next leaf, or node that few rays cross. Writes its word and the rays that cross it; returns false
+// at the end.
 NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRays* rays,
                              const PacketHits* hits, PacketWalk* walk, bool any, u32* word, u32* active) {
   u32 index = walk->first;

@@ -1,5 +1,4 @@
-// Sixteen rays that run close together as a value: each by itself, a lane a ray, and the interval that they
-// span. Nothing is found here; packet.cl takes them through the BVH.
+// Sixteen coherent rays as a value: one per lane, and their common interval. packet.cl traces them.
 #ifndef SUNDOG_LIB_PACKET_RAYS_CL
 #define SUNDOG_LIB_PACKET_RAYS_CL
 #include "lib/core/config.h"
@@ -11,32 +10,32 @@
 #if PACKETS
 #define ALL_RAYS 0xFFFFu
 
-// A plane at b across an axis lies at fma(b, rcp, shift).
+// The plane at b across an axis is at fma(b, rcp, shift).
 typedef struct Crossing {
   float rcp[4], shift[4];
 } Crossing;
 
-// The rays in world or object space; arrays are by axis.
+// The rays in world or object space; arrays are indexed by axis.
 typedef struct PacketRays {
   float16 o[3], d[3];
-  // SlabRay and ShearRay, a lane a ray.
+  // SlabRay and ShearRay, one ray per lane.
   float16 rcp_near[3], rcp_far[3], shift_near[3], shift_far[3], sx, sy, sz;
-  // The interval: where some ray may enter and leave, where all have entered and still none has left.
+  // Interval: first entry and last exit of any ray, last entry and first exit.
   Crossing first_in, last_out, last_in, first_out;
-  // A beam that holds all rays, in the axes of a ShearRay: its middle at beam_z and its slopes, and how far
-  // it reaches on both sides. See triangles_in_packet.
+  // A beam around all rays, in ShearRay axes: its centre at beam_z, its slopes, and its half widths. See
+  // triangles_in_packet.
   float beam_x, beam_y, beam_z, beam_sx, beam_sy, spread_x, spread_y, spread_sx, spread_sy;
-  // What all rays share: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
+  // Shared by all rays: float offsets into Bvh8Node, and the axes that a ShearRay permutes to x, y, z.
   u32 near[4], far[4], axis[3];
 } PacketRays;
 
-// What the rays found so far. A lane without a ray, and with `any` one that has found something, has a t
-// below 0: it crosses nothing.
+// The rays' hits. A lane without a ray, or with a hit if any hit will do, has a negative t: it crosses
+// nothing.
 typedef struct PacketHits {
-  Hits* found;  // prim of a triangle is its place (see finish_triangle)
+  Hits* found;  // prim of a triangle is its place (finish_triangle)
   float16 t_min;
-  float t_least, t_most;  // of t_min and t over the rays
-  u32 live;               // rays whose t is not below 0
+  float t_least, t_most;  // minimum of t_min and maximum of t
+  u32 live;               // rays whose t is not negative
 } PacketHits;
 
 static inline float get_lane(const float16* v, u32 i) { return ((const float*)v)[i]; }
@@ -49,7 +48,7 @@ static inline float least_of(float16 v) {
 }
 static inline float most_of(float16 v) { return -least_of(-v); }
 
-// What is known of all rays, after hits.
+// Updates the common bounds after hits.
 static inline void renew_bounds(PacketHits* hits) {
   hits->t_most = most_of(hits->found->t);
   hits->live = ~lane_bits(as_int16(hits->found->t)) & ALL_RAYS;
@@ -57,12 +56,12 @@ static inline void renew_bounds(PacketHits* hits) {
 
 static inline float16 least16(float16 a, float16 b) { return select(b, a, a < b); }
 
-// The lower half of the result is the least of neighbours in a, the upper one of those in b.
+// Lower half: minima of neighbours in a; upper half: those in b.
 ALWAYS_INLINE float16 least_of_pairs(float16 a, float16 b) {
   return least16((float16)(a.even, b.even), (float16)(a.odd, b.odd));
 }
 
-// Lane i of the result is the least of v[i]. Overwrites v.
+// Lane i of the result is the minimum of v[i]. Overwrites v.
 ALWAYS_INLINE float16 least_of_each(float16* v) {
 #pragma unroll
   for (u32 count = 8; count > 0u; count >>= 1)
@@ -81,9 +80,9 @@ ALWAYS_INLINE void set_crossing(Crossing* crossing, float4 rcp, float4 shift) {
   vstore4(shift, 0, crossing->shift);
 }
 
-// The interval that the rays span, from the least and the greatest origins and reciprocals of directions. A
-// ray enters first with the origin that is farthest on and with the smallest reciprocal: that a plane behind
-// the origin is then not the first does not matter, for no ray starts before 0.
+// The rays' common interval, from minimum and maximum origins and reciprocals of directions. The earliest
+// entry is by the farthest origin and the smallest reciprocal; this is wrong for planes behind the origin,
+// but no ray starts before 0.
 ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, float4 least_rcp,
                                float4 most_rcp, int4 negative) {
   const int4 lower = (int4)(0, 8, 16, 0), upper = lower + 24;
@@ -99,8 +98,8 @@ ALWAYS_INLINE void span_packet(PacketRays* rays, float4 least_o, float4 most_o, 
   set_crossing(&rays->first_out, small, -ahead * small);
 }
 
-// The beam; `slopes` are the least of sx and sy and their negative greatest. It is widened by more than
-// rounding moves a corner in packet_triangle, which is relative to how far that is from the rays' start.
+// Computes the beam; `slopes` are minima of sx and sy and of their negatives. Widened by more than rounding
+// moves a corner in packet_triangle, relative to its distance from the rays' origin.
 ALWAYS_INLINE void make_beam(PacketRays* rays, float4 slopes, float4 o_spread) {
   const u32 ax = rays->axis[0], ay = rays->axis[1], az = rays->axis[2];
   const float z = get_lane(rays->o + az, 0);
@@ -126,8 +125,8 @@ ALWAYS_INLINE void make_beam(PacketRays* rays, float4 slopes, float4 o_spread) {
   rays->spread_sy = turn.y;
 }
 
-// Prepares the rays for the tests of triangles, all but the beam, whose slopes go to `ends`. Returns false
-// where they cannot go as one: directions of different largest components.
+// Prepares the rays for triangle tests, except the beam, whose slopes go to `ends`. Returns false if the
+// largest components of their directions differ.
 ALWAYS_INLINE bool shear_packet(PacketRays* rays, float16* ends) {
   const float16 x = fabs(rays->d[0]), y = fabs(rays->d[1]), z = fabs(rays->d[2]);
   const int16 along_x = (x >= y) & (x >= z);
@@ -147,8 +146,8 @@ ALWAYS_INLINE bool shear_packet(PacketRays* rays, float16* ends) {
   return true;
 }
 
-// Prepares the rays for the tests, given o and d. Returns false when they cannot go as one: directions of
-// different signs, or, where there are triangles, of different largest components.
+// Prepares the rays, given o and d. Returns false if they cannot form a packet: directions of different signs
+// or, with triangles, of different largest components.
 NEVER_INLINE bool aim_packet(PacketRays* rays) {
   float16 ends[16];
   ends[3] = ends[7] = ends[11] = ends[15] = (float16)(0.0f);
@@ -172,7 +171,7 @@ NEVER_INLINE bool aim_packet(PacketRays* rays) {
   return true;
 }
 
-// The rays as an instance sees them. A ray that is not in `active` becomes one that is.
+// Transforms the rays to an instance's space. Rays not in `active` become copies of one that is.
 NEVER_INLINE void packet_in_object(const Scene* scene, u32 index, const PacketRays* world, const Hits* hits,
                                    u32 active, PacketRays* object) {
   __global const Instance* instance = scene->instances + index;
@@ -201,7 +200,7 @@ static inline float3 packet_direction(const PacketRays* rays, u32 i) {
   return (float3)(get_lane(rays->d, i), get_lane(rays->d + 1, i), get_lane(rays->d + 2, i));
 }
 
-// Lanes that have found something are switched off.
+// Switches off lanes with a hit.
 static inline void end_lanes(PacketHits* hits, MASK lanes) {
   hits->found->t = select(hits->found->t, (REAL)(-1.0f), lanes & hit_anything(hits->found));
 }

@@ -1,24 +1,24 @@
-// Whether anything may stand between points and a light: a shaft (Haines and Wallace 1991, "Shaft Culling for
-// Efficient Ray-Traced Radiosity") is a pyramid from a point to the corners of what holds the light, a point
-// a lane. In: shafts and a scene of few instances. Out: the instances that some shaft may touch. Lanes that
-// touch none send no shadow ray that anything blocks; the reverse does not hold.
+// Tests whether anything may occlude a light: a shaft (Haines and Wallace 1991, "Shaft Culling for Efficient
+// Ray-Traced Radiosity") is a pyramid from a point to the corners of the light's bounds, one point per lane.
+// In: shafts and a scene of few instances. Out: the instances that some shaft may touch. Lanes that touch
+// none are unoccluded; the reverse does not hold.
 #ifndef SUNDOG_LIB_SHAFT_CL
 #define SUNDOG_LIB_SHAFT_CL
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 
 #if HAS_SHAFTS
-// The shape that holds a solid in its own space is so much larger, for the rounding of rays that meet it.
+// Relative enlargement of a solid's bounds, for rounding of rays that hit it.
 #define SHAFT_MARGIN 1e-3f
 
 typedef struct Shafts {
-  REAL3 o;        // where shadow rays start
-  REAL3 edge[4];  // from there to the corners, in turn
-  REAL slack;     // how far rounding may have moved o
-  MASK outside;   // the instance on whose outside o lies, if it does on one; else NO_INSTANCE
+  REAL3 o;        // origin of the shadow rays
+  REAL3 edge[4];  // from there to the corners, in order
+  REAL slack;     // bound of rounding errors of o
+  MASK outside;   // the instance on whose outside o lies, or NO_INSTANCE
 } Shafts;
 
-// The half sizes of a unit solid; w: 0 a box, 1 round about y, 2 round.
+// Half sizes of a unit solid's bounds; w: 0 box, 1 cylinder about y, 2 ball.
 static inline float4 solid_reach(u32 shape, float4 parameters) {
   if (shape == SHAPE_SPHERE) return (float4)(1.0f, 1.0f, 1.0f, 2.0f);
   if (shape == SHAPE_CYLINDER) return (float4)(1.0f);
@@ -30,7 +30,7 @@ static inline float4 solid_reach(u32 shape, float4 parameters) {
   return (float4)(radius, shape == SHAPE_CONE ? 1.0f : parameters.x, radius, 1.0f);
 }
 
-// How far what `reach` describes goes along n, which need not be unit.
+// Support of `reach` along n, which need not be unit.
 static inline REAL reach_along(float4 reach, REAL3 n) {
   if (reach.w == 2.0f) return reach.x * length3(n);
   const REAL up = reach.y * fabs(n.y);
@@ -38,7 +38,7 @@ static inline REAL reach_along(float4 reach, REAL3 n) {
   return fma((REAL)(reach.x), fabs(n.x), fma((REAL)(reach.z), fabs(n.z), up));
 }
 
-// Whether all of the shaft lies beyond `reach` on one side of 0, along an axis.
+// Whether the whole shaft is beyond `reach` on one side of 0, along an axis.
 static inline MASK beyond(REAL o, REAL a, REAL b, REAL c, REAL d, REAL reach) {
   const REAL zero = (REAL)(0.0f);
   const REAL low = real_min(real_min(zero, a), real_min(b, real_min(c, d))),
@@ -46,16 +46,16 @@ static inline MASK beyond(REAL o, REAL a, REAL b, REAL c, REAL d, REAL reach) {
   return MASK_OF(o + low > reach) | MASK_OF(o + high < -reach);
 }
 
-// Whether a plane through o with the normal n, in whose direction the shaft lies where `within` is above 0,
-// parts it from what `reach` describes. All in the space of that.
+// Whether a plane through o with normal n, towards which the shaft lies if `within` is above 0, separates it
+// from `reach`. All in that space.
 static inline MASK parted(REAL3 o, REAL3 n, REAL within, float4 reach, REAL pad) {
   const REAL most = reach_along(reach, n) + pad * (fabs(n.x) + fabs(n.y) + fabs(n.z));
   const REAL away = dot3(n, o);
   return (MASK_OF(within > 0.0f) & MASK_OF(away > most)) | (MASK_OF(within < 0.0f) & MASK_OF(-away > most));
 }
 
-// The lanes of `lanes` whose shafts, of origin o and edges e in the space of what `reach` describes, may
-// touch it: neither its sides nor theirs part them, nor does the plane of the light.
+// The lanes of `lanes` whose shafts, with origin o and edges e in the space of `reach`, may touch it: neither
+// its sides, nor the shaft's, nor the light's plane separate them.
 static inline MASK may_touch_solid(REAL3 o, const REAL3* e, float4 reach, REAL pad, MASK lanes) {
   lanes &= ~beyond(o.x, e[0].x, e[1].x, e[2].x, e[3].x, reach.x + pad);
   lanes &= ~beyond(o.y, e[0].y, e[1].y, e[2].y, e[3].y, reach.y + pad);
@@ -70,15 +70,15 @@ static inline MASK may_touch_solid(REAL3 o, const REAL3* e, float4 reach, REAL p
   return lanes & ~parted(add3(o, e[0]), front, -dot3(front, e[0]), reach, pad);
 }
 
-// The lanes of `lanes` whose shafts may touch the ball (center, radius) of the world.
+// The lanes of `lanes` whose shafts may touch the ball (center, radius) in world space.
 static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes) {
   const REAL3 o = subtract3(shafts->o, all3(ball.xyz));
   return may_touch_solid(o, shafts->edge, (float4)(ball.w, ball.w, ball.w, 2.0f),
                          shafts->slack + SHAFT_MARGIN * ball.w, lanes);
 }
 
-// The lanes of `lanes` whose shafts may touch the solid `index`. A solid without hollows blocks nothing that
-// its outside receives from above: light from below its tangent plane does not count there.
+// The lanes of `lanes` whose shafts may touch the solid `index`. A convex solid occludes nothing on its own
+// outside: light from below the tangent plane does not count there.
 static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shafts* shafts, MASK lanes) {
   __global const Instance* instance = scene->instances + index;
   if (HAS_MESH && instance->shape == SHAPE_MESH) return may_touch_ball(shafts, instance->world_center, lanes);
@@ -96,7 +96,7 @@ static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shaft
   return may_touch_solid(o, e, solid_reach(instance->shape, instance->parameters), pad + SHAFT_MARGIN, lanes);
 }
 
-// The points o outside a box around a solid, if it is convex and closed or flat.
+// The points o outside a box around a solid that is convex and closed, or flat.
 static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
   const u32 shape = instance->shape;
   const float4 parameters = instance->parameters;
@@ -109,13 +109,13 @@ static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
   return MASK_OF(fabs(p.x) > reach.x) | MASK_OF(fabs(p.y) > reach.y) | MASK_OF(fabs(p.z) > reach.z);
 }
 
-// Whether the instance is how rays meet the light, which stands before none of its own.
+// Whether the instance is the light's own visible shape, which does not occlude it.
 static inline bool shows_light(const Scene* scene, __global const Instance* instance, u32 light) {
   return instance->light == light && instance->shape != SHAPE_MESH;
 }
 
-// The instances that the shafts of `lanes` to the light `light` may touch: the lanes that touch only opaque
-// solids go to `soft`, with a bit of `solids` for each of these, those that touch anything else to `hard`.
+// The instances that the shafts of `lanes` to the light `light` may touch: lanes that touch only opaque
+// solids go to `soft`, with a bit in `solids` for each of these; lanes that touch anything else to `hard`.
 NEVER_INLINE void cast_shafts(const Scene* scene, u32 light, const Shafts* shafts, MASK lanes, MASK* soft,
                               MASK* hard, u32* solids) {
   *soft = *hard = NO_LANES;

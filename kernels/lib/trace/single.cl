@@ -1,4 +1,4 @@
-// One ray through the two-level BVH, where rays are not walked in lists (walk.cl).
+// Traces one ray through the two-level BVH, on devices without lists (walk.cl).
 #ifndef SUNDOG_LIB_SINGLE_CL
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/core/config.h"
@@ -10,7 +10,7 @@
 #include "lib/trace/nodes.cl"
 #include "lib/trace/triangles.cl"
 
-// The solid `index` in (t_min, hit->t], world-space ray: one ray stands in for all lanes.
+// Tests the solid `index` in (t_min, hit->t], world-space ray: all lanes hold the same ray.
 static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d, float t_min, float time,
                                Hit* hit) {
   const REAL3 origins = all3(o), directions = all3(d);
@@ -22,12 +22,12 @@ static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d
   if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
 }
 
-// Nearest hit in one mesh BVH, or with `any` whichever comes first; o, d in object space. Uses the stack from
-// `stack` on. A hit's prim is left as finish_triangle wants it.
+// Nearest hit in one mesh BVH, or with `any` the first found; o, d in object space. Uses the stack from
+// `stack` on. The hit's prim is for finish_triangle.
 static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_ray,
                               const ShearRay* shear_ray, float t_min, u32 instance, bool any, u32* stack,
                               float* stack_t, Hit* found) {
-  // Copies that nothing else can point at stay in registers.
+  // Local copies stay in registers.
   const SlabRay slabs = *slab_ray;
   const ShearRay shear = *shear_ray;
   Hit hit = *found;
@@ -60,7 +60,7 @@ static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_
   *found = hit;
 }
 
-// One instance in (t_min, hit->t]; world-space ray.
+// Tests one instance in (t_min, hit->t]; world-space ray.
 static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, float time,
                                   bool any, u32* stack, float* stack_t, Hit* hit) {
   __global const Instance* instance = scene->instances + index;
@@ -78,7 +78,7 @@ static inline void trace_instance(const Scene* scene, u32 index, float3 o, float
   trace_solid(scene, index, o, d, t_min, time, hit);
 }
 
-// The bounded instances below `word` of the scene BVH.
+// Traces the bounded instances below `word` of the scene BVH.
 static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, float time,
                                  bool any, Hit* hit) {
   u32 stack[BVH_STACK];
@@ -109,8 +109,8 @@ static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 
   }
 }
 
-// All bounded instances. One alone is a leaf without a tree: there is a single place that traces instances,
-// of which some compilers make copies.
+// Traces all bounded instances. A single one is a leaf without a tree, so that instances are traced in one
+// place, of which some compilers make copies.
 static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, float time, bool any,
                                    Hit* hit) {
   if (scene->info->bounded_count == 0u) return;

@@ -1,4 +1,4 @@
-// All that a ray meets in a short part of its way, where the tracer gives the nearest hit alone.
+// All hits of a ray in a short interval.
 #ifndef SUNDOG_LIB_STRETCH_CL
 #define SUNDOG_LIB_STRETCH_CL
 #include "lib/core/config.h"
@@ -10,8 +10,8 @@
 
 #define MOST_TOUCHING 16u
 
-// A short part of a ray, and all that it meets there in (from, to], in no order. Boxes are asked about more:
-// rounding may place a hit beside its box, by more than boxes are widened.
+// A short interval of a ray, and all its hits in (from, to], unordered. Boxes are tested in a longer one,
+// because rounding may place a hit outside its box by more than boxes are widened.
 typedef struct Stretch {
   float3 o, d;
   float from, to, box_from, box_to;
@@ -41,7 +41,7 @@ static inline void note_hit(Stretch* stretch, const Hit* hit) {
   if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
 }
 
-// Whether the stretch may meet the ball around the instance, if it has one.
+// Whether the interval may touch the instance's bounding ball, if it has one.
 static inline bool comes_near(__global const Instance* restrict instance, const Stretch* stretch) {
   const float4 ball = instance->world_center;
   const float3 p = stretch->o + stretch->from * stretch->d;
@@ -49,7 +49,7 @@ static inline bool comes_near(__global const Instance* restrict instance, const 
   return ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p)));
 }
 
-// The first hit of the solid in (from, to]; of NO_INSTANCE where there is none.
+// The first hit of the solid in (from, to]; NO_INSTANCE without one.
 static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch, float from, float to) {
   const REAL3 o = all3(stretch->o), d = all3(stretch->d);
   const REAL t_min = (REAL)(from);
@@ -59,8 +59,8 @@ static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch
   return get_hit(&hits, 0);
 }
 
-// A solid that is entered and has no further hit ends where it begins: it is thinner there than rounding, or
-// grazed. Its exit is the same hit, seen from behind. Planes have no end.
+// A solid that is entered and has no further hit ends where it begins: it is grazed, or thinner there than
+// rounding. Its exit is the same hit, seen from behind. Planes are unbounded.
 static inline void note_exit(const Scene* scene, u32 index, Stretch* stretch, Hit hit) {
   if (scene->instances[index].shape == SHAPE_PLANE || stretch->count >= MOST_TOUCHING) return;
   const float3 normal = world_normal(scene->instances + index, (float3)(hit.ng_x, hit.ng_y, hit.ng_z));
@@ -85,7 +85,7 @@ static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
   note_exit(scene, index, stretch, last);
 }
 
-// Pushes the children of a node that the stretch crosses. Returns the stack's new top.
+// Pushes the children of a node that the interval crosses. Returns the new top.
 static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
                                    const Stretch* stretch, u32* stack, u32 top) {
   u32 keys[8];

@@ -1,6 +1,5 @@
-// The narrow interface of the tracer that shading sees. In: a batch of rays, a ray a lane, and the tables.
-// Out: the nearest hits, or whether there are any. What is found does not depend on the order of visits, nor
-// on whether a ray goes alone.
+// The tracer's interface for shading. In: a batch of rays, one per lane, and the tables. Out: the nearest
+// hits, or occlusion. Results depend neither on the order of visits nor on whether a ray is traced singly.
 #ifndef SUNDOG_LIB_TRAVERSE_CL
 #define SUNDOG_LIB_TRAVERSE_CL
 #include "lib/core/config.h"
@@ -11,31 +10,30 @@
 #include "lib/trace/single.cl"
 #include "lib/trace/walk.cl"
 
-// How rays are traced.
+// How to trace rays.
 #define TRACE_NEAREST 0u   // to the nearest hit
 #define TRACE_ANY 1u       // to any hit
-#define TRACE_COHERENT 2u  // they run close together
+#define TRACE_COHERENT 2u  // the rays are coherent
 
-// Where there are no meshes, up to so many solids are tried one after another for all rays of a batch, which
-// is quicker than taking each ray through the BVH. A packet goes through the BVH whenever there is one.
+// Without meshes, up to this many solids are tested in turn for all rays of a batch, which is faster than
+// taking each ray through the BVH. A packet always uses the BVH if there is one.
 #ifndef FEW_SOLIDS
 #define FEW_SOLIDS 24u
 #endif
 
-// Not by products with 0: some compilers take those for 0.
+// Not by products with 0, which some compilers fold to 0.
 static inline MASK finite3(const REAL3* a) {
   return MASK_OF(fabs(a->x) < INFINITY) & MASK_OF(fabs(a->y) < INFINITY) & MASK_OF(fabs(a->z) < INFINITY);
 }
-// Rays that can hit something: a ray with a component that is not finite, or without a direction, hits
-// nothing.
+// Rays that can hit something: excludes rays with a non-finite component or without a direction.
 static inline MASK traceable(const REAL3* o, const REAL3* d, REAL t_min, REAL t_max) {
   return finite3(o) & finite3(d) & MASK_OF(t_max > t_min) &
          (MASK_OF(d->x != 0.0f) | MASK_OF(d->y != 0.0f) | MASK_OF(d->z != 0.0f));
 }
 
 #if PACKETS
-// Rays become a packet; a lane that is not active stands in as a copy of another and is switched off. Returns
-// false when the rays do not go as one.
+// Makes a packet of the rays; inactive lanes become copies of an active one, switched off. Returns false if
+// the rays cannot form a packet.
 NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min, MASK active, Hits* hits,
                               PacketRays* rays, PacketHits* packet) {
   const u32 stand_in = lowest_bit(lane_bits(active));
@@ -53,8 +51,8 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 }
 #endif
 
-// trace_packet(): the lanes of `active` as a packet; false: they do not go as one. trace_alone(): each lane
-// of `active` by itself. A `lone_mesh` is the only bounded instance.
+// trace_packet(): traces the lanes of `active` as a packet; false: they cannot form one. trace_alone():
+// traces each lane singly. A `lone_mesh` is the only bounded instance.
 #if PACKETS
 static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                 MASK active, bool lone_mesh, bool any, Hits* hits) {
@@ -102,12 +100,12 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
 }
 #endif
 
-// The bounded instances for the lanes of `active`. `way`: TRACE_* bits.
+// Traces the bounded instances for the lanes of `active`. `way`: TRACE_* bits.
 static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
                                        const REAL* t_min, MASK active, u32 way, Hits* hits, HitList* lists,
                                        const MASK* priorities) {
   REAL3 o = *world_o, d = *world_d;
-  // A mesh alone needs no scene BVH, and takes all rays into its space at once.
+  // A lone mesh needs no scene BVH, and all rays are transformed to its space at once.
   const bool lone_mesh =
       HAS_MESH && scene->info->tlas_root == BVH_LEAF && scene->instances->shape == SHAPE_MESH;
   if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
@@ -119,13 +117,13 @@ static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o,
   trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits, lists, priorities);
 }
 
-// Whether a batch goes through the BVH; else all solids are tried.
+// Whether a batch traverses the BVH; otherwise all solids are tested.
 static inline bool goes_in_tree(const Scene* scene, bool coherent) {
   if (HAS_MESH) return scene->info->bounded_count > 0u;
   return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
 }
 
-// The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, where things move. `way`: TRACE_*
+// The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, if objects move. `way`: TRACE_*
 // bits.
 static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                              REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists,
@@ -146,7 +144,7 @@ static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d,
     trace_bounded_batch(scene, o, d, t_min, active, way, hits, lists, priorities);
 }
 
-// Indices and geometric normals of the triangles among the hits. `coherent`: several rays meet the same one.
+// Sets indices and geometric normals of hit triangles. `coherent`: several rays hit the same one.
 static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hits) {
   if (!HAS_MESH) return;
   const MASK places = hits->prim;
@@ -184,9 +182,9 @@ static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* 
 }
 
 #if LISTS_HITS
-// What the lanes of `active` meet in (t_min, t_max]: triangles that do not end them in `lists`, a list a
-// lane; behind these, or instead, `last`: rays to lights (`priorities` is 0) meet something that lets no
-// light through, or else the nearest solid; others, in media of `priorities`, what they see, or a solid.
+// The hits of the lanes of `active` in (t_min, t_max]: triangles that do not end a ray in `lists`, one list
+// per lane; behind these, or instead, `last`: for rays to lights (`priorities` is 0) something opaque, or
+// else the nearest solid; for others, in media of `priorities`, what they see, or a solid.
 static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                               REAL t_max, REAL time, MASK active, const MASK* priorities, Hits* last,
                               HitList* lists) {
@@ -194,9 +192,9 @@ static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d
   find_hits(scene, o, d, t_min, t_max, time, active, TRACE_NEAREST, last, lists, priorities);
 }
 
-// The nearest hits behind t_min of the lanes of `lanes`, of which `listed` receives those that their lists
-// have. Returns those that must be traced on from t_min: their lists end, or the solid behind these has been
-// passed with a face that it touches.
+// The nearest hits behind t_min of the lanes of `lanes`; `listed` receives lanes whose hit comes from a list.
+// Returns lanes that must be traced on from t_min: their lists end, or the solid behind these has been passed
+// together with a face that it touches.
 NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const REAL* t_min, MASK lanes,
                               const Hits* last, Hits* hits, MASK* listed) {
   *hits = *last;

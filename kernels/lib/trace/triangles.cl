@@ -1,19 +1,19 @@
-// Eight triangles against one ray, watertight (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
-// Intersection"): corners are moved into a space in which the ray is the z axis, and there the sign of an
-// edge's function is right, so neighbours agree on each edge: a ray cannot pass between them, nor meet a
-// triangle that it sees edge on beside it. The result does not depend on the order in which blocks are
-// visited: equal t goes to the lower index.
+// Tests eight triangles against one ray, watertight (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+// Intersection"): corners are transformed to a space where the ray is the z axis, and edge functions have
+// exact signs there, so neighbours agree on each edge: a ray cannot pass between them, nor hit a triangle
+// seen edge-on from beside it. The result does not depend on the order of blocks: at equal t, the lower index
+// wins.
 #ifndef SUNDOG_LIB_TRIANGLES_CL
 #define SUNDOG_LIB_TRIANGLES_CL
 #include "lib/core/config.h"
 #include "lib/core/masks.cl"
 #include "shared/bvh.h"
 
-// A ray as the test sees it: axes permuted so that z is where the direction is largest.
+// A ray prepared for the test: axes permuted so that the direction is largest along z.
 typedef struct ShearRay {
   u32 x, y, z;       // float offsets of the permuted axes in a corner of a TriangleBlock
   float ox, oy, oz;  // origin, permuted
-  float sx, sy;      // the direction's slopes: x/z, y/z
+  float sx, sy;      // slopes of the direction: x/z, y/z
   float sz;          // -1 / direction z
 } ShearRay;
 
@@ -37,14 +37,14 @@ static inline ShearRay make_shear_ray(float3 o, float3 d) {
   return ray;
 }
 
-// Of the instances that share a BVH, `first` the first of them, the one that the triangle `prim` belongs to.
+// The instance that owns the triangle `prim` among those sharing a BVH, of which `first` is the first.
 static inline u32 instance_of_triangle(__global const Instance* restrict instances, u32 first, u32 prim) {
   while ((instances[first].flags & INSTANCE_SHARES) && instances[first + 1u].first_prim <= prim) ++first;
   return first;
 }
 
-// The geometric normal of a triangle, its index and its instance, for a hit whose prim is still
-// `block * 8 + lane`, and its instance the first of those that share the BVH.
+// Sets the geometric normal, triangle index and instance of a hit whose prim is still `block * 8 + lane`, and
+// whose instance is the first of those that share the BVH.
 static inline void finish_triangle(__global const Instance* restrict instances,
                                    __global const TriangleBlock* restrict blocks, Hit* hit) {
   __global const TriangleBlock* block = blocks + (hit->prim >> 3);
@@ -60,14 +60,14 @@ static inline void finish_triangle(__global const Instance* restrict instances,
   hit->ng_z = ng.z;
 }
 
-// Whether a triangle at the same t as *hit goes before it.
+// Whether a triangle at the same t as *hit takes precedence.
 static inline bool wins_tie(__global const TriangleBlock* restrict blocks, u32 instance, u32 place,
                             const Hit* hit) {
   if (instance != hit->instance) return instance < hit->instance;  // NO_INSTANCE is the greatest
   return blocks[place >> 3].prim[place & 7u] < blocks[hit->prim >> 3].prim[hit->prim & 7u];
 }
 
-// Takes the triangle at `place` as the hit when it is nearer than *hit, or as near and earlier in the tables.
+// Accepts the triangle at `place` if it is nearer than *hit, or as near and earlier in the tables.
 ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 place, float t, float u, float v,
                                   u32 instance, Hit* hit) {
   if (t > hit->t || (t == hit->t && !wins_tie(blocks, instance, place, hit))) return;
@@ -78,14 +78,13 @@ ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 plac
   hit->instance = instance;
 }
 
-// Nothing is divided before a hit: t is `scaled_t` over the determinant, and whether it lies in (t_min,
-// t_max], where 0 <= t_min, is asked by products. Their bounds are wider by this share, more than the
-// rounding of a division in OpenCL (2.5 ulp) and what goes with it; who is let through is divided and asked
-// exactly.
+// No division before a hit: t is `scaled_t` over the determinant, and products test whether it lies in
+// (t_min, t_max], where 0 <= t_min. Their bounds are wider by this fraction, which exceeds the rounding of
+// division in OpenCL (2.5 ulp) and of the products; candidates are then divided and tested exactly.
 #define RANGE_SLACK 2e-6f
 
-// a x b, 0 only where a and b are in line: with the error of one product added (Kahan), or where there is no
-// instruction for that, with those of both products where these are equal (Dekker 1971).
+// a x b, 0 only if a and b are parallel: adds the rounding error of one product (Kahan) or, without fma,
+// those of both products if they are equal (Dekker 1971).
 #if HAS_FMA
 #define EDGE_FUNCTION(name, real)                               \
   static inline real name(real ax, real ay, real bx, real by) { \
@@ -109,7 +108,7 @@ ALWAYS_INLINE void offer_triangle(__global const TriangleBlock* blocks, u32 plac
 #if WIDE_VECTORS
 EDGE_FUNCTION(edge_function8, float8)
 
-// What the eight lanes have in common with the hit test; t, u, v are set where `lanes` is not 0.
+// The result for eight lanes; t, u, v are set if `lanes` is not 0.
 typedef struct BlockTest {
   float8 t, u, v;
   u32 lanes;
@@ -133,7 +132,7 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
   const float8 scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
   const float8 signed_t = as_float8(as_int8(scaled_t) ^ (as_int8(det) ^ as_int8(size)));
   BlockTest test;
-  // The only branch, so of a ray alone the way is foretold once a block.
+  // The only branch; for a single ray it is predicted once per block.
   test.lanes = lane_mask(inside & (signed_t > (t_min * (1.0f - RANGE_SLACK)) * size) &
                          (signed_t <= (t_max * (1.0f + RANGE_SLACK)) * size));
   if (!test.lanes) return test;
@@ -145,8 +144,8 @@ ALWAYS_INLINE BlockTest test_block(__global const TriangleBlock* block, const Sh
   return test;
 }
 
-// Takes the nearest of the lanes hit, of which there are some, when it goes before *hit, whose prim becomes
-// the triangle's place (see finish_triangle).
+// Takes the nearest of the lanes hit (at least one) if it comes before *hit, whose prim becomes the
+// triangle's place (see finish_triangle).
 ALWAYS_INLINE void nearest_of_block(__global const TriangleBlock* blocks, u32 index, const BlockTest* test,
                                     u32 instance, Hit* hit) {
   float t[8], u[8], v[8];
@@ -168,7 +167,7 @@ ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 in
 #else
 EDGE_FUNCTION(edge_function, float)
 
-// The triangle of a block whose first corner's x is at `corner`, in (t_min, t_max].
+// Tests the triangle of a block whose first corner's x is at `corner`, in (t_min, t_max].
 ALWAYS_INLINE bool hits_triangle(__global const float* corner, const ShearRay* ray, float t_min, float t_max,
                                  float* t, float* u, float* v) {
   __global const float *vx = corner + ray->x, *vy = corner + ray->y, *vz = corner + ray->z;

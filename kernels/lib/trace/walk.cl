@@ -1,8 +1,7 @@
-// Rays by themselves through the two-level BVH. Where an incoherent ray goes next cannot be foretold, so the
-// walks of a batch are listed by what comes next, a node or a leaf, and taken a list at a time: eight boxes
-// or eight triangles an instruction, hardly a branch that depends on a ray, and while one walk waits for
-// memory or for its own arithmetic, the next ones advance. In: rays and where they begin. Out: their hits,
-// which do not depend on the rays that go along.
+// Traces incoherent rays through the two-level BVH. The next step of a ray is unpredictable, so the walks of
+// a batch are listed by kind of step, node or leaf, and processed a list at a time: eight boxes or triangles
+// per instruction, few branches that depend on a ray, and while one walk waits for memory or arithmetic, the
+// others advance. In: rays and their start nodes. Out: their hits, independent of the other rays.
 #ifndef SUNDOG_LIB_WALK_CL
 #define SUNDOG_LIB_WALK_CL
 #include "lib/core/config.h"
@@ -16,31 +15,31 @@
 #include "lib/trace/triangles.cl"
 #include "lib/trace/walk_solids.cl"
 
-// Words on a walk's stack that are no child: below all others, and below those of a mesh.
+// Words on a walk's stack that are not children: at the bottom, and below those of a mesh.
 #define WALK_END 0xFFFFFFFFu
 #define WALK_BACK 0xFFFFFFFEu
 
-// Room for the nodes that wait, for those two words, for what else waits of a leaf, and for the places behind
-// them that whole vectors read and overwrite.
+// Room for waiting nodes, those two words, the rest of a leaf, and places that whole vectors read and
+// overwrite.
 #define WALK_STACK (BVH_STACK + 3 + (LANES > 8 ? LANES : 8))
 
 typedef struct Walk {
   const PreparedRays* rays;  // in the space of the BVH
   u32 ray;
-  u32 instance;   // in whose mesh the walk is; NO_INSTANCE: in the scene BVH
-  u32 top, base;  // below base waits the scene BVH while the walk is in a mesh
+  u32 instance;   // whose mesh is walked; NO_INSTANCE: the scene BVH
+  u32 top, base;  // below base, the scene BVH waits while the walk is in a mesh
   u32 stack[WALK_STACK];
-  float stack_t[WALK_STACK];  // where the ray enters what waits, never behind its hit; not written for `any`
+  float stack_t[WALK_STACK];  // entry distances of waiting nodes, never beyond the hit; unset for `any`
 } Walk;
 
-// Lanes of rays; hits->t is where they end.
+// Rays by lane; hits->t is their end.
 typedef struct WalkRays {
   const REAL3 *o, *d;
   const REAL* t_min;
   Hits* hits;
-  HitList* lists;          // a list a ray, of the hits that do not end it; 0: the nearest hit is wanted
-  const MASK* priorities;  // of the media that the rays are in, those of lower ones are listed; 0: all that
-                           // may let light through
+  HitList* lists;          // one list per ray of the hits that do not end it; 0: find the nearest hit
+  const MASK* priorities;  // of the rays' media: hits of lower priority are listed; 0: all hits that may
+                           // transmit light
 } WalkRays;
 
 static inline void push_word(Walk* walk, u32 word) {
@@ -57,7 +56,7 @@ static inline void start_walk(Walk* walk, const PreparedRays* rays, u32 ray, u32
   push_word(walk, word);
 }
 
-// Takes what lies behind t off the stack, from place `from` on.
+// Removes nodes behind t from the stack, from place `from` on.
 ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
   u32 to = from;
   for (u32 i = from; i < walk->top; i += LANES) {
@@ -71,7 +70,7 @@ ALWAYS_INLINE void drop_behind(Walk* walk, u32 from, float t) {
   walk->top = to;
 }
 
-// Into the mesh `index`. Returns whether the ray is to be aimed anew in its space.
+// Enters the mesh `index`. Returns whether the ray must be prepared again in its space.
 static inline bool enter_mesh(__global const Instance* restrict instances, Walk* walk, u32 index) {
   __global const Instance* instance = instances + index;
   walk->instance = index;
@@ -81,7 +80,7 @@ static inline bool enter_mesh(__global const Instance* restrict instances, Walk*
   return !(instance->flags & INSTANCE_IDENTITY);
 }
 
-// Aims the rays of `entering` in the spaces of the meshes that they have entered, those of one mesh at once.
+// Prepares the rays of `entering` in the spaces of the meshes they have entered, together for each mesh.
 NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const WalkRays* rays,
                                 PreparedRays* turned, Walk* walks, u32 entering) {
   while (entering) {
@@ -99,7 +98,7 @@ NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, con
   }
 }
 
-// From a mesh back to the scene BVH.
+// Returns from a mesh to the scene BVH.
 static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
   walk->rays = world;
   walk->instance = NO_INSTANCE;
@@ -107,7 +106,7 @@ static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
 }
 
 #if LISTS_HITS
-// The hits of a block: those on what the ray does not see are listed, of the others the nearest ends it.
+// Processes a block's hits: lists unseen ones; the nearest of the others ends the ray.
 static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
                                   const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;
@@ -131,7 +130,7 @@ static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk
   drop_behind(walk, walk->base, hit.t);
 }
 
-// Adds the hits of a block to the list of a walk, or ends the walk where no light passes.
+// Lists a block's hits, or ends the walk at an opaque one.
 NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
                             const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;
@@ -144,7 +143,7 @@ NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk
     const u32 lane = lowest_bit(lanes);
     const u32 own = instance_of_triangle(scene->instances, first, scene->blocks[index].prim[lane]);
     if (scene->instances[own].flags & INSTANCE_FILTERS) continue;
-    // No light comes this way.
+    // No light passes.
     MASK_LANE(rays->hits->instance, ray) = (int)first;
     MASK_LANE(rays->hits->prim, ray) = (int)(index * 8u + lane);
     clear_list(list);
@@ -162,7 +161,7 @@ static inline void list_hits(const Scene* scene, const WalkRays* rays, Walk* wal
                              const BlockTest* test) {}
 #endif
 
-// The first block of a leaf; the others wait.
+// Processes the first block of a leaf; the others wait.
 ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* walk, u32 word) {
   __global const TriangleBlock* blocks = scene->blocks;
   const REAL* t_min = rays->t_min;
@@ -183,11 +182,11 @@ ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* wa
   drop_behind(walk, walk->base, hit.t);
 }
 
-// The work that a leaf leaves to a walk, done for all walks of the round at once.
-#define LEAF_TURN 1u   // it has entered a mesh: its ray is aimed in the mesh's space
-#define LEAF_SOLID 2u  // it has come to a solid
+// Work that a leaf leaves for all walks of the round at once.
+#define LEAF_TURN 1u   // it has entered a mesh: prepare its ray in the mesh's space
+#define LEAF_SOLID 2u  // it has reached a solid
 
-// The next word of a walk, a leaf.
+// Processes a walk's next word, a leaf.
 ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const PreparedRays* world, Walk* walk,
                             u32 word, bool any) {
   if (HAS_MESH && word == WALK_BACK) {
@@ -199,7 +198,7 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
     walk_block(scene, rays, walk, word);
     return 0u;
   }
-  // The first of the leaf's scene->instances; the others wait.
+  // The first of the leaf's instances; the others wait.
   const u32 index = word & BVH_FIRST_MASK;
   if (word >> BVH_LEAF_SHIFT & BVH_LEAF_COUNT_MASK) push_word(walk, word - (1u << BVH_LEAF_SHIFT) + 1u);
   if (!HAS_MESH || scene->instances[index].shape != SHAPE_MESH) return LEAF_SOLID;
@@ -207,7 +206,7 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
 }
 
 #if LISTS_HITS
-// The walks of `bits` that have come to something that lets no light through, and end there.
+// Ends the walks of `bits` that have hit something opaque, and returns them.
 static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
   const u32 ended = lane_bits(opaque_hits(instances, rays->hits, lanes_of(bits)));
   for (u32 left = ended; left; left &= left - 1u) clear_list(rays->lists + lowest_bit(left));
@@ -219,7 +218,7 @@ static inline u32 end_at_opaque(__global const Instance* restrict instances, con
 }
 #endif
 
-// The walks of `bits`, which is not 0, at solids[ray]. Returns those that continue.
+// Tests the walks of `bits`, which is not 0, against solids[ray]. Returns those that continue.
 NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
                              const WalkRays* rays, Walk* walks, bool any) {
   const REAL before = rays->hits->t;
@@ -233,7 +232,7 @@ NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const 
   return bits;
 }
 
-// The next word of a walk, a node.
+// Processes a walk's next word, a node.
 ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const Hits* hits, Walk* walk,
                              u32 word, bool any) {
   const u32 ray = walk->ray, top = walk->top - 1u;
@@ -246,8 +245,8 @@ ALWAYS_INLINE void walk_node(__global const u32* nodes, const REAL* t_min, const
                          : push_crossed(node, &slabs, from, to, stack, stack_t));
 }
 
-// Puts a walk on the list where its next word belongs; an ended one joins none. No branch, and the
-// counts stay in registers: a list that is found by its index would be written and read too close together.
+// Appends a walk to the list of its next word; an ended one joins none. Branchless, with the counts in
+// registers: a list selected by index would be written and read too close together.
 ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* node_count, Walk** at_leaf,
                              u32* leaf_count) {
   const u32 word = walk->stack[walk->top - 1u], leaf = word >> 31;
@@ -259,11 +258,11 @@ ALWAYS_INLINE void list_walk(Walk* walk, Walk** at_node, u32* node_words, u32* n
 }
 #define LIST_WALK(walk) list_walk(walk, at_node, node_words, &node_count, at_leaf, &leaf_count)
 
-// A root of so few children is tried for all rays of a batch at once, which most need no walk then: a lamp,
-// or a mesh that is far from where the rays go.
+// A root with this few children is tested for all rays of a batch at once, so that most need no walk: a lamp,
+// or a mesh far from the rays.
 #define FEW_CHILDREN 2
 
-// The lanes whose rays cross a child's box, as slab_distances() finds it.
+// The lanes whose rays cross a child's box, by the test of slab_distances().
 static inline MASK crossing_child(__global const BvhNode* node, u32 slot, const PreparedRays* rays,
                                   const REAL* t_min, const REAL* t_max) {
   const MASK back_x = MASK_OF(rays->near_x != 0), back_y = MASK_OF(rays->near_y != 8),
@@ -281,7 +280,7 @@ static inline MASK crossing_child(__global const BvhNode* node, u32 slot, const 
                  min(min(out_x, out_y), min(out_z, AS_MASK(*t_max))));
 }
 
-// The lanes of `bits` that cross a child of the node `word`, where it has few; else all of them.
+// The lanes of `bits` that cross a child of the node `word`, if it has few; else all.
 static inline u32 crossing_few(const Scene* scene, u32 word, const WalkRays* walkers,
                                const PreparedRays* rays, u32 bits) {
   if (word & BVH_LEAF) return bits;
@@ -294,8 +293,8 @@ static inline u32 crossing_few(const Scene* scene, u32 word, const WalkRays* wal
   return bits & lane_bits(crossing);
 }
 
-// The nearest hits, or with `any` whichever come first, of the lanes of `bits`, which is not 0, from `word`
-// of the scene BVH on; or, rays in object space, of the mesh BVH of `instance`.
+// Finds the nearest hits, or with `any` the first found, of the lanes of `bits`, which is not 0, from `word`
+// of the scene BVH on or, for rays in object space, of the mesh BVH of `instance`.
 NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, u32 word, u32 instance,
                             bool any) {
   const REAL* t_min = rays->t_min;
@@ -307,18 +306,18 @@ NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, 
   Walk walks[LANES];
   Walk *at_node[LANES + 1], *at_leaf[LANES + 1];
   u32 node_words[LANES + 1], node_count = 0, leaf_count = 0;
-  u32 solids[LANES];  // that the rays have come to
+  u32 solids[LANES];  // reached by the rays
   for (; bits; bits &= bits - 1u) {
     const u32 ray = lowest_bit(bits);
     start_walk(&walks[ray], &world, ray, word, instance);
     LIST_WALK(&walks[ray]);
   }
   while (node_count | leaf_count) {
-    // The longer list, so that there is always much to overlap.
+    // The longer list, so that much work overlaps.
     if (node_count > leaf_count) {
       const u32 count = node_count;
       for (u32 k = 0; k < count; ++k) walk_node(scene->nodes, t_min, hits, at_node[k], node_words[k], any);
-      // Only now, when what was pushed has arrived, is it looked at.
+      // Only now, when the pushed words have arrived in memory.
       node_count = 0;
       for (u32 k = 0; k < count; ++k) LIST_WALK(at_node[k]);
     } else {

@@ -1,12 +1,12 @@
-// Rays that have come to solids in the same round of walk.cl, each to its own, a ray a lane. What they find
-// is what hit_solids would, to the bit.
+// Tests rays that reached solids in the same round of walk.cl, each against its own, one ray per lane. Hits
+// equal those of hit_solids to the bit.
 #ifndef SUNDOG_LIB_WALK_SOLIDS_CL
 #define SUNDOG_LIB_WALK_SOLIDS_CL
 #include "lib/core/config.h"
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
 
-// The rows of an Instance's object_from_world, an instance a lane.
+// The rows of an Instance's object_from_world, one instance per lane.
 typedef struct TransformLanes {
   REAL m[12];
   MASK moves;  // not the identity
@@ -43,8 +43,8 @@ static inline REAL3 vectors_by_lane(const TransformLanes* transform, REAL3 d) {
                  transform->moves);
 }
 
-// The rays of `bits`, which is not 0, against solids[ray]; world-space rays. Those that meet the same shape
-// with the same parameters go together.
+// Tests the rays of `bits`, which is not 0, against solids[ray]; world-space rays. Those with the same shape
+// and parameters are tested together.
 NEVER_INLINE void hit_solids_by_lane(__global const Instance* restrict instances, const u32* solids, u32 bits,
                                      const REAL3* o, const REAL3* d, const REAL* t_min, Hits* hits) {
   TransformLanes transform;

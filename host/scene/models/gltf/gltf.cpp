@@ -1,5 +1,5 @@
-// glTF 2.0 and GLB: one scene's nodes with their meshes, instances, camera and lights.
-// In: JSON and buffers. Out: a Model whose objects share meshes.
+// glTF 2.0 and GLB: reads one scene's nodes with their meshes, instances, camera and lights. In: JSON and
+// buffers. Out: a Model whose objects share meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -146,7 +146,7 @@ class GltfReader {
     }
   }
 
-  // The scene that the file names, else its first; a file without scenes shows all its nodes.
+  // The file's default scene, else its first; a file without scenes shows all nodes.
   std::vector<std::size_t> scene_roots() {
     const std::vector<JsonAt> scenes = root_.list("scenes");
     std::vector<std::vector<std::size_t>> roots;
@@ -169,7 +169,7 @@ class GltfReader {
     return all;
   }
 
-  // Each node has one parent at most and the roots have none, so no node comes twice.
+  // Nodes have at most one parent and roots have none, so no node is visited twice.
   void walk(const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node;
@@ -198,13 +198,13 @@ class GltfReader {
     for (const dmat4& instance : node.instances) add_object(node, mesh, world * instance);
   }
 
-  // Joints place a mesh with a skin; its node's own transform is ignored.
+  // A mesh with a skin is placed by the joints; its node's transform is ignored.
   void add_skinned(const Node& node) {
     const int mesh = meshes_.use_skinned(*node.mesh, *node.skin, joints_of(*node.skin), model_);
     if (mesh >= 0) add_object(node, mesh, dmat4(1));
   }
 
-  // From the bind pose to the world, where the file's nodes stand.
+  // Matrices from the bind pose to the world, for the file's node transforms.
   std::vector<dmat4> joints_of(std::size_t skin) {
     if (worlds_.empty()) place_all_nodes();
     const JsonAt& at = skins_[skin];
@@ -239,7 +239,7 @@ class GltfReader {
     }
   }
 
-  // A scale of 0 is how some files hide a node.
+  // Some files hide a node by a scale of 0.
   void add_object(const Node& node, int mesh, const dmat4& world) {
     if (is_singular(world)) {
       model_.warnings.push_back(
@@ -286,7 +286,7 @@ class GltfReader {
   std::vector<LightDescription> lights_;
   std::vector<Node> nodes_;
   std::vector<JsonAt> skins_;
-  std::vector<dmat4> worlds_;  // by node, where a skin asks for them
+  std::vector<dmat4> worlds_;  // by node; filled when a skin needs them
   Model model_;
 };
 

@@ -1,4 +1,4 @@
-// glTF's binary data (glTF 2.0, section 3.6): every count, offset and stride is held against what is there.
+// glTF's binary data (glTF 2.0, section 3.6): validates every count, offset and stride.
 #include "scene/models/gltf/gltf_accessors.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace sundog::models {
 namespace {
 
-constexpr std::uint64_t element_array_buffer = 34963;  // a view's target: indices
+constexpr std::uint64_t element_array_buffer = 34963;  // target of a view: indices
 constexpr std::uint64_t most = std::uint64_t{1} << 53;
 
 std::size_t size_of_component(std::uint64_t component) {
@@ -39,7 +39,7 @@ std::size_t components_of(const std::string& type) {
   return type == "MAT4" ? 16 : 0;
 }
 
-// A matrix' columns begin at multiples of four bytes.
+// Columns of a matrix are aligned to four bytes.
 std::size_t element_size(const std::string& type, std::size_t component_size) {
   if (type.starts_with("MAT")) {
     const auto columns = static_cast<std::size_t>(type.size() == 4 ? type[3] - '0' : 0);
@@ -48,7 +48,7 @@ std::size_t element_size(const std::string& type, std::size_t component_size) {
   return components_of(type) * component_size;
 }
 
-// The bytes after a matrix' last column.
+// The bytes after a matrix's last column.
 std::size_t padding(const std::string& type, std::size_t component_size) {
   if (!type.starts_with("MAT") || component_size == 0 || type.size() != 4) return 0;
   const std::size_t column = static_cast<std::size_t>(type[3] - '0') * component_size;
@@ -57,7 +57,7 @@ std::size_t padding(const std::string& type, std::size_t component_size) {
 
 double component_at(const char* bytes, std::uint64_t component) {
   const auto take = [bytes](auto value) {
-    std::memcpy(&value, bytes, sizeof value);  // little-endian, as every machine that OpenCL runs on
+    std::memcpy(&value, bytes, sizeof value);  // little-endian, as on every OpenCL host
     return static_cast<double>(value);
   };
   switch (component) {
@@ -96,7 +96,7 @@ double normalization(std::uint64_t component) {
 GltfAccessors::GltfAccessors(const Source& source, const GltfContainer& container, const JsonAt& root)
     : source_(source), total_bytes_(source.bytes.size()) {
   const std::vector<JsonAt> buffers = root.list("buffers");
-  storage_.reserve(buffers.size());  // views into its strings must stay
+  storage_.reserve(buffers.size());  // views into its strings must stay valid
   for (std::size_t i = 0; i < buffers.size(); ++i) read_buffer(source, container, buffers[i], i);
   for (const JsonAt& view : root.list("bufferViews")) read_view(view);
   for (const JsonAt& accessor : root.list("accessors")) read_accessor(accessor);
@@ -152,7 +152,7 @@ void GltfAccessors::read_accessor(const JsonAt& at) {
   accessor.dense.component = at.member("componentType").integer(0, most);
   accessor.dense.count = at.member("count").integer(1, most);
   const std::size_t size = size_of_component(accessor.dense.component);
-  // A type that this reader does not know makes the accessor unusable, not the file.
+  // An unknown type makes the accessor unusable, not the file.
   accessor.dense.components = size == 0 ? 0 : components_of(accessor.type);
   accessor.dense.element_size = element_size(accessor.type, size);
   accessor.dense.padding = padding(accessor.type, size);
@@ -210,7 +210,7 @@ Elements GltfAccessors::part_of_sparse(const JsonAt& at, std::uint64_t component
   return part;
 }
 
-// The view holds all elements, each component where its type may stand.
+// Checks that the view holds all elements, with aligned components.
 void GltfAccessors::check_room(const JsonAt& at, const Elements& elements) const {
   const BufferView& view = views_[elements.view];
   const std::size_t size = elements.element_size, stride = view.stride ? view.stride : size;

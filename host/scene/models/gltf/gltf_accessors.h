@@ -1,5 +1,4 @@
-// glTF's binary data: buffers, buffer views and accessors, checked as a whole before anything is read from
-// them.
+// glTF's binary data: buffers, buffer views and accessors, all validated before anything is read.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -24,25 +23,25 @@ enum ComponentType : std::uint64_t {
   component_float = 5126
 };
 
-/// Where the elements of an accessor, or of the parts of a sparse one, lie.
+/// Location of the elements of an accessor, or of a sparse accessor's parts.
 struct Elements {
   std::size_t view = 0, offset = 0, count = 0;
   std::uint64_t component = component_float;
-  std::size_t components = 0;                 // per element; 0: a type that the format does not know
-  std::size_t element_size = 0, padding = 0;  // bytes at an element's end that the last one may do without
+  std::size_t components = 0;                 // per element; 0: unknown type
+  std::size_t element_size = 0, padding = 0;  // bytes at an element's end that the last one may lack
 };
 
 struct Accessor {
   std::string pointer, type;
   Elements dense;
-  bool has_view = false;  // without one, all zeros
+  bool has_view = false;  // false: all zeros
   bool normalized = false, sparse = false;
   Elements sparse_indices, sparse_values;
 };
 
 class GltfAccessors {
  public:
-  /// Reads and checks the document's buffers, bufferViews and accessors. Throws SceneError.
+  /// Reads and validates the document's buffers, bufferViews and accessors. Throws SceneError.
   GltfAccessors(const Source& source, const GltfContainer& container, const JsonAt& root);
 
   const Source& source() const { return source_; }
@@ -51,18 +50,18 @@ class GltfAccessors {
   const BufferView* view_of(const Accessor& accessor) const {
     return accessor.has_view ? &views_[accessor.dense.view] : nullptr;
   }
-  /// `components` floats an element, integers scaled where normalised; decoded once. What is infinite is NaN.
+  /// `components` floats per element; normalised integers are scaled; decoded once. Infinities become NaN.
   const std::vector<float>& floats(std::size_t index);
-  /// The same of values that must be numbers. Throws SceneError.
+  /// floats() that must not be NaN. Throws SceneError.
   const std::vector<float>& numbers(std::size_t index);
   [[noreturn]] void fail_at(const Accessor& accessor, const std::string& what) const;
-  /// The bytes of a buffer view, which `at` names.
+  /// The bytes of the buffer view with index `at`.
   std::string view_bytes(const JsonAt& at) const;
   /// A SCALAR accessor of an unsigned type.
   const std::vector<std::uint32_t>& indices(std::size_t index);
-  /// Counts `amount` things made from the file (values, triangles, objects). Fails at `pointer` when the sum
-  /// is out of all proportion to the file and its buffers, as when a small file refers to the same data
-  /// without end.
+  /// Counts `amount` items created from the file (values, triangles, objects). Fails at `pointer` if the sum
+  /// is out of proportion to the file and its buffers, as when a small file references the same data over and
+  /// over.
   void spend(std::size_t amount, const std::string& pointer);
 
  private:
@@ -79,12 +78,12 @@ class GltfAccessors {
 
   const Source& source_;
   struct Buffer {
-    std::string_view bytes;  // empty while the buffer is out of reach
+    std::string_view bytes;  // empty if the buffer is unavailable
     std::size_t length = 0;
     bool present = false;
   };
   std::vector<Buffer> buffers_;
-  std::vector<std::string> storage_;  // what `bytes` points into, but for a GLB's own
+  std::vector<std::string> storage_;  // backs `bytes`, except for a GLB's chunk
   std::vector<BufferView> views_;
   std::vector<Accessor> accessors_;
   std::vector<std::string> warnings_;

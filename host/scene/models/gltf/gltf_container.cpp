@@ -1,4 +1,4 @@
-// GLB files (glTF 2.0, section 4) and buffer URIs (RFC 3986, RFC 2397, RFC 4648).
+// Reads GLB files (glTF 2.0, section 4) and buffer URIs (RFC 3986, RFC 2397, RFC 4648).
 #include "scene/models/gltf/gltf_container.h"
 
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ std::string decode_base64(std::string_view text, const JsonAt& uri) {
   return bytes;
 }
 
-// A '%' without two hexadecimal digits behind it is itself: programs write names down as they are.
+// A '%' without two hexadecimal digits stands for itself: programs do not always encode names.
 std::string decode_percent(std::string_view text) {
   const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
   const auto hex = [](char c) { return c <= '9' ? c - '0' : (c | 32) - 'a' + 10; };
@@ -103,13 +103,13 @@ std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer)
   std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool base64 = head.ends_with(";base64");
   if (base64) head.resize(head.size() - 7);
-  // What an image is, its bytes say.
+  // An image's type is recognised by its bytes.
   if (buffer && head != "application/octet-stream" && head != "application/gltf-buffer")
     uri.fail("a data URI of type application/octet-stream or application/gltf-buffer wanted");
   return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1));
 }
 
-// The length of a URI's scheme, 0 without one; fails for a colon that follows no scheme.
+// The length of a URI's scheme, 0 without one; fails for a colon without a scheme.
 std::size_t scheme_length(std::string_view text, const JsonAt& uri) {
   const std::size_t end = text.find_first_of(":/?#");
   if (end == text.npos || text[end] != ':') return 0;
@@ -138,7 +138,7 @@ GltfContainer open_container(const Source& source) {
 
 namespace {
 
-/// Calls step(); whoever uses what is wrong says so.
+/// Calls step() and ignores errors, which are reported when the faulty part is used.
 template <class Step>
 void leniently(const Step& step) {
   try {
@@ -172,7 +172,7 @@ std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& u
     return source.outside_files || !leads_outside(source.path, path);
   };
   fs::path path = folder / fs::path(decode_percent(text));
-  // Some programs do not encode names that hold a '%'.
+  // Some programs do not encode names that contain a '%'.
   std::error_code ignored;
   if (const fs::path plain = folder / fs::path(text);
       !fs::exists(path, ignored) && may_be_read(plain) && fs::exists(plain, ignored))

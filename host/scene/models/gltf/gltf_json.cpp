@@ -9,7 +9,7 @@
 namespace sundog::models {
 namespace {
 
-// A key as a pointer's token (RFC 6901).
+// A key as a reference token (RFC 6901).
 std::string escaped(std::string_view key) {
   std::string token;
   for (const char c : key) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
@@ -75,7 +75,7 @@ double JsonAt::number(const char* key, double otherwise, Range range) const {
   return found ? found->number(range) : otherwise;
 }
 
-// 1.0 is as good as 1.
+// Accepts 1.0 as 1.
 std::uint64_t JsonAt::integer(std::uint64_t least, std::uint64_t most) const {
   const double value = number();
   if (value != std::trunc(value) || value < static_cast<double>(least) || value > static_cast<double>(most))
@@ -84,7 +84,7 @@ std::uint64_t JsonAt::integer(std::uint64_t least, std::uint64_t most) const {
 }
 
 std::uint64_t JsonAt::integer_or(const char* key, std::uint64_t otherwise) const {
-  constexpr std::uint64_t most = std::uint64_t{1} << 53;  // what JSON's numbers hold exactly
+  constexpr std::uint64_t most = std::uint64_t{1} << 53;  // integers that a double holds exactly
   const auto found = find(key);
   return found ? found->integer(0, most) : otherwise;
 }

@@ -1,4 +1,4 @@
-// A JSON value that knows where it stands, for errors that name the JSON pointer.
+// A JSON value that knows its JSON pointer, for error messages.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -12,7 +12,7 @@
 
 namespace sundog::models {
 
-/// What a number must lie in; open bounds exclude the bound itself.
+/// Allowed numbers; open bounds exclude the bound.
 struct Range {
   double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
   bool least_open = false;
@@ -21,8 +21,7 @@ inline constexpr Range unit_range{0, 1, false};
 inline constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range not_negative{0, std::numeric_limits<double>::infinity(), false};
 
-/// Every accessor throws SceneError where the value is not what it asks for. The value and the source must
-/// outlive it.
+/// Accessors throw SceneError if the value has another type. Value and source must outlive it.
 class JsonAt {
  public:
   JsonAt(const Source& source, const nlohmann::json& value, std::string pointer)
@@ -38,7 +37,7 @@ class JsonAt {
   double number(const char* key, double otherwise, Range range) const;
   std::uint64_t integer(std::uint64_t least, std::uint64_t most) const;
   std::uint64_t integer_or(const char* key, std::uint64_t otherwise) const;
-  std::size_t index(std::size_t count, const char* of) const;  // of one of `count` things
+  std::size_t index(std::size_t count, const char* of) const;  // index into `count` things
   bool boolean(const char* key, bool otherwise) const;
   std::string text() const;
   std::string text(const char* key) const;  // absent: ""

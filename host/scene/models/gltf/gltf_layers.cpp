@@ -28,7 +28,7 @@ void add_film(const JsonAt& at, OpenPbr& values) {
       std::min(at.number("iridescenceThicknessMaximum", 400, not_negative) / 1000, 100.0);
 }
 
-/// The roughness and the anisotropy of these widths by OpenPBR.
+/// Converts the widths to OpenPBR's roughness and anisotropy.
 void add_anisotropy(const JsonAt& at, OpenPbr& values) {
   const double strength = at.number("anisotropyStrength", 0, unit_range);
   const double across = values.specular_roughness * values.specular_roughness;
@@ -39,8 +39,8 @@ void add_anisotropy(const JsonAt& at, OpenPbr& values) {
       std::remainder(at.number("anisotropyRotation", 0, {}) * 180 / std::numbers::pi, 360);
 }
 
-/// KHR_materials_specular, which leaves metals alone, as OpenPBR's weight and colour, which do not: where
-/// some of the base is a metal the weight becomes a part of the index.
+/// Converts KHR_materials_specular, which does not affect metals, to OpenPBR's weight and colour, which do:
+/// for partly metallic bases the weight becomes part of the index.
 void add_specular(const JsonAt& at, OpenPbr& values) {
   const glm::dvec3 color = at.vector("specularColorFactor", glm::dvec3(1), not_negative);
   const double most = std::max({color.x, color.y, color.z, 1.0}),
@@ -66,7 +66,7 @@ void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
   values.coat_weight = coat->number("clearcoatFactor", 0, unit_range);
   values.coat_roughness = coat->number("clearcoatRoughnessFactor", 0, unit_range);
   values.coat_ior = 1.5;
-  values.coat_darkening = 0;  // the extension mixes colours of a base that is as it would be without the coat
+  values.coat_darkening = 0;  // the extension's coat does not darken the base
   values.coat_bends = false;
 }
 

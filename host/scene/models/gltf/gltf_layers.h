@@ -1,25 +1,24 @@
-// glTF's materials as OpenPBR's, with their layers (KHR_materials_clearcoat, _sheen, _iridescence,
-// _anisotropy, _specular).
+// Converts glTF materials with layers (KHR_materials_clearcoat, _sheen, _iridescence, _anisotropy, _specular)
+// to OpenPBR.
 #pragma once
 #include "scene/description.h"
 #include "scene/models/gltf/gltf_json.h"
 
 namespace sundog::models {
 
-/// Whether a material has an extension that makes it one of layers with every integrator. Those whose layers
-/// vary by a texture of the coat, or whose roughness does, are not taken so.
+/// Whether a material's extensions require layers with every integrator. Excludes materials with a texture
+/// for the coat or its roughness.
 bool has_layers(const JsonAt& material);
 
-/// The base and specular values, and those of the extensions:
-///   clearcoat    coat of the index 1.5
-///   sheen        fuzz of the weight of the color's greatest part
-///   iridescence  thin film of the greatest thickness
-///   anisotropy   widths mix(roughness^2, 1, strength^2) along the tangent and roughness^2 across, and its
-///   turn
+/// Base and specular values, and the extensions:
+///   clearcoat    coat of index 1.5
+///   sheen        fuzz, weighted by the color's largest component
+///   iridescence  thin film of the maximum thickness
+///   anisotropy   widths mix(roughness^2, 1, strength^2) along and roughness^2 across the rotated tangent
 OpenPbr gltf_openpbr(const JsonAt& material, const MetalRough& base, double ior);
 
-/// Gives these layers to a material whose type, emission, opacity and transmission stay as they are; thin
-/// panes reflect `reflectance` straight on.
+/// Adds these layers to a material, keeping its type, emission, opacity and transmission; thin panes have
+/// normal reflectance `reflectance`.
 void set_gltf_layers(const OpenPbr& values, double reflectance, MaterialDescription& material);
 
 }  // namespace sundog::models

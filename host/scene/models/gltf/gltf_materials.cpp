@@ -1,5 +1,5 @@
 // Metallic-roughness materials and their extensions (glTF 2.0, section 3.9; KHR_materials_ior, _transmission,
-// _volume, _dispersion; those of layers in gltf_layers.h).
+// _volume, _dispersion; layers in gltf_layers.h).
 #include "scene/models/gltf/gltf_materials.h"
 
 #include <algorithm>
@@ -25,10 +25,10 @@ double read_ior(const JsonAt& at) {
   return ior;
 }
 
-// An index of 0 stands for total reflection.
+// An index of 0 means total reflection.
 double reflectance(double ior) { return ior == 0 ? 1 : square((ior - 1) / (ior + 1)); }
 
-/// KHR_materials_specular: what a dielectric reflects straight on, by a factor and a colour.
+/// KHR_materials_specular: a dielectric's normal reflectance, by a factor and a colour.
 dvec3 read_specular(const JsonAt& at, double reflectance) {
   const auto extension = at.extension("KHR_materials_specular");
   if (!extension) return dvec3(reflectance);
@@ -52,14 +52,14 @@ Volume read_volume(const JsonAt& at) {
   return volume;
 }
 
-/// KHR_materials_dispersion: 20 over Abbe's number, which is not below 1 here.
+/// KHR_materials_dispersion: 20 over the Abbe number, which is at least 1 here.
 Dispersion read_dispersion(const JsonAt& at, double ior) {
   const auto extension = at.extension("KHR_materials_dispersion");
   const double dispersion = extension ? extension->number("dispersion", 0, not_negative) : 0;
   return dispersion > 0 ? cauchy_of_abbe(ior, std::max(20 / dispersion, 1.0)) : Dispersion{};
 }
 
-/// What a rough highlight returns does not pass. Glass that is clear stays so.
+/// Subtracts the energy of a rough highlight from the transmission. Clear glass is unchanged.
 void take_highlight_from_transmission(MaterialDescription& material) {
   const dvec3 returned = material.specular * highlight_energy(material.exponent);
   if (!material.layers && std::max({returned.x, returned.y, returned.z}) > 1e-3)
@@ -71,14 +71,14 @@ bool is_partly_there(const JsonAt& at) {
   return mode == "BLEND" || mode == "MASK";
 }
 
-/// KHR_materials_transmission without a volume is a thin wall. Those that are partly there have the fixed
-/// shares of GltfMaterials::transmit() with every integrator.
+/// KHR_materials_transmission without a volume is a thin wall. Partly opaque materials have the fixed shares
+/// of GltfMaterials::transmit() with every integrator.
 bool is_wall(const JsonAt& at, const MaterialDescription& material, double ior) {
   return material.type == MaterialType::phong && material.transmission != dvec3(0) && ior >= 1 &&
          !is_partly_there(at);
 }
 
-/// For integrators that follow paths the Fresnel equations take the place of the share `mirrored`.
+/// In path tracing, the Fresnel equations replace the share `mirrored`.
 void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) {
   values.geometry_thin_walled = true;
   material.type = MaterialType::dielectric;
@@ -96,8 +96,8 @@ GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures)
   settle_sides();
 }
 
-// Files whose materials are all of one side are mostly closed solids, or made without a thought of it: they
-// keep both. Where some say that they have two, the others have one.
+// If all materials of a file are single-sided, it is mostly closed solids or made without regard to sides:
+// they stay double-sided. If some are declared double-sided, the others are single-sided.
 void GltfMaterials::settle_sides() {
   if (std::ranges::none_of(materials_, &Entry::two_sided)) return;
   for (Entry& entry : materials_) {
@@ -149,7 +149,7 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) 
   return entry;
 }
 
-// `base` is the colour of what is no metal: metals let nothing through.
+// `base` is the colour of the non-metal part: metals transmit nothing.
 void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double ior) const {
   const Volume volume = read_volume(at);
   const auto extension = at.extension("KHR_materials_transmission");
@@ -158,7 +158,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   if (passed == dvec3(0)) return;
   MaterialDescription& m = entry.material;
   if (const auto texture = extension->find("transmissionTexture")) {
-    // The diffuse term has the rest, texel by texel: use_transmission().
+    // The diffuse term gets the rest, per texel: use_transmission().
     entry.transmission = textures_.read(*texture);
     entry.transmission->channel = 0;
     entry.transmitted = std::min(factor * (1 - entry.values.metalness), 1.0);
@@ -174,7 +174,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
     entry.medium.name = m.name;
     entry.medium.ior = ior;
     entry.medium.dispersion = read_dispersion(at, ior);
-    // A channel of 0 would absorb without bound.
+    // A component of 0 would absorb infinitely.
     if (std::isfinite(volume.distance))
       entry.medium.absorption = -glm::log(glm::max(volume.color, dvec3(1e-6))) / volume.distance;
   } else {
@@ -208,7 +208,7 @@ void GltfMaterials::read_textures(const JsonAt& at, Entry& entry) const {
                     m.type != MaterialType::dielectric;
 }
 
-/// KHR_materials_unlit: the base colour as it stands, under whatever light.
+/// KHR_materials_unlit: the base colour, whatever the light.
 void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   entry.unlit = at.extension("KHR_materials_unlit").has_value();
   if (!entry.unlit) return;
@@ -223,7 +223,7 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   m.coat = 0;
 }
 
-/// The textures of KHR_materials_specular: alpha of the one, colour of the other. What is no metal has them.
+/// The textures of KHR_materials_specular: alpha of one, colour of the other. Only non-metals use them.
 void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const {
   const auto extension = at.extension("KHR_materials_specular");
   if (!extension || (!entry.by_values && entry.values.metalness > 0)) return;
@@ -235,7 +235,7 @@ void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const 
     entry.specular_color = textures_.read(*color);
 }
 
-/// KHR_materials_clearcoat's texture, whose red is a factor on the coat's weight.
+/// KHR_materials_clearcoat's texture; red multiplies the coat's weight.
 std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt& at) const {
   const auto extension = at.extension("KHR_materials_clearcoat");
   const auto texture = extension ? extension->find("clearcoatTexture") : std::nullopt;
@@ -245,14 +245,14 @@ std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt&
   return read;
 }
 
-/// KHR_materials_sheen's texture of its color.
+/// KHR_materials_sheen's colour texture.
 void GltfMaterials::add_sheen_texture(const JsonAt& at, Entry& entry) const {
   const auto extension = at.extension("KHR_materials_sheen");
   if (const auto texture = extension ? extension->find("sheenColorTexture") : std::nullopt)
     entry.sheen = textures_.read(*texture);
 }
 
-/// KHR_materials_clearcoat as a mirror of 4 % above the rest, as far as it is smooth.
+/// KHR_materials_clearcoat as a 4 % mirror on top, weighted by its smoothness.
 void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   MaterialDescription& material = entry.material;
   const auto extension = at.extension("KHR_materials_clearcoat");
@@ -270,8 +270,8 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   material.reflection += coat;
 }
 
-/// The same values as OpenPBR's: with every integrator of materials that have layers, with those that follow
-/// paths of the others.
+/// The same values as OpenPBR layers: used by every integrator for materials with layers, else by path
+/// tracing only.
 void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const {
   const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
   const bool always = has_layers(at);
@@ -288,7 +288,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
     return;
   }
   MaterialDescription other;
-  // Where a texture says that all of the surface may be a metal, it also says where it is none.
+  // A texture that makes a full metal also tells where it is none.
   Entry passing = entry;
   if (metal_map && entry.values.metalness == 1 && !is_partly_there(at)) {
     transmit(at, passing, entry.values.base, ior);
@@ -300,7 +300,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
   other.type = m.type, other.emission = m.emission, other.transmission = m.transmission;
   other.normal_scale = m.normal_scale, other.occlusion = m.occlusion;
   if (m.transmission == dvec3(0)) values.transmission_weight = 0;
-  // Kernels take the metal's share, and what a texture keeps, from what may pass. use_by_paths() has them.
+  // Kernels subtract the metal's share, and the texture's, from the transmission. Set in use_by_paths().
   if (metal_map && entry.values.metalness < 1) other.transmission /= 1 - entry.values.metalness;
   if (metal_map) other.textures.metalness = 0;
   if (passing.transmission) other.textures.glass = 0;
@@ -314,7 +314,7 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
   const std::string mode = at.text("alphaMode");
   const double cutoff = at.number("alphaCutoff", 0.5, not_negative);
   MaterialDescription& m = entry.material;
-  // A dielectric's own transmission says more.
+  // A dielectric's own transmission takes precedence.
   if ((mode != "BLEND" && mode != "MASK") || m.type == MaterialType::dielectric ||
       (mode == "MASK" && cutoff == 0)) {
     entry.fades = false;
@@ -328,7 +328,7 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
     if (entry.opacity) entry.opacity->channel = 3;
     return;
   }
-  // The same everywhere: a thin pane.
+  // Uniform: a thin pane.
   const double opacity = mode == "BLEND" ? alpha : alpha >= cutoff ? 1 : 0;
   if (entry.by_paths) entry.by_paths->opacity = opacity;
   if (m.layers) {

@@ -1,4 +1,4 @@
-// glTF's materials as sundog's.
+// Converts glTF's materials.
 #pragma once
 #include <map>
 #include <memory>
@@ -12,26 +12,24 @@
 
 namespace sundog::models {
 
-/// What a primitive's COLOR_0 says.
+/// The content of a primitive's COLOR_0.
 enum class VertexColors { none, opaque, with_alpha };
 
-/// Checks all materials of a document, and adds to a model those that its triangles use.
+/// Validates all materials of a document, and adds those that triangles use to a model.
 ///
 /// base, metallic, roughness: by shared/metal_rough.h, with a reflectance of 0.04 or from KHR_materials_ior
-/// and _specular; KHR_materials_clearcoat adds a mirror, _unlit makes all of it emission.
-/// KHR_materials_transmission lets that
-/// share of base through: with a volume (thickness above 0) as a dielectric with a medium, absorbing
-/// -ln(attenuationColor) / attenuationDistance; without one as a thin pane, straight through, and for
-/// integrators that follow paths as a thin wall, frosted where it is rough. alphaMode BLEND and MASK become
-/// the opacity. The base colour's texture is a factor on all terms that have its colour, and so are the
-/// colours of vertices, whose alpha is one on the opacity. For integrators that follow paths most are
-/// OpenPBR's layers in place of these terms (gltf_layers.h).
+/// and _specular. KHR_materials_clearcoat adds a mirror, _unlit turns everything into emission.
+/// KHR_materials_transmission transmits that share of the base: with a volume (thickness above 0), through a
+/// dielectric with a medium that absorbs -ln(attenuationColor) / attenuationDistance; without one, through a
+/// thin pane, unrefracted, which path tracing replaces by a thin wall, frosted if rough. alphaMode BLEND and
+/// MASK set the opacity. The base colour texture multiplies all terms of that colour, as do vertex colours,
+/// whose alpha multiplies the opacity. Path tracing uses OpenPBR layers for most materials (gltf_layers.h).
 class GltfMaterials {
  public:
   GltfMaterials(const JsonAt& root, GltfTextures& textures);
 
   std::size_t count() const { return materials_.size(); }
-  /// The index in `model` of material `index` (or of the default one, for `count()`) on primitives of such
+  /// The index in `model` of material `index` (`count()`: the default one) on primitives with such vertex
   /// colours.
   int use(std::size_t index, VertexColors colors, Model& model);
 
@@ -43,13 +41,13 @@ class GltfMaterials {
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
     std::optional<TextureDescription> transmission, specular, specular_color, coat, sheen;
-    std::optional<TextureDescription> coat_weight, glass;  // of by_paths, which may have a medium by itself
+    std::optional<TextureDescription> coat_weight, glass;  // for by_paths, which may have its own medium
     bool paths_have_medium = false;
     MetalRough values;
-    double transmitted = 0;  // of what is no metal, the share that a transmission texture is a factor on
+    double transmitted = 0;  // of the non-metal; multiplied by the transmission texture
     bool two_sided = false, unlit = false,
-         by_values = false;  // by_values: textures change metalness or roughness
-    bool fades = false;      // the alpha of vertices is a factor on the opacity
+         by_values = false;  // textures change metalness or roughness
+    bool fades = false;      // vertex alpha multiplies the opacity
   };
   Entry read(const JsonAt& at, VertexColors colors) const;
   Entry of_colors(std::size_t index, VertexColors colors) const;
@@ -71,7 +69,7 @@ class GltfMaterials {
 
   GltfTextures& textures_;
   std::vector<JsonAt> document_;
-  std::vector<Entry> materials_;  // and the default one at the end
+  std::vector<Entry> materials_;  // the default one is last
   std::map<std::pair<std::size_t, VertexColors>, int> used_;
 };
 

@@ -1,5 +1,4 @@
-// A document's materials as a model's: with textures, media, and what they are for integrators that follow
-// paths.
+// Adds a document's materials to a model: textures, media, and variants for path tracing.
 #include <utility>
 
 #include "scene/models/gltf/gltf_materials.h"
@@ -7,7 +6,7 @@
 namespace sundog::models {
 namespace {
 
-/// Adds the colour of vertices to a model, or one channel of it.
+/// Adds the vertex colour, or one channel of it, to a model as a texture.
 int add_vertex_color(int channel, Model& model) {
   TextureDescription texture;
   texture.kind = TEXTURE_VERTEX_COLOR;
@@ -42,7 +41,7 @@ void GltfMaterials::use_textures(const Entry& entry, MaterialDescription& materi
   if (entry.occlusion) to.occlusion = textures_.use(*entry.occlusion, false, model);
 }
 
-/// On the terms that MaterialDescription::vertex_color leaves alone.
+/// Tints the terms that MaterialDescription::vertex_color does not cover.
 void GltfMaterials::use_vertex_colors(const Entry& entry, MaterialDescription& material, Model& model) {
   const auto tint = [&](int& slot) {
     slot = GltfTextures::product(slot, add_vertex_color(-1, model), model);
@@ -55,7 +54,7 @@ void GltfMaterials::use_vertex_colors(const Entry& entry, MaterialDescription& m
   if (entry.values.metalness == 1) tint(to.specular);
 }
 
-/// With a texture t of the share f that passes: the transmission times t, the diffuse term times 1 - f t.
+/// With a texture t of the transmitted share f: transmission times t, diffuse times 1 - f t.
 void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& material, Model& model) {
   MaterialTextures& to = material.textures;
   const int passing = textures_.use(*entry.transmission, false, model);
@@ -69,7 +68,7 @@ void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& ma
   to.ambient = to.diffuse = GltfTextures::product(remaining, to.diffuse, model);
 }
 
-/// The material for integrators that follow paths: its layers, and what both have.
+/// The material for path tracing: its layers, and the shared properties.
 void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& material, Model& model) {
   if (!entry.by_paths) return;
   auto other = std::make_shared<MaterialDescription>(*entry.by_paths);
@@ -85,7 +84,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   to = {};
   to.emission = material.textures.emission, to.opacity = material.textures.opacity;
   to.normal = material.textures.normal, to.occlusion = material.textures.occlusion;
-  const bool shared = !entry.transmission;  // else it has what passes taken from it
+  const bool shared = !entry.transmission;  // otherwise the transmitted part is subtracted
   if (shared) to.diffuse = material.textures.diffuse;
   if (!shared && entry.base) to.diffuse = textures_.use(*entry.base, true, model);
   if (const auto& glass = shared ? entry.glass : entry.transmission)
@@ -113,7 +112,7 @@ void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& materi
   if (both >= 0) material.textures.specular = both;
 }
 
-/// The alpha of vertices takes the place of terms that blend() has made of one number.
+/// Vertex alpha replaces the terms that blend() derived from a uniform alpha.
 GltfMaterials::Entry GltfMaterials::of_colors(std::size_t index, VertexColors colors) const {
   Entry entry = materials_.at(index);
   if (colors != VertexColors::with_alpha || index >= document_.size()) return entry;

@@ -1,5 +1,4 @@
-// glTF's primitives (glTF 2.0, section 3.7.2): triangles, strips and fans; points and lines have nothing to
-// trace.
+// glTF's primitives (glTF 2.0, section 3.7.2): triangles, strips and fans. Points and lines are skipped.
 #include "scene/models/gltf/gltf_meshes.h"
 
 #include <fmt/format.h>
@@ -18,7 +17,7 @@
 namespace sundog::models {
 namespace {
 
-// Which accessors an attribute may have: its types, and whether integers may stand for numbers.
+// Accessors allowed for an attribute: types, and whether normalised integers are allowed.
 struct AttributeRule {
   std::string_view name, type, other_type;
   bool normalized_integers;
@@ -28,7 +27,7 @@ constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},  {"NORMA
                                    {"TEXCOORD_1", "VEC2", "VEC2", true}, {"TEXCOORD_2", "VEC2", "VEC2", true},
                                    {"TEXCOORD_3", "VEC2", "VEC2", true}, {"COLOR_0", "VEC3", "VEC4", true}};
 
-// What KHR_mesh_quantization adds: integers of 8 and 16 bits, for normals signed and normalised ones.
+// KHR_mesh_quantization also allows 8- and 16-bit integers; for normals, signed normalised ones.
 bool fits_quantized(std::string_view name, const Accessor& accessor) {
   const std::uint64_t component = accessor.dense.component;
   const bool is_signed = component == component_byte || component == component_short;
@@ -109,7 +108,7 @@ std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, 
   return index;
 }
 
-/// Four numbers for each of `count` vertices; what is anything else moves nothing.
+/// Four numbers for each of `count` vertices; other data has no effect.
 std::optional<std::size_t> GltfMeshes::read_four(const JsonAt& attributes, const char* name,
                                                  std::size_t count) const {
   const auto found = attributes.find(name);
@@ -246,7 +245,7 @@ Vector GltfMeshes::number_or(const std::vector<float>& values, std::size_t strid
   return otherwise;
 }
 
-// Tangents without normals are to be made anew (glTF 2.0, section 3.7.2.1), as where there are none.
+// Tangents without normals must be recomputed (glTF 2.0, section 3.7.2.1), as missing ones are.
 void GltfMeshes::append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used,
                                  Mesh& mesh) {
   if (!primitive.normal || !primitive.tangent) {
@@ -257,7 +256,7 @@ void GltfMeshes::append_tangents(const Primitive& primitive, const std::vector<s
   for (const std::uint32_t v : used) mesh.tangents.push_back(number_or(tangents, 4, v, glm::vec4(0)));
 }
 
-// The file's v goes down.
+// The file's v points down.
 void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh) {
   for (std::size_t set = 0; set < most_uv_sets; ++set) {
     MeshArray<glm::vec2>& to = set == 0 ? mesh.uvs : mesh.further_uvs[set - 1];
@@ -273,7 +272,7 @@ void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::u
   }
 }
 
-// Of the attributes' elements only those that the triangles use are copied: primitives often share them.
+// Copies only the attribute elements that the triangles use: primitives often share accessors.
 void GltfMeshes::append(const Primitive& primitive, const std::vector<dmat4>& joints, Model& model,
                         Mesh& mesh, std::vector<bool>& has_normal) {
   const std::vector<float>& positions = accessors_.floats(*primitive.position);

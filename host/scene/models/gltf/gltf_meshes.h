@@ -1,4 +1,4 @@
-// glTF's meshes as sundog's: all primitives of one together.
+// Converts glTF's meshes; the primitives of each are merged.
 #pragma once
 #include <map>
 #include <optional>
@@ -14,16 +14,16 @@ namespace sundog::models {
 
 class GltfMeshes {
  public:
-  /// Checks all meshes of the document; decodes none.
+  /// Validates all meshes of the document; decodes none.
   GltfMeshes(const JsonAt& root, GltfAccessors& accessors, GltfMaterials& materials, double crease_degrees);
 
   std::size_t count() const { return meshes_.size(); }
   const std::string& name(std::size_t mesh) const { return meshes_[mesh].name; }
-  /// The index in `model` of a mesh, added at its first use; -1 for one without triangles (points, lines).
+  /// The index in `model` of a mesh, added at its first use; -1 if it has no triangles (points, lines).
   int use(std::size_t index, Model& model);
-  /// Whether its vertices have joints, which move it in place of its node.
+  /// Whether its vertices have joints, which then replace its node's transform.
   bool has_joints(std::size_t index) const;
-  /// The same of a mesh that a skin, of this number, moves: in the world, where its joints' matrices have it.
+  /// use() for the mesh as `skin` deforms it, in world space; `joints` are world matrices.
   int use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints, Model& model);
 
  private:
@@ -46,7 +46,7 @@ class GltfMeshes {
   int add(std::size_t index, const std::vector<dmat4>& joints, Model& model);
   Mesh build(const Entry& entry, const std::vector<dmat4>& joints, Model& model);
   std::vector<std::uint32_t> vertex_numbers(const Primitive& primitive);
-  /// An element of an accessor; `otherwise`, and counted, where it is no number.
+  /// An element of an accessor; `otherwise` if it is NaN, which is counted.
   template <class Vector>
   Vector number_or(const std::vector<float>& values, std::size_t stride, std::size_t index,
                    const Vector& otherwise);
@@ -60,8 +60,8 @@ class GltfMeshes {
   double crease_degrees_;
   bool quantized_;  // KHR_mesh_quantization
   std::vector<Entry> meshes_;
-  std::map<std::pair<std::size_t, std::size_t>, int> skinned_;  // by mesh and skin
-  std::size_t of_no_number_ = 0;                                // attributes of the mesh at hand
+  std::map<std::pair<std::size_t, std::size_t>, int> skinned_;  // keyed by mesh and skin
+  std::size_t of_no_number_ = 0;                                // NaN attributes in the current mesh
 };
 
 }  // namespace sundog::models

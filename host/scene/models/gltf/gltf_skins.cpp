@@ -5,7 +5,7 @@
 namespace sundog::models {
 namespace {
 
-/// The joints' mean for a vertex.
+/// The weighted mean of a vertex's joint matrices.
 std::optional<dmat4> blended(const std::vector<dmat4>& matrices, const JointWeights& of, std::size_t vertex) {
   dmat4 sum(0);
   double weights = 0;
@@ -19,8 +19,7 @@ std::optional<dmat4> blended(const std::vector<dmat4>& matrices, const JointWeig
   return weights > 0 ? std::optional(sum / weights) : std::nullopt;
 }
 
-/// The matrix for normals, but for a factor: its columns are those of the inverse's transpose times the
-/// determinant.
+/// The normal matrix up to a factor: the inverse transpose times the determinant.
 glm::dmat3 for_normals(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }

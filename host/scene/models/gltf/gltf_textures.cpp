@@ -34,8 +34,8 @@ TextureDescription read_sampler(const JsonAt& at) {
   return sampled;
 }
 
-/// From the model's coordinates, v up, to the texture's, v up: between them the file's matrix, whose v is
-/// down. It turns an image that is seen with v down clockwise.
+/// From the model's coordinates, v up, to the texture's, v up, through the file's matrix, whose v points
+/// down. Its rotation is clockwise with v down.
 glm::dmat3 read_uv_transform(const JsonAt& at) {
   const auto pair = [&](const char* key, double otherwise) {
     const auto found = at.find(key);
@@ -96,7 +96,7 @@ ImageDescription GltfTextures::load(std::size_t index) const {
   image.file = source.path.string();
   image.place = at.pointer();
   image.name = at.text("name");
-  image.plain = image.of_model = true;  // glTF 2.0, section 3.8.3: colour space information is ignored
+  image.plain = image.of_model = true;  // glTF 2.0, section 3.8.3: ignore colour space information
   const auto uri = at.find("uri"), view = at.find("bufferView");
   if (uri && view) at.fail("an image has either a uri or a bufferView");
   if (view) {
@@ -112,7 +112,7 @@ ImageDescription GltfTextures::load(std::size_t index) const {
   return image;
 }
 
-/// An image that cannot be had is a warning.
+/// An unavailable image causes a warning.
 int GltfTextures::use_image(std::size_t index, bool srgb, Model& model) {
   const auto [found, added] = used_.try_emplace({index, srgb}, -1);
   if (!added) return found->second;

@@ -11,30 +11,30 @@
 
 namespace sundog::models {
 
-/// Sets of texture coordinates that are read.
+/// Maximum number of texture coordinate sets.
 inline constexpr std::uint64_t most_uv_sets = 4;
 
 class GltfTextures {
  public:
-  /// Checks the document's textures, samplers and images. Throws SceneError.
+  /// Validates the document's textures, samplers and images. Throws SceneError.
   GltfTextures(const JsonAt& root, const GltfAccessors& accessors);
 
-  /// Checks a material's reference to a texture; returns it without its image (`image` counts the
-  /// document's). Its coordinates have v up, as all of a model's.
+  /// Validates a material's texture reference and returns it without the image (`image` is the document's
+  /// index). v points up, as in all models.
   TextureDescription read(const JsonAt& info) const;
 
-  /// Adds a texture that read() gave to a model, its image as colours or as data. Returns its index;
-  /// -1, and a warning, where the image cannot be had.
+  /// Adds a texture returned by read() to a model, its image as colours or data. Returns its index; -1, with
+  /// a warning, if the image is unavailable.
   int use(const TextureDescription& texture, bool srgb, Model& model);
 
-  /// Adds the product of two of a model's textures; where one is -1 the other is it.
+  /// Adds the product of two of a model's textures; returns the other if one is -1.
   static int product(int a, int b, Model& model);
 
  private:
   struct Entry {
     std::size_t image = 0;
-    TextureDescription sampled;  // wraps and filter
-    bool usable = false;         // it has an image of a format that may be read
+    TextureDescription sampled;  // wrap modes and filter
+    bool usable = false;         // its image has a supported format
   };
   Entry read_texture(const JsonAt& at) const;
   ImageDescription load(std::size_t index) const;
@@ -44,7 +44,7 @@ class GltfTextures {
   std::vector<JsonAt> images_;
   std::vector<TextureDescription> samplers_;
   std::vector<Entry> textures_;
-  std::map<std::pair<std::size_t, bool>, int> used_;  // images of the model
+  std::map<std::pair<std::size_t, bool>, int> used_;  // the model's images
 };
 
 }  // namespace sundog::models

@@ -1,4 +1,4 @@
-// See gltf_unread.h. Whatever is not of the expected kind is passed by.
+// See gltf_unread.h. Ignores values of unexpected types.
 #include "scene/models/gltf/gltf_unread.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The member, or null.
+/// A member, or null.
 const json& member(const json& value, const char* key) {
   static const json none;
   if (!value.is_object()) return none;
@@ -24,7 +24,7 @@ const json& member(const json& value, const char* key) {
   return found == value.end() ? none : *found;
 }
 
-/// The items of a member that is an array; else null, which has none.
+/// A member array, or an empty one.
 const json& items(const json& value, const char* key) {
   static const json none = json::array();
   const json& found = member(value, key);
@@ -36,7 +36,7 @@ struct Named {
   const char* feature;
 };
 
-constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
+constexpr std::array textures{Named{"baseColorTexture", nullptr},  // supported
                               Named{"emissiveTexture", nullptr},
                               Named{"metallicRoughnessTexture", nullptr},
                               Named{"normalTexture", nullptr},
@@ -50,10 +50,10 @@ constexpr std::array textures{Named{"baseColorTexture", nullptr},  // read
                               Named{"specularColorTexture", nullptr}};
 
 constexpr std::array material_extensions{
-    Named{"KHR_materials_ior", nullptr},  // read
+    Named{"KHR_materials_ior", nullptr},  // supported
     Named{"KHR_materials_transmission", nullptr},
     Named{"KHR_materials_volume", nullptr},
-    Named{"KHR_materials_emissive_strength", nullptr},  // of emission
+    Named{"KHR_materials_emissive_strength", nullptr},  // for emission
     Named{"KHR_materials_sheen", "sheen"},
     Named{"KHR_materials_clearcoat", nullptr},
     Named{"KHR_materials_specular", nullptr},
@@ -64,7 +64,7 @@ constexpr std::array material_extensions{
     Named{"KHR_materials_unlit", nullptr},
     Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};
 
-/// Extensions nest a few levels; a file may nest without end.
+/// Extensions nest a few levels; a malicious file could nest deeply.
 void find_textures(const json& value, Model& model, int levels = 8) {
   if (!value.is_object() || levels == 0) return;
   for (const auto& [key, inner] : value.items()) {
@@ -85,7 +85,7 @@ bool is_layer(const std::string& extension) {
   return std::ranges::count(layers, extension) > 0;
 }
 
-/// Only paths see layers where a texture varies what lies below them (gltf_layers.h).
+/// Only path tracing shows layers over a base that a texture varies (gltf_layers.h).
 bool is_for_paths(const json& material) {
   const json& extensions = member(material, "extensions");
   return member(member(material, "pbrMetallicRoughness"), "metallicRoughnessTexture").is_object() ||
@@ -142,7 +142,7 @@ void check_extensions(const JsonAt& root) {
   }
 }
 
-// Extensions of materials are found where materials use them.
+// Material extensions are reported where materials use them.
 void name_unread_extensions(const JsonAt& root, Model& model) {
   for (const JsonAt& at : root.list("extensionsUsed")) {
     const std::string name = at.text();

@@ -1,4 +1,4 @@
-// Features of a glTF file that change its picture and are not read.
+// Finds unsupported features that affect a glTF file's picture.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -7,14 +7,13 @@
 
 namespace sundog::models {
 
-/// Adds them to Model::unread. For a document that has been read: nothing else in it is checked.
+/// Adds them to Model::unread, for a document that has been read; validates nothing else.
 void find_unread(const nlohmann::json& document, Model& model);
 
-/// A required extension that is not read is an error, but for those that change colours alone. Throws
-/// SceneError.
+/// Throws SceneError for an unsupported required extension, unless it only affects colours.
 void check_extensions(const JsonAt& root);
 
-/// Adds extensions that are used and not read to Model::unread.
+/// Adds unsupported used extensions to Model::unread.
 void name_unread_extensions(const JsonAt& root, Model& model);
 
 }  // namespace sundog::models

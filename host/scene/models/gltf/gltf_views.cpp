@@ -1,4 +1,4 @@
-// Cameras (glTF 2.0, section 3.10) and punctual lights, checked.
+// Reads and validates cameras (glTF 2.0, section 3.10) and punctual lights.
 #include "scene/models/gltf/gltf_views.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// glTF's cameras and lights (KHR_lights_punctual), before a node places them.
+// glTF's cameras and lights (KHR_lights_punctual), before nodes place them.
 #pragma once
 #include "scene/description.h"
 #include "scene/models/gltf/gltf_json.h"
@@ -7,13 +7,13 @@ namespace sundog::models {
 
 struct GltfCamera {
   bool perspective = false;
-  double fov = 0, near = 0, far = 0;  // radians, along the view
+  double fov = 0, near = 0, far = 0;  // radians; along the view
 };
 
 GltfCamera read_gltf_camera(const JsonAt& at);
 
-/// Candela and lux become an intensity by 1 / pi, which the phong model's kd lacks; point and spot lights
-/// fall off with the distance's square. Colour and angles as they stand.
+/// Candela and lux are divided by pi, which the phong model's kd lacks; point and spot lights fall off with
+/// the squared distance. Colour and angles are unchanged.
 LightDescription read_gltf_light(const JsonAt& at);
 
 }  // namespace sundog::models
