@@ -48,7 +48,7 @@ All commands: {}.
 struct TypedRender {
   RenderCommand command;
   std::string size, samples, seed, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
-      write_every, work_group = "auto", split = "dynamic", part, tile, frames;
+      write_every, work_group = "auto", split = "dynamic", part, tile, frames, step;
   bool subsample = false, caustics = false;
 };
 
@@ -116,7 +116,12 @@ RenderCommand checked(const TypedRender& typed) {
   command.overrides = collect_overrides(typed);
   command.work_group = parse_work_group(typed.work_group);
   command.split = parse_split(typed.split);
-  if (!typed.frames.empty()) command.frames = parse_frames(typed.frames);
+  if (!typed.frames.empty())
+    command.frames =
+        parse_frames(typed.frames, typed.step.empty() ? 1 : parse_number("--step", typed.step, 1, 999999));
+  if (typed.frames.empty() && (!typed.step.empty() || command.skip_existing))
+    throw UsageError(fmt::format("{} is for an animation: give its --frames as well",
+                                 command.skip_existing ? "--skip-existing" : "--step"));
   if (!typed.part.empty()) command.part = parse_part(typed.part);
   if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
   if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
@@ -173,9 +178,12 @@ void add_render(Arguments& root, Command& chosen) {
         "or "
         "fixed shares such as 3,1");
   value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
-  value(
-      app, "--frames", "A..B", typed->frames,
-      "render these frames of the scene's animation to numbered files (out_0001.png, or where OUT has ####)");
+  value(app, "--frames", "LIST", typed->frames,
+        "render these frames of the scene's animation, as 0..48, 48..0 or 1,4,10..20, to numbered files "
+        "(out_0001.png, or where OUT has ####)");
+  value(app, "--step", "N", typed->step, "of each range of --frames render every Nth frame");
+  app->add_flag("--skip-existing", command.skip_existing,
+                "leave frames alone whose picture is there and not empty");
   value(app, "--stats", "FILE", command.stats,
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,

@@ -176,4 +176,11 @@ void apply_animation(nlohmann::json& document, double frame, const JsonContext& 
   }
 }
 
+std::string track_of(const nlohmann::json& document, const std::string& place) {
+  const nlohmann::json& list = document.at("animate");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (concerns(list[i].at("value").get<std::string>(), place)) return fmt::format("/animate/{}", i);
+  return "";
+}
+
 }  // namespace sundog

@@ -35,4 +35,7 @@ std::vector<double> value_at(const Track& track, double frame, const std::vector
 /// "animate", and where a pointer leads to nothing that is a number or an array of numbers.
 void apply_animation(nlohmann::json& document, double frame, const JsonContext& context);
 
+/// The place in the document of the track that moves the value at `place`, or a part of it; empty: none does.
+std::string track_of(const nlohmann::json& document, const std::string& place);
+
 }  // namespace sundog

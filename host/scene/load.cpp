@@ -48,10 +48,55 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
   return document;
 }
 
-SceneDescription read_with_overrides(json document, const fs::path& file,
-                                     const std::vector<std::string>& overrides, const LoadOptions& options,
-                                     std::optional<Model> model) {
-  apply_overrides(document, file, overrides);
+/// Says which setting had a part in a value, or which track of which frame.
+std::string changed_by(const std::string& place, const json& document,
+                       const std::vector<std::string>& overrides, const LoadOptions& options) {
+  if (options.frame)
+    if (const std::string track = track_of(document, place); !track.empty())
+      return fmt::format(" (in frame {}, moved by {})", *options.frame, track);
+  for (const std::string& setting : overrides)
+    if (concerns(setting, place)) return fmt::format(" (changed by the setting {})", setting);
+  return "";
+}
+
+}  // namespace
+
+/// A file's document before any frame of it, with the model that it was made up around.
+struct SceneSource {
+  fs::path file;
+  json document;
+  std::optional<Model> model = std::nullopt;
+
+  static SceneSource open(const fs::path& path, const std::vector<std::string>& overrides,
+                          const LoadOptions& options);
+  SceneDescription read(const std::vector<std::string>& overrides, const LoadOptions& options) &&;
+};
+
+SceneSource SceneSource::open(const fs::path& path, const std::vector<std::string>& overrides,
+                              const LoadOptions& options) {
+  SceneSource source{path, {}};
+  if (is_standard_input(path) && options.standard_input) {
+    source.file = scene_file_name(path);
+    source.document = parse_json(options.standard_input(), source.file);
+  } else {
+    require_readable(path, path, "");
+    if (is_model_file(path)) {
+      source.model = load_model(path, {.outside_files = options.outside_files});
+      source.document = make_scene(path, *source.model, overrides);
+    } else if (path.extension() == ".json") {
+      source.document = read_json_file(path, options.faults);
+    } else {
+      throw SceneError(
+          path.string(), "",
+          "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
+          "another extension");
+    }
+  }
+  apply_overrides(source.document, source.file, overrides);
+  return source;
+}
+
+SceneDescription SceneSource::read(const std::vector<std::string>& overrides, const LoadOptions& options) && {
   std::vector<std::string> warnings;
   const JsonContext context{.file = file,
                             .native_code = options.native_code,
@@ -63,17 +108,26 @@ SceneDescription read_with_overrides(json document, const fs::path& file,
     scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
     return scene;
   } catch (const SceneError& error) {
-    // The place is in the file as the overrides changed it: say which of them had a part in it.
-    if (error.file == file.string())
-      for (const std::string& setting : overrides)
-        if (concerns(setting, error.place))
-          throw SceneError(error.file, error.place,
-                           fmt::format("{} (changed by the setting {})", error.reason, setting));
-    throw;
+    // The place is in the file as overrides and tracks changed it.
+    if (error.file != file.string()) throw;
+    const std::string by = changed_by(error.place, document, overrides, options);
+    if (by.empty()) throw;
+    throw SceneError(error.file, error.place, error.reason + by);
   }
 }
 
-}  // namespace
+SceneFrames::SceneFrames(const fs::path& path, std::vector<std::string> overrides, LoadOptions options)
+    : source_(std::make_unique<const SceneSource>(SceneSource::open(path, overrides, options))),
+      overrides_(std::move(overrides)),
+      options_(std::move(options)) {}
+
+SceneFrames::~SceneFrames() = default;
+
+SceneDescription SceneFrames::read(double frame) const {
+  LoadOptions options = options_;
+  options.frame = frame;
+  return SceneSource(*source_).read(overrides_, options);
+}
 
 bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
 
@@ -83,23 +137,7 @@ std::string scene_file_name(const fs::path& path) {
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
-  if (is_standard_input(path) && options.standard_input) {
-    const fs::path name = scene_file_name(path);
-    return read_with_overrides(parse_json(options.standard_input(), name), name, overrides, options,
-                               std::nullopt);
-  }
-  require_readable(path, path, "");
-  if (is_model_file(path)) {
-    Model model = load_model(path, {.outside_files = options.outside_files});
-    json document = make_scene(path, model, overrides);
-    return read_with_overrides(std::move(document), path, overrides, options, std::move(model));
-  }
-  if (path.extension() != ".json")
-    throw SceneError(
-        path.string(), "",
-        "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
-        "another extension");
-  return read_with_overrides(read_json_file(path, options.faults), path, overrides, options, std::nullopt);
+  return SceneSource::open(path, overrides, options).read(overrides, options);
 }
 
 }  // namespace sundog

@@ -38,4 +38,23 @@ std::string scene_file_name(const std::filesystem::path& path);
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                             const LoadOptions& options = {});
 
+struct SceneSource;
+
+/// A scene file whose frames are read one after the other; the file itself is read once.
+class SceneFrames {
+ public:
+  /// As load_scene(), whose errors it throws. `options.frame` does not count.
+  SceneFrames(const std::filesystem::path& path, std::vector<std::string> overrides, LoadOptions options);
+  ~SceneFrames();
+
+  /// The scene at that frame of its animation. Errors of values that tracks move name the frame and the
+  /// track.
+  SceneDescription read(double frame) const;
+
+ private:
+  std::unique_ptr<const SceneSource> source_;
+  std::vector<std::string> overrides_;
+  LoadOptions options_;
+};
+
 }  // namespace sundog
