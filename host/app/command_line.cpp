@@ -58,7 +58,9 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.size.empty()) all = parse_image_size(typed.size);
   if (!typed.samples.empty())
     all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
-  if (!typed.seed.empty())
+  if (typed.seed == "frame")
+    all.emplace_back("/render/seed=frame");
+  else if (!typed.seed.empty())
     all.push_back(fmt::format("/render/seed={}", parse_number("--seed", typed.seed, 0, 2147483647)));
   if (!typed.max_depth.empty())
     all.push_back(
@@ -154,7 +156,8 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--max-depth", "N", typed->max_depth,
         "greatest depth of the ray tree; 1: the camera's rays alone. Without it paths end by chance");
   value(app, "--seed", "N", typed->seed,
-        "other random numbers: pictures of several seeds have a mean with less noise");
+        "other random numbers: pictures of several seeds have a mean with less noise; frame: the frame's "
+        "number, as --frames has it without a seed");
   value(app, "--integrator", "NAME", typed->integrator,
         fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
   app->add_flag("--caustics", typed->caustics,

@@ -8,10 +8,12 @@
 
 #include "base/error.h"
 #include "scene/animate.h"
+#include "scene/document.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
 #include "scene/model.h"
 #include "scene/model_scene.h"
+#include "scene/read/frame_cache.h"
 #include "scene/read/scene_reader.h"
 
 namespace sundog {
@@ -21,7 +23,11 @@ using nlohmann::json;
 namespace {
 
 void apply_overrides(json& document, const fs::path& file, const std::vector<std::string>& overrides) {
-  for (const std::string& setting : overrides) apply_override(document, setting, file);
+  for (const std::string& setting : overrides) try {
+      apply_override(document, setting, file);
+    } catch (const SceneError& error) {
+      throw SettingError(error.file, error.place, error.reason);
+    }
 }
 
 /// Width over height of a document's image; 0 where it gives none (reading it says what is wrong).
@@ -48,32 +54,15 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
   return document;
 }
 
-/// Says which setting had a part in a value, or which track of which frame.
-std::string changed_by(const std::string& place, const json& document,
-                       const std::vector<std::string>& overrides, const LoadOptions& options) {
-  if (options.frame)
-    if (const std::string track = track_of(document, place); !track.empty())
-      return fmt::format(" (in frame {}, moved by {})", *options.frame, track);
-  for (const std::string& setting : overrides)
-    if (concerns(setting, place)) return fmt::format(" (changed by the setting {})", setting);
-  return "";
-}
-
-}  // namespace
-
 /// A file's document before any frame of it, with the model that it was made up around.
 struct SceneSource {
   fs::path file;
   json document;
   std::optional<Model> model = std::nullopt;
-
-  static SceneSource open(const fs::path& path, const std::vector<std::string>& overrides,
-                          const LoadOptions& options);
-  SceneDescription read(const std::vector<std::string>& overrides, const LoadOptions& options) &&;
 };
 
-SceneSource SceneSource::open(const fs::path& path, const std::vector<std::string>& overrides,
-                              const LoadOptions& options) {
+SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,
+                        const LoadOptions& options) {
   SceneSource source{path, {}};
   if (is_standard_input(path) && options.standard_input) {
     source.file = scene_file_name(path);
@@ -96,37 +85,111 @@ SceneSource SceneSource::open(const fs::path& path, const std::vector<std::strin
   return source;
 }
 
-SceneDescription SceneSource::read(const std::vector<std::string>& overrides, const LoadOptions& options) && {
-  std::vector<std::string> warnings;
-  const JsonContext context{.file = file,
-                            .native_code = options.native_code,
-                            .warnings = &warnings,
-                            .outside_files = options.outside_files};
-  if (options.frame) apply_animation(document, *options.frame, context);
+/// What reading a file's document takes.
+struct Reading {
+  const fs::path& file;
+  const std::vector<std::string>& overrides;
+  const LoadOptions& options;
+  std::vector<std::string> warnings = {};
+  FrameCache* cache = nullptr;
+
+  JsonContext context() {
+    return {.file = file,
+            .native_code = options.native_code,
+            .warnings = &warnings,
+            .measures = !(cache && cache->checks()),
+            .outside_files = options.outside_files,
+            .cache = cache};
+  }
+};
+
+/// `read()`. The place of an error is in the document as settings and tracks changed it: says which of them
+/// had a part in it.
+template <class Read>
+auto explained(const json& document, const Reading& reading, const Read& read) {
   try {
-    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
-    scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-    return scene;
+    return read();
   } catch (const SceneError& error) {
-    // The place is in the file as overrides and tracks changed it.
-    if (error.file != file.string()) throw;
-    const std::string by = changed_by(error.place, document, overrides, options);
-    if (by.empty()) throw;
-    throw SceneError(error.file, error.place, error.reason + by);
+    if (error.file != reading.file.string() || error.place.empty()) throw;
+    if (const auto frame = reading.options.frame; frame && !error.place.starts_with("/animate"))
+      if (const std::string track = track_of(document, error.place); !track.empty())
+        throw SceneError(error.file, error.place,
+                         fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track));
+    for (const std::string& setting : reading.overrides)
+      if (overlap(pointer_of(document, setting), error.place))
+        throw SettingError(error.file, error.place,
+                           fmt::format("{} (changed by the setting {})", error.reason, setting));
+    throw;
   }
 }
 
+/// Makes the document that of the frame. A setting that a track would undo is refused.
+void animate(json& document, Reading& reading) {
+  if (!reading.options.frame) return;
+  const JsonContext context = reading.context();
+  explained(document, reading, [&] { apply_animation(document, *reading.options.frame, context); });
+  for (const std::string& setting : reading.overrides)
+    if (const std::string track = track_of(document, pointer_of(document, setting), true); !track.empty())
+      throw SettingError(
+          reading.file.string(), track,
+          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the "
+                      "track",
+                      setting));
+}
+
+SceneDescription read_document(const json& document, Reading& reading, std::optional<Model> model) {
+  return explained(document, reading, [&] {
+    const JsonContext context = reading.context();
+    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
+    scene.warnings.insert(scene.warnings.end(), reading.warnings.begin(), reading.warnings.end());
+    return scene;
+  });
+}
+
+}  // namespace
+
+struct SceneFrames::State {
+  SceneSource source;
+  std::vector<std::string> overrides;
+  LoadOptions options;
+  FrameCache cache = {};
+  json document = {};                               // of the last frame
+  std::shared_ptr<const SceneDescription> scene{};  // of that document; null: none was read
+};
+
 SceneFrames::SceneFrames(const fs::path& path, std::vector<std::string> overrides, LoadOptions options)
-    : source_(std::make_unique<const SceneSource>(SceneSource::open(path, overrides, options))),
-      overrides_(std::move(overrides)),
-      options_(std::move(options)) {}
+    : state_(std::make_unique<State>(open_source(path, overrides, options), std::move(overrides),
+                                     std::move(options))) {}
 
 SceneFrames::~SceneFrames() = default;
 
-SceneDescription SceneFrames::read(double frame) const {
-  LoadOptions options = options_;
+std::shared_ptr<const SceneDescription> SceneFrames::read(std::optional<double> frame) {
+  State& state = *state_;
+  LoadOptions options = state.options;
   options.frame = frame;
-  return SceneSource(*source_).read(overrides_, options);
+  Reading reading{state.source.file, state.overrides, options, {}, &state.cache};
+  json document = state.source.document;
+  animate(document, reading);
+  std::shared_ptr<const SceneDescription> next;
+  if (state.scene)
+    next = explained(document, reading,
+                     [&] { return change_scene(*state.scene, state.document, document, options); });
+  if (!next) {
+    next = std::make_shared<const SceneDescription>(read_document(document, reading, state.source.model));
+    state.cache.end_frame();
+  }
+  state.document = std::move(document);
+  return state.scene = std::move(next);
+}
+
+std::shared_ptr<const SceneDescription> SceneFrames::check(const std::vector<int>& frames) {
+  std::shared_ptr<const SceneDescription> first;
+  state_->cache.check(true);
+  for (const int frame : frames)
+    if (const auto scene = read(frame); !first) first = scene;
+  state_->cache.check(false);
+  state_->scene = nullptr;
+  return first;
 }
 
 bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
@@ -137,7 +200,10 @@ std::string scene_file_name(const fs::path& path) {
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
-  return SceneSource::open(path, overrides, options).read(overrides, options);
+  SceneSource source = open_source(path, overrides, options);
+  Reading reading{source.file, overrides, options};
+  animate(source.document, reading);
+  return read_document(source.document, reading, std::move(source.model));
 }
 
 }  // namespace sundog

@@ -121,6 +121,10 @@ bool FrameLog::done(const FramePicture& picture) {
   return bytes_in(picture.file) == found->second.bytes || is_picture(picture);
 }
 
+void FrameLog::begin(int frame, const FramePicture& picture) {
+  if (entries_.contains(name_of(picture))) add(frame, {picture.file, "", picture.width, picture.height});
+}
+
 void FrameLog::add(int frame, const FramePicture& picture) {
   if (file_ < 0) return;
   const FrameLock alone = take_lock(file_, F_OFD_SETLKW, append_lock);

@@ -27,10 +27,14 @@ class FrameLog {
   FrameLog(const FrameLog&) = delete;
   FrameLog& operator=(const FrameLog&) = delete;
 
+  /// Whether there is a path.
+  bool keeps() const { return file_ >= 0; }
   /// Null while another process has the frame.
   FrameLock lock(int frame) const;
   /// Whether the frame was finished with that key, and its picture is still there and whole.
   bool done(const FramePicture& picture);
+  /// Before the frame is rendered anew: until it is finished its file may hold a part.
+  void begin(int frame, const FramePicture& picture);
   void add(int frame, const FramePicture& picture);
   const std::vector<std::string>& warnings() const { return warnings_; }
 

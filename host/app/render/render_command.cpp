@@ -79,7 +79,7 @@ void check_frames(const RenderCommand& command) {
 /// Of this process, or of rank 0 of a job.
 int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
-  Setup setup{stop, job, {}, nullptr, {}};
+  Setup setup{stop, job, {}, nullptr};
   check_frames(command);
   check_outputs(command.frames.empty() ? command : frame_command(command, command.frames.front()));
   if (is_standard_stream(command.out) || is_standard_stream(command.stats)) claim_standard_output();
@@ -87,9 +87,12 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
   std::optional<LoadedScene> scene;
   if (command.frames.empty()) {
     stop_loses_nothing(command, setup);
-    const auto load = [&] { return load_scene(command.scene, command.overrides, load_options(command)); };
-    scene = load_and_compile(command, output_files(command), load, setup, times);
-    print_warnings(scene->description.warnings);
+    const auto load = [&] {
+      return std::make_shared<const SceneDescription>(
+          load_scene(command.scene, command.overrides, load_options(command)));
+    };
+    scene = load_and_compile(command, load, setup, times);
+    print_warnings(scene->description->warnings);
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     print_warnings({{why}});

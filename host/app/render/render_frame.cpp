@@ -23,7 +23,6 @@
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
 #include "render/plan/passes.h"
-#include "scene/json/override.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -63,15 +62,19 @@ std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
   return setup.job && command.resume.empty() ? name + ".checkpoint" : command.resume;
 }
 
-/// A halo is traced by the first of the devices. With workers, which compile the scene too, each process
-/// traces on the host: the map is the same.
-CompiledScene compile_traced(const RenderCommand& command, SceneDescription& scene, Setup& setup) {
-  if (scene.environment.type == EnvironmentType::halo && !command.isolate && !setup.job) {
+/// A halo is traced by the first of the devices, unless the frame before had the same. With workers, which
+/// compile the scene too, each process traces on the host: the map is the same.
+void trace_halo(const RenderCommand& command, std::shared_ptr<const SceneDescription>& scene, Setup& setup) {
+  if (scene->environment.type != EnvironmentType::halo || command.isolate || setup.job) return;
+  const ContentKey key = KeyMaker().add_halo(scene->environment).key();
+  if (!(setup.halo.key == key)) {
     if (setup.devices.empty()) setup.devices = choose_devices(command, setup.job);
-    TracedHalo traced = trace_halo_map(scene.environment, setup.devices, command.quiet);
-    scene.environment.halo_map = std::make_shared<const HaloMap>(std::move(traced.map));
+    TracedHalo traced = trace_halo_map(scene->environment, setup.devices, command.quiet);
+    setup.halo = {key, std::make_shared<const HaloMap>(std::move(traced.map))};
   }
-  return compile(scene);
+  auto with_map = std::make_shared<SceneDescription>(*scene);
+  with_map->environment.halo_map = setup.halo.map;
+  scene = std::move(with_map);
 }
 
 std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedScene& scene,
@@ -108,24 +111,14 @@ LoadOptions load_options(const RenderCommand& command) {
   return with_streams({command.frame, command.native_code, command.outside_files});
 }
 
-SceneDescription load_for(const RenderCommand& command, const std::vector<std::string>& outputs,
-                          const std::function<SceneDescription()>& load) {
-  try {
-    return load_beside(outputs, load);
-  } catch (const SceneError& error) {
-    if (error.file == scene_file_name(command.scene))
-      for (const std::string& setting : command.overrides)
-        if (concerns(setting, error.place)) throw UsageError(error.what());
-    throw;
-  }
-}
-
-LoadedScene load_and_compile(const RenderCommand& command, const std::vector<std::string>& outputs,
-                             const std::function<SceneDescription()>& load, Setup& setup, TimeLedger& times) {
+LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
+                             TimeLedger& times) {
   LoadedScene scene;
-  scene.description = timed(times.load, [&] { return load_for(command, outputs, load); });
+  scene.description = timed(times.load, [&] { return load_beside(output_files(command), load); });
   scene.flat = timed(times.compile_scene, [&] {
-    return std::make_shared<const CompiledScene>(compile_traced(command, scene.description, setup));
+    trace_halo(command, scene.description, setup);
+    return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)
+                                                               : compile(*scene.description));
   });
   check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
                      frame_output(command, in_passes(scene.flat->sampling)));
@@ -135,7 +128,7 @@ LoadedScene load_and_compile(const RenderCommand& command, const std::vector<std
 FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
                     const Stopwatch& clock, TimeLedger& times) {
   setup.stop.asks();
-  print_warnings(view_warnings(scene.description, *scene.flat, setup.devices));
+  print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
     if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet, setup.run);
@@ -150,7 +143,7 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   if (command.write_every > 0) {
     options.picture_seconds = command.write_every;
     options.on_picture = [&](const Film& film) {
-      write_so_far(command, scene.description.image.tone_map, film);
+      write_so_far(command, scene.description->image.tone_map, film);
     };
   }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
@@ -163,18 +156,18 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
 
   times.render = result.times;
   const Stopwatch writing;
-  save_result(command, scene.description, *scene.flat, result, checkpoint);
+  save_result(command, *scene.description, *scene.flat, result, checkpoint);
   times.write = writing.seconds();
-  warn_of_losses(scene.description, result);
+  warn_of_losses(*scene.description, result);
   if (const std::string& left = result.checkpoint_left; !left.empty())
     print_warnings({{fmt::format("{}; the frame began anew", left.substr(0, left.find("; remove")))}});
   times.total = clock.seconds();
   if (!command.stats.empty()) {
     using nlohmann::json;
-    const json stats = stats_json(command, scene.description, *scene.flat, result, times);
+    const json stats = stats_json(command, *scene.description, *scene.flat, result, times);
     write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
-  tell_result(command, scene.description, result, times);
+  tell_result(command, *scene.description, result, times);
   return {conclude(command, result, told), result.complete};
 }
 

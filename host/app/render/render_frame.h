@@ -10,11 +10,18 @@
 #include "app/process/interrupt.h"
 #include "app/process/progress.h"
 #include "app/render/stats.h"
-#include "compile/compiled_scene.h"
+#include "compile/parts/content_key.h"
+#include "compile/scene_compiler.h"
 #include "render/session/render_session.h"
 #include "scene/load.h"
 
 namespace sundog {
+
+/// The map of the last halo that was traced, and what it was made of.
+struct KeptHalo {
+  ContentKey key;
+  std::shared_ptr<const HaloMap> map;
+};
 
 /// What the frames of one run share.
 struct Setup {
@@ -22,12 +29,14 @@ struct Setup {
   Mailbox* job = nullptr;  // the other processes that mpirun has started
   std::vector<DeviceInfo> devices;
   std::unique_ptr<RenderSession> session;  // of frames on this process's devices, which stay open
-  RunProgress run;
+  RunProgress run = {};
+  SceneCompiler compiler = {};  // keeps what frames have in common
+  KeptHalo halo = {};
 };
 
 /// A scene as it is read, and flattened.
 struct LoadedScene {
-  SceneDescription description;
+  std::shared_ptr<const SceneDescription> description;
   std::shared_ptr<const CompiledScene> flat;
 };
 
@@ -39,16 +48,14 @@ std::vector<std::string> output_files(const RenderCommand& command);
 /// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
 void stop_loses_nothing(const RenderCommand& command, const Setup& setup);
 
-/// What `load` returns. An error at a place that an option changed is the command line's.
-SceneDescription load_for(const RenderCommand& command, const std::vector<std::string>& outputs,
-                          const std::function<SceneDescription()>& load);
-
 /// How the scene file is read.
 LoadOptions load_options(const RenderCommand& command);
 
+using LoadScene = std::function<std::shared_ptr<const SceneDescription>()>;
+
 /// Reads the scene by `load` and compiles it.
-LoadedScene load_and_compile(const RenderCommand& command, const std::vector<std::string>& outputs,
-                             const std::function<SceneDescription()>& load, Setup& setup, TimeLedger& times);
+LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
+                             TimeLedger& times);
 
 /// How a frame ended: the exit status, and whether it has all its samples.
 struct FrameEnd {

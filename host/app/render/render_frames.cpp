@@ -24,7 +24,7 @@ constexpr auto look_again = std::chrono::milliseconds(200);
 
 /// All that shapes the frame's file.
 std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
-  const ToneMap& tone = scene.description.image.tone_map;
+  const ToneMap& tone = scene.description->image.tone_map;
   std::string text =
       fmt::format("{} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
                   static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither,
@@ -32,8 +32,8 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   text += std::filesystem::path(command.out).extension().string();
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);
   for (const std::string& name : command.aovs) text += " " + name;
-  for (const Object& object : scene.description.objects) text += "\n" + object.name;  // of Cryptomatte
-  for (const MaterialDescription& material : scene.description.materials) text += "\n" + material.name;
+  for (const Object& object : scene.description->objects) text += "\n" + object.name;  // of Cryptomatte
+  for (const MaterialDescription& material : scene.description->materials) text += "\n" + material.name;
   return fmt::format("{:016x}", hash_bytes(text.data(), text.size()));
 }
 
@@ -43,14 +43,8 @@ std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
   std::vector<std::string> outputs = {frame_list(command)};
   for (const int frame : command.frames)
     for (std::string& file : output_files(frame_command(command, frame))) outputs.push_back(std::move(file));
-  std::unique_ptr<SceneFrames> frames;
-  const SceneDescription last = load_for(command, outputs, [&] {
-    frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
-    SceneDescription scene;
-    for (const int frame : command.frames) scene = frames->read(frame);
-    return scene;
-  });
-  print_warnings(last.warnings);
+  auto frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
+  print_warnings(load_beside(outputs, [&] { return frames->check(command.frames); })->warnings);
   return frames;
 }
 
@@ -116,11 +110,12 @@ Outcome FrameRun::take(int frame) {
   const FrameLock lock = log_.lock(frame);
   if (!lock) return Outcome::elsewhere;
   if (command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume)) return Outcome::kept;
-  const LoadedScene scene =
-      load_and_compile(one, output_files(one), [&] { return frames_->read(frame); }, setup_, times);
-  const FramePicture picture{one.out, frame_key(one, scene), static_cast<int>(scene.flat->info.width),
+  const LoadedScene scene = load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
+  const FramePicture picture{one.out, log_.keeps() ? frame_key(one, scene) : "",
+                             static_cast<int>(scene.flat->info.width),
                              static_cast<int>(scene.flat->info.height)};
   if (log_.done(picture)) return Outcome::kept;
+  log_.begin(frame, picture);
   const FrameEnd end = render_one(one, scene, setup_, clock, times);
   status_ = end.status;
   if (status_ != exit_done) return Outcome::unfinished;

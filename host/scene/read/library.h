@@ -13,6 +13,8 @@
 
 namespace sundog {
 
+class FrameCache;
+
 /// Where an object stands: what it takes from its groups and from itself.
 struct Placement {
   dmat4 world_from_object{1};
@@ -26,7 +28,8 @@ struct Placement {
 class ModelLibrary {
  public:
   /// Adds to `scene`, which must outlive the library.
-  explicit ModelLibrary(SceneDescription& scene) : scene_(scene) {}
+  explicit ModelLibrary(SceneDescription& scene, FrameCache* cache = nullptr)
+      : scene_(scene), cache_(cache) {}
 
   /// What a model becomes in the scene's tables: objects with the scene's indices, placed in the model's
   /// space.
@@ -34,8 +37,9 @@ class ModelLibrary {
 
   /// Adds a model; `name` goes before its materials' and media's names.
   Parts add(Model model, const std::string& name);
-  /// Reads and adds a model file, or finds what was added before. Throws what load_model() throws.
-  const Parts& load(const std::filesystem::path& file, const ModelOptions& options = {});
+  /// Reads and adds a model file, or finds what was added before. `place` names it. Throws what load_model()
+  /// throws.
+  const Parts& load(const std::filesystem::path& file, const ModelOptions& options, const std::string& place);
   /// Adds a model that has been read already, for load() to find.
   void keep(const std::filesystem::path& file, Model model);
 
@@ -46,6 +50,7 @@ class ModelLibrary {
   int grey();
 
   SceneDescription& scene_;
+  FrameCache* cache_;
   std::map<std::pair<std::string, std::optional<double>>, Parts> loaded_;
   int grey_ = -1;
 };
