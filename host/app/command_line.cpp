@@ -48,7 +48,7 @@ All commands: {}.
 struct TypedRender {
   RenderCommand command;
   std::string size, samples, seed, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
-      write_every, work_group = "auto", split = "dynamic", part, tile, frames;
+      write_every, work_group = "auto", split = "dynamic", part, tile, frames, step;
   bool subsample = false, caustics = false;
 };
 
@@ -58,7 +58,9 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.size.empty()) all = parse_image_size(typed.size);
   if (!typed.samples.empty())
     all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
-  if (!typed.seed.empty())
+  if (typed.seed == "frame")
+    all.emplace_back("/render/seed=frame");
+  else if (!typed.seed.empty())
     all.push_back(fmt::format("/render/seed={}", parse_number("--seed", typed.seed, 0, 2147483647)));
   if (!typed.max_depth.empty())
     all.push_back(
@@ -116,7 +118,12 @@ RenderCommand checked(const TypedRender& typed) {
   command.overrides = collect_overrides(typed);
   command.work_group = parse_work_group(typed.work_group);
   command.split = parse_split(typed.split);
-  if (!typed.frames.empty()) command.frames = parse_frames(typed.frames);
+  if (!typed.frames.empty())
+    command.frames =
+        parse_frames(typed.frames, typed.step.empty() ? 1 : parse_number("--step", typed.step, 1, 999999));
+  if (typed.frames.empty() && (!typed.step.empty() || command.skip_existing))
+    throw UsageError(fmt::format("{} is for an animation: give its --frames as well",
+                                 command.skip_existing ? "--skip-existing" : "--step"));
   if (!typed.part.empty()) command.part = parse_part(typed.part);
   if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
   if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
@@ -149,7 +156,8 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--max-depth", "N", typed->max_depth,
         "greatest depth of the ray tree; 1: the camera's rays alone. Without it paths end by chance");
   value(app, "--seed", "N", typed->seed,
-        "other random numbers: pictures of several seeds have a mean with less noise");
+        "other random numbers: pictures of several seeds have a mean with less noise; frame: the frame's "
+        "number, as --frames has it without a seed");
   value(app, "--integrator", "NAME", typed->integrator,
         fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
   app->add_flag("--caustics", typed->caustics,
@@ -173,9 +181,12 @@ void add_render(Arguments& root, Command& chosen) {
         "or "
         "fixed shares such as 3,1");
   value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
-  value(
-      app, "--frames", "A..B", typed->frames,
-      "render these frames of the scene's animation to numbered files (out_0001.png, or where OUT has ####)");
+  value(app, "--frames", "LIST", typed->frames,
+        "render these frames of the scene's animation, as 0..48, 48..0 or 1,4,10..20, to numbered files "
+        "(out_0001.png, or where OUT has ####)");
+  value(app, "--step", "N", typed->step, "of each range of --frames render every Nth frame");
+  app->add_flag("--skip-existing", command.skip_existing,
+                "leave frames alone whose picture is there and not empty");
   value(app, "--stats", "FILE", command.stats,
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/pixels/image_levels.h"
+#include "scene/read/frame_cache.h"
 
 namespace sundog {
 namespace {
@@ -54,9 +55,12 @@ void decode(ImageDescription& image) {
 }
 
 /// What a model names and cannot be decoded becomes one white pixel.
-void decode_or_white(ImageDescription& image, std::string& failure) {
+void decode_or_white(ImageDescription& image, std::string& failure, FrameCache* cache) {
   try {
-    decode(image);
+    if (cache && !image.encoded.empty())
+      cache->decode(image, decode);
+    else
+      decode(image);
   } catch (const SceneError& error) {
     if (!image.of_model) throw;
     failure = fmt::format("{}; materials go without it", error.what());
@@ -124,12 +128,12 @@ void fit_images(SceneDescription& scene) {
 
 }  // namespace
 
-void decode_images(SceneDescription& scene) {
+void decode_images(SceneDescription& scene, FrameCache* cache) {
   if (scene.images.empty()) return;
   merge_images(scene);
   std::vector<std::string> failures(scene.images.size());
   tbb::parallel_for(std::size_t{0}, failures.size(),
-                    [&](std::size_t i) { decode_or_white(scene.images[i], failures[i]); });
+                    [&](std::size_t i) { decode_or_white(scene.images[i], failures[i], cache); });
   std::vector<bool> white;
   for (const std::string& failure : failures) {
     white.push_back(!failure.empty());

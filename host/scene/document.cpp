@@ -10,6 +10,7 @@
 #include "scene/json/value.h"
 #include "scene/lamps.h"
 #include "scene/model_scene.h"
+#include "scene/read/frame_cache.h"
 #include "scene/read/parts.h"
 #include "scene/read/scene_reader.h"
 #include "scene/read/surfaces.h"
@@ -55,20 +56,6 @@ void change_lights(SceneDescription& scene, const json& after, const JsonContext
   add_lamps(scene);
 }
 
-/// Copies of the description hold the same vertices.
-void share_meshes(SceneDescription& scene) {
-  const auto share = [](auto& array) {
-    using Array = std::remove_reference_t<decltype(array)>;
-    const auto owner =
-        std::make_shared<const std::vector<typename Array::value_type>>(std::move(array.values()));
-    array = Array::held(*owner, owner);
-  };
-  for (Mesh& mesh : scene.meshes) {
-    share(mesh.positions), share(mesh.normals), share(mesh.uvs);
-    share(mesh.tangents), share(mesh.colors), share(mesh.alphas), share(mesh.triangles);
-  }
-}
-
 bool has_place(const json& document) {
   return document.contains("camera") && document["camera"].is_object() &&
          document["camera"].contains("position");
@@ -105,7 +92,8 @@ SceneDescription load_scene_document(const json& document, const fs::path& file,
                             .outside_files = options.outside_files};
   SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-  if (made.empty()) share_meshes(scene);  // those of programs are held already
+  if (made.empty())  // those of programs are held already
+    for (Mesh& mesh : scene.meshes) share_vertices(mesh);
   return scene;
 }
 

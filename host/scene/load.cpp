@@ -8,10 +8,12 @@
 
 #include "base/error.h"
 #include "scene/animate.h"
+#include "scene/document.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
 #include "scene/model.h"
 #include "scene/model_scene.h"
+#include "scene/read/frame_cache.h"
 #include "scene/read/scene_reader.h"
 
 namespace sundog {
@@ -21,7 +23,11 @@ using nlohmann::json;
 namespace {
 
 void apply_overrides(json& document, const fs::path& file, const std::vector<std::string>& overrides) {
-  for (const std::string& setting : overrides) apply_override(document, setting, file);
+  for (const std::string& setting : overrides) try {
+      apply_override(document, setting, file);
+    } catch (const SceneError& error) {
+      throw SettingError(error.file, error.place, error.reason);
+    }
 }
 
 /// Width over height of a document's image; 0 if missing or invalid (reading reports the error).
@@ -48,32 +54,143 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
   return document;
 }
 
-SceneDescription read_with_overrides(json document, const fs::path& file,
-                                     const std::vector<std::string>& overrides, const LoadOptions& options,
-                                     std::optional<Model> model) {
-  apply_overrides(document, file, overrides);
-  std::vector<std::string> warnings;
-  const JsonContext context{.file = file,
-                            .native_code = options.native_code,
-                            .warnings = &warnings,
-                            .outside_files = options.outside_files};
-  if (options.frame) apply_animation(document, *options.frame, context);
+/// A file's document before any frame of it, with the model that it was made up around.
+struct SceneSource {
+  fs::path file;
+  json document;
+  std::optional<Model> model = std::nullopt;
+};
+
+SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,
+                        const LoadOptions& options) {
+  SceneSource source{path, {}};
+  if (is_standard_input(path) && options.standard_input) {
+    source.file = scene_file_name(path);
+    source.document = parse_json(options.standard_input(), source.file);
+  } else {
+    require_readable(path, path, "");
+    if (is_model_file(path)) {
+      source.model = load_model(path, {.outside_files = options.outside_files});
+      source.document = make_scene(path, *source.model, overrides);
+    } else if (path.extension() == ".json") {
+      source.document = read_json_file(path, options.faults);
+    } else {
+      throw SceneError(
+          path.string(), "",
+          "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
+          "another extension");
+    }
+  }
+  apply_overrides(source.document, source.file, overrides);
+  return source;
+}
+
+/// What reading a file's document takes.
+struct Reading {
+  const fs::path& file;
+  const std::vector<std::string>& overrides;
+  const LoadOptions& options;
+  std::vector<std::string> warnings = {};
+  FrameCache* cache = nullptr;
+
+  JsonContext context() {
+    return {.file = file,
+            .native_code = options.native_code,
+            .warnings = &warnings,
+            .measures = !(cache && cache->checks()),
+            .outside_files = options.outside_files,
+            .cache = cache};
+  }
+};
+
+/// `read()`. The place of an error is in the document as settings and tracks changed it: says which of them
+/// had a part in it.
+template <class Read>
+auto explained(const json& document, const Reading& reading, const Read& read) {
   try {
-    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
-    scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-    return scene;
+    return read();
   } catch (const SceneError& error) {
-    // The place is in the file as the overrides changed it: say which of them had a part in it.
-    if (error.file == file.string())
-      for (const std::string& setting : overrides)
-        if (concerns(setting, error.place))
-          throw SceneError(error.file, error.place,
+    if (error.file != reading.file.string() || error.place.empty()) throw;
+    if (const auto frame = reading.options.frame; frame && !error.place.starts_with("/animate"))
+      if (const std::string track = track_of(document, error.place); !track.empty())
+        throw SceneError(error.file, error.place,
+                         fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track));
+    for (const std::string& setting : reading.overrides)
+      if (overlap(pointer_of(document, setting), error.place))
+        throw SettingError(error.file, error.place,
                            fmt::format("{} (changed by the setting {})", error.reason, setting));
     throw;
   }
 }
 
+/// Makes the document that of the frame. A setting that a track would undo is refused.
+void animate(json& document, Reading& reading) {
+  if (!reading.options.frame) return;
+  const JsonContext context = reading.context();
+  explained(document, reading, [&] { apply_animation(document, *reading.options.frame, context); });
+  for (const std::string& setting : reading.overrides)
+    if (const std::string track = track_of(document, pointer_of(document, setting), true); !track.empty())
+      throw SettingError(
+          reading.file.string(), track,
+          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the "
+                      "track",
+                      setting));
+}
+
+SceneDescription read_document(const json& document, Reading& reading, std::optional<Model> model) {
+  return explained(document, reading, [&] {
+    const JsonContext context = reading.context();
+    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
+    scene.warnings.insert(scene.warnings.end(), reading.warnings.begin(), reading.warnings.end());
+    return scene;
+  });
+}
+
 }  // namespace
+
+struct SceneFrames::State {
+  SceneSource source;
+  std::vector<std::string> overrides;
+  LoadOptions options;
+  FrameCache cache = {};
+  json document = {};                               // of the last frame
+  std::shared_ptr<const SceneDescription> scene{};  // of that document; null: none was read
+};
+
+SceneFrames::SceneFrames(const fs::path& path, std::vector<std::string> overrides, LoadOptions options)
+    : state_(std::make_unique<State>(open_source(path, overrides, options), std::move(overrides),
+                                     std::move(options))) {}
+
+SceneFrames::~SceneFrames() = default;
+
+std::shared_ptr<const SceneDescription> SceneFrames::read(std::optional<double> frame) {
+  State& state = *state_;
+  LoadOptions options = state.options;
+  options.frame = frame;
+  Reading reading{state.source.file, state.overrides, options, {}, &state.cache};
+  json document = state.source.document;
+  animate(document, reading);
+  std::shared_ptr<const SceneDescription> next;
+  if (state.scene)
+    next = explained(document, reading,
+                     [&] { return change_scene(*state.scene, state.document, document, options); });
+  if (!next) {
+    next = std::make_shared<const SceneDescription>(read_document(document, reading, state.source.model));
+    state.cache.end_frame();
+  }
+  state.document = std::move(document);
+  return state.scene = std::move(next);
+}
+
+std::shared_ptr<const SceneDescription> SceneFrames::check(const std::vector<int>& frames) {
+  std::shared_ptr<const SceneDescription> first;
+  state_->cache.check(true);
+  for (const int frame : frames)
+    if (const auto scene = read(frame); !first) first = scene;
+  state_->cache.check(false);
+  state_->scene = nullptr;
+  return first;
+}
 
 bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
 
@@ -83,23 +200,10 @@ std::string scene_file_name(const fs::path& path) {
 
 SceneDescription load_scene(const fs::path& path, const std::vector<std::string>& overrides,
                             const LoadOptions& options) {
-  if (is_standard_input(path) && options.standard_input) {
-    const fs::path name = scene_file_name(path);
-    return read_with_overrides(parse_json(options.standard_input(), name), name, overrides, options,
-                               std::nullopt);
-  }
-  require_readable(path, path, "");
-  if (is_model_file(path)) {
-    Model model = load_model(path, {.outside_files = options.outside_files});
-    json document = make_scene(path, model, overrides);
-    return read_with_overrides(std::move(document), path, overrides, options, std::move(model));
-  }
-  if (path.extension() != ".json")
-    throw SceneError(
-        path.string(), "",
-        "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
-        "another extension");
-  return read_with_overrides(read_json_file(path, options.faults), path, overrides, options, std::nullopt);
+  SceneSource source = open_source(path, overrides, options);
+  Reading reading{source.file, overrides, options};
+  animate(source.document, reading);
+  return read_document(source.document, reading, std::move(source.model));
 }
 
 }  // namespace sundog

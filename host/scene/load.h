@@ -8,11 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/description.h"
 
 namespace sundog {
 
 class Faults;
+
+/// An error at a place that one of the user's settings has changed, or has not.
+struct SettingError : SceneError {
+  using SceneError::SceneError;
+};
 
 struct LoadOptions {
   std::optional<double> frame = std::nullopt;  // animation frame; none: the scene as written
@@ -33,9 +39,28 @@ std::string scene_file_name(const std::filesystem::path& path);
 /// .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera that frames the bounds,
 /// lights and a grey material are made up where the file has none. `overrides` are "JSON_POINTER=VALUE"
 /// settings, applied in turn before the scene is checked (for a model file they apply to the scene that is
-/// made of it). Throws SceneError{file, place, what}, and UsageError for an override that is not of that
-/// form.
+/// made of it). Throws SceneError{file, place, what}, SettingError where an override had a part in it, and
+/// UsageError for an override that is not of that form.
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                             const LoadOptions& options = {});
+
+/// A scene file whose frames are read one after the other: the file itself is read once, and so is what
+/// frames have in common.
+class SceneFrames {
+ public:
+  /// As load_scene(), whose errors it throws. `options.frame` does not count.
+  SceneFrames(const std::filesystem::path& path, std::vector<std::string> overrides, LoadOptions options);
+  ~SceneFrames();
+
+  /// The scene at that frame of its animation; without one, as it is written.
+  std::shared_ptr<const SceneDescription> read(std::optional<double> frame);
+  /// Throws what reading one of these frames would throw, but for files that their predecessors do not name
+  /// and meshes that they do not generate. Returns the first scene.
+  std::shared_ptr<const SceneDescription> check(const std::vector<int>& frames);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace sundog

@@ -28,7 +28,8 @@ Function* next(const char* name) {
 }
 
 int control(const char* name, int file, int command, void* argument) {
-  if ((command == F_SETLK || command == F_SETLKW || command == F_OFD_SETLK) && has_no_locks(file)) {
+  if ((command == F_SETLK || command == F_SETLKW || command == F_OFD_SETLK || command == F_OFD_SETLKW) &&
+      has_no_locks(file)) {
     errno = ENOLCK;
     return -1;
   }

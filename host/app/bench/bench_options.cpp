@@ -122,16 +122,9 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
   if (!options.size.empty())
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  try {
-    return load_beside({options.json, options.csv, options.html}, [&] {
-      return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
-    });
-  } catch (const SceneError& error) {
-    for (const std::string& setting : overrides)
-      if (error.file == scene_file_name(file) && concerns(setting, error.place))
-        throw UsageError(error.what());
-    throw;
-  }
+  return load_beside({options.json, options.csv, options.html}, [&] {
+    return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
+  });
 }
 
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,

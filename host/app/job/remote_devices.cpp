@@ -52,23 +52,40 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
 
 namespace {
 
-std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
-  const auto overrides = settings.at("overrides").get<std::vector<std::string>>();
+std::unique_ptr<SceneFrames> open_frames(const json& settings) {
   if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
-  LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
-                      settings.at("outside_files").get<bool>()};
-  if (settings.at("frame").is_number()) options.frame = settings["frame"].get<double>();
+  const LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
+                            settings.at("outside_files").get<bool>()};
+  return std::make_unique<SceneFrames>(settings.at("scene").get<std::string>(),
+                                       settings.at("overrides").get<std::vector<std::string>>(),
+                                       with_streams(options));
+}
+
+std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
+  std::optional<double> frame;
+  if (settings.at("frame").is_number()) frame = settings["frame"].get<double>();
+  return std::make_shared<const CompiledScene>(compile(*open_frames(settings)->read(frame)));
+}
+
+/// The same of a scene of which frames have been rendered.
+std::shared_ptr<const CompiledScene> load_frame(const json& settings, const std::string& of_all,
+                                                KeptOpen& kept) {
+  if (kept.frames_settings != of_all) kept.frames = open_frames(settings);
+  kept.frames_settings = of_all;
   return std::make_shared<const CompiledScene>(
-      compile(load_scene(settings.at("scene").get<std::string>(), overrides, with_streams(options))));
+      kept.compiler.compile(*kept.frames->read(settings.at("frame").get<double>())));
 }
 
 /// The devices of one process render the same scene: it is loaded once.
 std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
   json of_scene;
-  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files", "frame"})
+  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files"})
     of_scene[key] = settings.at(key);
+  const std::string of_all = of_scene.dump();
+  of_scene["frame"] = settings.at("frame");
   const std::lock_guard lock(kept.mutex);
-  if (kept.scene_settings != of_scene.dump()) kept.scene = load_flat(settings);
+  if (kept.scene_settings != of_scene.dump())
+    kept.scene = settings.at("frame").is_number() ? load_frame(settings, of_all, kept) : load_flat(settings);
   kept.scene_settings = of_scene.dump();
   return kept.scene;
 }

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "app/options/options.h"
-#include "compile/compiled_scene.h"
+#include "compile/scene_compiler.h"
 #include "render/frame/tile_server.h"
 #include "render/remote/tile_worker.h"
 #include "render/render.h"
+#include "scene/load.h"
 
 namespace sundog {
 
@@ -26,9 +27,12 @@ struct KeptDevice {
 
 /// What a process that serves several devices, or several frames, keeps from one to the next. Any thread.
 struct KeptOpen {
-  std::mutex mutex;                                            // for what follows
-  std::string scene_settings;                                  // that the scene was loaded by
-  std::shared_ptr<const CompiledScene> scene;                  // the last
+  std::mutex mutex;                            // for what follows
+  std::string scene_settings;                  // that the scene was loaded by
+  std::shared_ptr<const CompiledScene> scene;  // the last
+  std::string frames_settings;                 // the same without the frame
+  std::unique_ptr<SceneFrames> frames;         // of an animation
+  SceneCompiler compiler;
   std::map<std::string, std::shared_ptr<KeptDevice>> devices;  // by label
 };
 

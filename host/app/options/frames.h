@@ -1,49 +1,18 @@
-// The frames of an animation: their numbers, their files, and which of them are done.
+// The frames of an animation: their numbers and the names of their files.
 #pragma once
-#include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
 namespace sundog {
 
-/// Frames first..last, both included.
-struct FrameRange {
-  int first = 0, last = 0;
-};
+/// The frames of a list such as "0..48", "48..0" or "1,4,10..20", each from 0 to 999999, in its order and
+/// each once; of a range every `step`-th. Throws UsageError.
+std::vector<int> parse_frames(const std::string& text, int step = 1);
 
-/// "A..B" or "N", A <= B, each 0..999999. Throws UsageError.
-FrameRange parse_frames(const std::string& text);
+/// "3, 7..9": the frames by rising number.
+std::string frames_text(std::vector<int> frames);
 
 /// "out.png" -> "out_0007.png"; a run of # in the name takes the number instead: "f##.png" -> "f07.png".
 std::string frame_file(const std::string& out, int frame);
-
-/// What tells whether a frame is done.
-struct FrameFiles {
-  int frame = 0, width = 0, height = 0;
-  std::string image, scene, checkpoint;
-};
-
-/// Which frames are done, kept in a JSON file beside the checkpoint, so that an interrupted animation
-/// continues with the first frame that is not. Empty path: nothing is kept.
-class FrameLog {
- public:
-  /// Reads the file when it is there. A damaged one is renamed, with a warning; the pictures then tell which
-  /// frames are done.
-  explicit FrameLog(std::string path);
-  /// Whether the frame of this hash is done, and its image is still there.
-  bool done(const FrameFiles& files, std::uint64_t hash);
-  void add(int frame, std::uint64_t hash);
-  void remove();
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
- private:
-  static bool has_picture(const FrameFiles& files, std::uint64_t hash);
-
-  std::string path_;
-  bool damaged_ = false;
-  std::vector<std::string> warnings_;
-  std::map<int, std::string> hashes_;
-};
 
 }  // namespace sundog

@@ -29,8 +29,9 @@ struct RenderCommand : PictureOptions {
   std::optional<PartOfFrame> part;  // OUT is a part of the frame, not an image
   int tile = 0;
   double time_limit = 0, noise = 0, write_every = 0;  // 0: none
-  std::optional<FrameRange> frames;                   // of an animation; the files are numbered
+  std::vector<int> frames;                            // of an animation; the files are numbered
   std::optional<double> frame;                        // the one of them that is rendered now
+  bool skip_existing = false;                         // frames whose picture is there are left alone
   std::string stats, resume;                          // files; empty: none
   std::vector<std::string> aovs;
   bool denoise = false;        // the picture, when it is made

@@ -16,6 +16,7 @@
 
 #include "app/process/warnings.h"
 #include "base/error.h"
+#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -53,6 +54,8 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
   try {
     return command();
   } catch (const UsageError& error) {
+    return fail(exit_usage, error.what());
+  } catch (const SettingError& error) {
     return fail(exit_usage, error.what());
   } catch (const SceneError& error) {
     return fail(exit_scene, error.what());

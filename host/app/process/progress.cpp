@@ -43,19 +43,28 @@ std::string bar_line(double fraction, const std::string& text, int columns) {
   return fmt::format("[{:#<{}}{:.<{}}]{}", "", filled, "", bar - filled, text);
 }
 
-std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns) {
+double RunProgress::seconds_left(double all, double left) const {
+  const double each = rendered > 0 ? seconds / static_cast<double>(rendered) : all;
+  return left + each * static_cast<double>(total - std::min(total, over + 1));
+}
+
+std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns,
+                          const RunProgress& run) {
   const double total = static_cast<double>(std::max<std::uint64_t>(now.pixels_total, 1));
   const double fraction = static_cast<double>(now.pixels_done) / total;
   const double seconds = now.seconds - since.seconds;
   const double rate = seconds > 0 ? static_cast<double>(now.pixels_done - since.pixels_done) / seconds : 0;
-  std::string text = fmt::format(" {:3.0f} %", 100 * fraction);
+  std::string text = run.total > 1 ? fmt::format(" frame {}/{}", run.over + 1, run.total) : "";
+  text += fmt::format(" {:3.0f} %", 100 * fraction);
   if (rate > 0)
     text += fmt::format("  {:.3g} Mpixel/s  {} left", rate / 1e6,
-                        duration_text(static_cast<double>(now.pixels_total - now.pixels_done) / rate));
-  return bar_line(fraction, text, columns);
+                        duration_text(run.seconds_left(total / rate, (1 - fraction) * total / rate)));
+  const double frames = static_cast<double>(std::max<std::size_t>(run.total, 1));
+  return bar_line((static_cast<double>(run.over) + fraction) / frames, text, columns);
 }
 
-ProgressBar::ProgressBar(bool wanted) : shown_(wanted && stderr_is_terminal()) {}
+ProgressBar::ProgressBar(bool wanted, const RunProgress& run)
+    : shown_(wanted && stderr_is_terminal()), run_(run) {}
 
 ProgressBar::~ProgressBar() { erase(); }
 
@@ -66,7 +75,7 @@ void ProgressBar::update(const RenderProgress& progress) {
   if (!shown_ || (last_drawn_ >= 0 && now - last_drawn_ < seconds_between_bars)) return;
   last_drawn_ = now;
   drawn_ = true;
-  tell(fmt::format("\r{}\033[K", progress_line(progress, first_, terminal_columns())));
+  tell(fmt::format("\r{}\033[K", progress_line(progress, first_, terminal_columns(), run_)));
   std::fflush(stderr);
 }
 

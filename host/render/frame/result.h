@@ -30,6 +30,7 @@ struct RenderResult {
   std::uint64_t key = 0;            // of the scene, for write_checkpoint; 0 without a checkpoint
   std::exception_ptr failure;       // every device failed: what the last one threw (options.keep_failed)
   bool checkpoint_kept = false;     // an interrupted frame is in the checkpoint
+  std::string checkpoint_left;      // why the frame did not continue from one (options.renews_checkpoint)
   std::string checkpoint_error;     // why it could not be written there
 };
 

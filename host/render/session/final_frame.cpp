@@ -117,6 +117,21 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   return frame;
 }
 
+/// The same without a checkpoint that does not fit, if the options want that; `left` says why it does not.
+std::shared_ptr<Frame> begin_or_renew(const Scene& scene, const std::vector<ServerPlan>& devices,
+                                      const RenderOptions& options, std::uint64_t key, std::string& left) {
+  try {
+    return begin_frame(scene, devices, options, key);
+  } catch (const std::exception& error) {
+    if (!options.renews_checkpoint || !is_there(options.resume)) throw;
+    left = error.what();
+  }
+  RenderOptions anew = options;
+  anew.checkpoint = checkpoint_path(options);
+  anew.resume.clear();
+  return begin_frame(scene, devices, anew, key);
+}
+
 std::vector<DeviceReport> reports(Frame& frame) {
   std::vector<DeviceReport> result;
   double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
@@ -206,10 +221,12 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
   const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);
-  const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options, key);
+  std::string left;
+  const std::shared_ptr<Frame> frame = begin_or_renew(scene, devices, options, key, left);
   run(frame);
   const bool stopped = options.stop && options.stop->load();
   RenderResult result = finish_frame(*frame, key);
+  result.checkpoint_left = std::move(left);
   if (!result.complete && !stopped) result.failure = frame->last_error;
   if (result.failure && !(options.keep_failed && frame->pixels_done > 0))
     std::rethrow_exception(result.failure);

@@ -48,6 +48,7 @@ struct RenderOptions {
   std::filesystem::path resume;      // a checkpoint: read when it exists
   std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
                                      // that is `resume`
+  bool renews_checkpoint = false;    // one that is of another frame, or damaged, is left unread
   double checkpoint_seconds = 60;    // between those written on the way
   std::shared_ptr<Faults> faults;    // of checkpoints
   std::atomic<bool>* keep_now = nullptr;        // set: write one at once, and take this back

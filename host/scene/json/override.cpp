@@ -47,6 +47,28 @@ std::optional<std::size_t> array_index(std::string_view token) {
   return index;
 }
 
+/// The item that a token means: by its index, or by the name that no other item has.
+std::optional<std::size_t> item_index(const json& array, std::string_view token) {
+  if (const auto index = array_index(token)) return *index < array.size() ? index : std::nullopt;
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < array.size(); ++i)
+    if (array[i].is_object() && array[i].contains("name") && array[i]["name"] == token) {
+      if (found) return std::nullopt;
+      found = i;
+    }
+  return found;
+}
+
+/// What a token leads to; null: nothing.
+const json* child_of(const json& parent, const std::string& token) {
+  if (parent.is_array()) {
+    const auto index = item_index(parent, token);
+    return index ? &parent[*index] : nullptr;
+  }
+  const auto found = parent.find(token);  // of what is no object: end()
+  return found == parent.end() ? nullptr : &*found;
+}
+
 json parse_value(std::string_view text, const fs::path& file) {
   try {
     return parse_json(text, file);
@@ -58,8 +80,8 @@ json parse_value(std::string_view text, const fs::path& file) {
 /// One step along a pointer: the child of `parent`, created if allowed.
 class Step {
  public:
-  Step(const std::vector<std::string>& tokens, std::string_view setting, const fs::path& file)
-      : tokens_(tokens), setting_(setting), file_(file) {}
+  Step(const std::vector<std::string>& tokens, std::string_view subject, const fs::path& file)
+      : tokens_(tokens), subject_(subject), file_(file) {}
 
   json* go(json& parent, std::size_t depth) const {
     if (parent.is_array()) return item(parent, depth);
@@ -77,15 +99,15 @@ class Step {
   }
 
   [[noreturn]] void fail(std::size_t depth, std::string_view why) const {
-    throw SceneError(file_.string(), pointer(depth + 1),
-                     fmt::format("the setting {} leads nowhere: {}", setting_, why));
+    throw SceneError(file_.string(), pointer(depth + 1), fmt::format("{} leads nowhere: {}", subject_, why));
   }
 
   json* item(json& array, std::size_t depth) const {
     if (tokens_[depth] == "-") return &array.emplace_back();
-    const auto index = array_index(tokens_[depth]);
-    if (!index || *index >= array.size())
-      fail(depth, fmt::format("{} has {} items, counted from 0", pointer(depth), array.size()));
+    const auto index = item_index(array, tokens_[depth]);
+    if (!index)
+      fail(depth, fmt::format("{} has {} items, counted from 0{}", pointer(depth), array.size(),
+                              array_index(tokens_[depth]) ? "" : ", and not one alone of that name"));
     return &array[*index];
   }
 
@@ -104,30 +126,67 @@ class Step {
   }
 
   const std::vector<std::string>& tokens_;
-  std::string_view setting_;
+  std::string_view subject_;
   const fs::path& file_;
 };
 
-}  // namespace
-
-void apply_override(json& document, std::string_view setting, const fs::path& file) {
-  const std::size_t equals = setting.find('=');
-  if (equals == std::string_view::npos || equals < 2 || setting[0] != '/')
+/// Where the pointer of a setting ends: at the "=" before which it leads to something, or the first.
+std::size_t end_of_pointer(const json& document, std::string_view setting) {
+  const std::size_t first = setting.find('=');
+  if (first == std::string_view::npos || first < 2 || setting[0] != '/')
     throw UsageError(
         fmt::format("the setting {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
-  const std::vector<std::string> tokens = split_pointer(setting.substr(0, equals));
-  const Step step(tokens, setting, file);
+  for (std::size_t at = first; at != std::string_view::npos; at = setting.find('=', at + 1)) {
+    const json* place = &document;
+    for (const std::string& token : split_pointer(setting.substr(0, at))) {
+      if (!place) break;
+      place = child_of(*place, token);
+    }
+    if (place) return at;
+  }
+  return first;
+}
+
+}  // namespace
+
+bool leads_through(std::string_view longer, std::string_view shorter) {
+  return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
+}
+
+bool overlap(std::string_view a, std::string_view b) { return leads_through(a, b) || leads_through(b, a); }
+
+std::string resolve_names(const json& document, std::string_view pointer) {
+  std::string result;
+  const json* place = &document;
+  for (const std::string& token : split_pointer(pointer)) {
+    const auto index = place && place->is_array() ? item_index(*place, token) : std::nullopt;
+    result = join_pointer(result, index ? std::to_string(*index) : token);
+    if (place) place = child_of(*place, token);
+  }
+  return result;
+}
+
+std::string pointer_of(const json& document, std::string_view setting) {
+  return resolve_names(document, setting.substr(0, end_of_pointer(document, setting)));
+}
+
+void set_value(json& document, std::string_view pointer, json value, const fs::path& file,
+               std::string_view subject) {
+  const std::vector<std::string> tokens = split_pointer(pointer);
+  const Step step(tokens, subject, file);
   json* place = &document;
   for (std::size_t depth = 0; depth < tokens.size(); ++depth) place = step.go(*place, depth);
-  *place = parse_value(setting.substr(equals + 1), file);
+  *place = std::move(value);
+}
+
+void apply_override(json& document, std::string_view setting, const fs::path& file) {
+  const std::size_t equals = end_of_pointer(document, setting);
+  set_value(document, setting.substr(0, equals), parse_value(setting.substr(equals + 1), file), file,
+            fmt::format("the setting {}", setting));
 }
 
 bool concerns(std::string_view setting, std::string_view place) {
-  const std::string_view pointer = setting.substr(0, setting.find('='));
-  const auto leads_through = [](std::string_view longer, std::string_view shorter) {
-    return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
-  };
-  return !place.empty() && (leads_through(place, pointer) || leads_through(pointer, place));
+  return !place.empty() && overlap(setting.substr(0, setting.find('=')), place);
 }
 
 }  // namespace sundog

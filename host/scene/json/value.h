@@ -31,6 +31,8 @@ inline constexpr Range above_0{.low = 0, .low_open = true};
 inline constexpr Range zero_to_one{.low = 0, .high = 1};
 inline constexpr Range color_range{.low = 0, .high = 1e6};
 
+class FrameCache;
+
 /// What the values of one file share. `asked`, when set, collects the keys asked for, by kind of object: a
 /// test compares them with the JSON Schema.
 struct JsonContext {
@@ -38,8 +40,9 @@ struct JsonContext {
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
   bool native_code = false;                      // a scene may carry OpenCL C
   std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
-  bool measures = true;        // formulas are tried out; who only checks keys and types need not
-  bool outside_files = false;  // a scene may name files outside its folder
+  bool measures = true;         // formulas are tried out; who only checks keys and types need not
+  bool outside_files = false;   // a scene may name files outside its folder
+  FrameCache* cache = nullptr;  // of the frames before this one
 };
 
 /// Allowed keys or choices, in a static array.

@@ -26,7 +26,8 @@ IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
   return cavity;
 }
 
-Mesh read_ice_block(JsonObject& object) {
+/// Of a recipe that is only checked the mesh is empty.
+Mesh read_ice_block(JsonObject& object, bool checks) {
   static constexpr std::string_view types[] = {"ice_block"}, parts[] = {"ice", "liquid"};
   object.choice("type", "ice_block", types);
   IceBlock block;
@@ -38,21 +39,27 @@ Mesh read_ice_block(JsonObject& object) {
     block.cavity = cavity->object("generate_ice_cavity",
                                   [&](JsonObject& inner) { return read_cavity(inner, block.outer); });
   }
-  if (object.choice("part", "ice", parts) == "ice") return make_ice(block);
+  if (object.choice("part", "ice", parts) == "ice") return checks ? Mesh() : make_ice(block);
   const double level = object.at("level", "the height of the liquid's surface").number();
-  return make_ice_liquid(block, level, object.number("wall", 0.5, {.low = 0.01, .high = 0.99}));
+  const double wall = object.number("wall", 0.5, {.low = 0.01, .high = 0.99});
+  return checks ? Mesh() : make_ice_liquid(block, level, wall);
 }
 
-}  // namespace
-
-Mesh generate_mesh(const JsonValue& recipe) {
+Mesh follow(const JsonValue& recipe, bool checks) {
   static constexpr std::string_view types[] = {"ice_block"};
   recipe.member("type", "a recipe with a \"type\"").choice(types);
   try {
-    return recipe.object("generate_ice_block", read_ice_block);
+    return recipe.object("generate_ice_block",
+                         [&](JsonObject& object) { return read_ice_block(object, checks); });
   } catch (const GenerateError& error) {
     recipe.fail(error.what());
   }
 }
+
+}  // namespace
+
+Mesh generate_mesh(const JsonValue& recipe) { return follow(recipe, false); }
+
+void check_recipe(const JsonValue& recipe) { follow(recipe, true); }
 
 }  // namespace sundog

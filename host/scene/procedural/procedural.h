@@ -11,4 +11,7 @@ namespace sundog {
 /// $defs/generate_<type>.
 Mesh generate_mesh(const JsonValue& recipe);
 
+/// Reads the parameters alone.
+void check_recipe(const JsonValue& recipe);
+
 }  // namespace sundog

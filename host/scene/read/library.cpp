@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/materials/by_integrator.h"
+#include "scene/read/frame_cache.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -74,10 +75,15 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   return std::move(model.objects);
 }
 
-const ModelLibrary::Parts& ModelLibrary::load(const fs::path& file, const ModelOptions& options) {
+const ModelLibrary::Parts& ModelLibrary::load(const fs::path& file, const ModelOptions& options,
+                                              const std::string& place) {
   const std::pair key(file_key(file), options.crease_angle);
   if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
-  return loaded_.emplace(key, add(load_model(file, options), file.filename().string())).first->second;
+  const auto read = [&] { return load_model(file, options); };
+  Model model =
+      cache_ ? cache_->model(fmt::format("{} {}", key.first, options.crease_angle.value_or(-1)), place, read)
+             : read();
+  return loaded_.emplace(key, add(std::move(model), file.filename().string())).first->second;
 }
 
 void ModelLibrary::keep(const fs::path& file, Model model) {

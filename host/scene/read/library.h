@@ -12,6 +12,8 @@
 
 namespace sundog {
 
+class FrameCache;
+
 /// Where an object stands: what it takes from its groups and from itself.
 struct Placement {
   dmat4 world_from_object{1};
@@ -25,15 +27,17 @@ struct Placement {
 class ModelLibrary {
  public:
   /// Adds to `scene`, which must outlive the library.
-  explicit ModelLibrary(SceneDescription& scene) : scene_(scene) {}
+  explicit ModelLibrary(SceneDescription& scene, FrameCache* cache = nullptr)
+      : scene_(scene), cache_(cache) {}
 
   /// A model in the scene's tables: objects with the scene's indices, in model space.
   using Parts = std::vector<Object>;
 
   /// Adds a model; `name` prefixes its materials' and media's names.
   Parts add(Model model, const std::string& name);
-  /// Reads and adds a model file, or finds what was added before. Throws what load_model() throws.
-  const Parts& load(const std::filesystem::path& file, const ModelOptions& options = {});
+  /// Reads and adds a model file, or finds what was added before. `place` names it. Throws what load_model()
+  /// throws.
+  const Parts& load(const std::filesystem::path& file, const ModelOptions& options, const std::string& place);
   /// Adds a model that has been read already, for load() to find.
   void keep(const std::filesystem::path& file, Model model);
 
@@ -44,6 +48,7 @@ class ModelLibrary {
   int grey();
 
   SceneDescription& scene_;
+  FrameCache* cache_;
   std::map<std::pair<std::string, std::optional<double>>, Parts> loaded_;
   int grey_ = -1;
 };

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
-#include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/decode_images.h"
 #include "scene/displace.h"
@@ -19,11 +18,13 @@
 #include "scene/materials/presets.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/dark_world.h"
+#include "scene/read/frame_cache.h"
 #include "scene/read/library.h"
 #include "scene/read/motion.h"
 #include "scene/read/parts.h"
 #include "scene/read/surfaces.h"
 #include "scene/read/textures.h"
+#include "scene/read/tracks.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -33,7 +34,7 @@ namespace {
 class SceneReader {
  public:
   SceneReader(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made)
-      : root_(root), made_(made), library_(scene_) {
+      : root_(root), made_(made), library_(scene_, cache()) {
     scene_.file = root.context().file;
     scene_.media.push_back(outer_vacuum());
     if (known) library_.keep(scene_.file, std::move(*known));
@@ -41,7 +42,7 @@ class SceneReader {
 
   SceneDescription read() {
     root_.object("scene", [&](JsonObject& object) { read_root(object); });
-    decode_images(scene_);
+    decode_images(scene_, cache());
     displace_meshes(scene_);
     return std::move(scene_);
   }
@@ -51,7 +52,7 @@ class SceneReader {
     object.text("$schema", " ");
     if (const auto image = object.find("image")) scene_.image = read_image(*image);
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
-    if (const auto animate = object.find("animate")) read_tracks(*animate);  // load.cpp has applied them
+    if (const auto animate = object.find("animate")) read_tracks(*animate);  // animate.cpp has applied them
     bool placed = false;
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
@@ -99,9 +100,16 @@ class SceneReader {
     return file;
   }
 
-  /// An image file named in the scene, whose pixels must be finite.
+  FrameCache* cache() const { return root_.context().cache; }
+
   Image read_picture(const JsonValue& value) const {
     const fs::path file = find_file(value);
+    const auto read = [&] { return read_finite(file); };
+    return cache() ? cache()->picture(file.string(), read) : read();
+  }
+
+  /// An image file whose pixels must be finite.
+  static Image read_finite(const fs::path& file) {
     Image image = read_image(file);
     for (std::size_t i = 0; i < image.data.size(); ++i)
       if (!std::isfinite(image.data[i])) {
@@ -126,18 +134,21 @@ class SceneReader {
         ModelOptions options = model_options();
         if (const auto angle = object.find("crease_angle"))
           options.crease_angle = angle->number({.low = 0, .high = 180});
-        return library_.load(file, options);
+        return library_.load(file, options, from.pointer());
       }
-      return add_mesh(generate_mesh(from), name);
+      const auto generate = [&] { return model_of(generate_mesh(from), name); };
+      if (!cache()) return library_.add(generate(), name);
+      if (cache()->checks()) check_recipe(from);
+      return library_.add(cache()->model(from.json().dump(), from.pointer(), generate), name);
     });
   }
 
-  ModelLibrary::Parts add_mesh(Mesh mesh, const std::string& name) {
+  static Model model_of(Mesh mesh, const std::string& name) {
     Model made;
     made.meshes.push_back(std::move(mesh));
     made.meshes.back().name = name;
     made.objects.emplace_back().shape = MeshShape{0};
-    return library_.add(std::move(made), name);
+    return made;
   }
 
   void add_made_meshes() {
@@ -145,7 +156,7 @@ class SceneReader {
       if (meshes_.contains(name))
         throw SceneError(scene_.file.string(), join_pointer("/meshes", name),
                          "the program has made a mesh of that name too; wanted two names");
-      meshes_.emplace(name, add_mesh(*mesh, name));
+      meshes_.emplace(name, library_.add(model_of(*mesh, name), name));
     }
   }
 
@@ -177,9 +188,8 @@ class SceneReader {
         const JsonValue name = object.at("mesh", "the name of a mesh");
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
-        library_.place(
-            library_.load(find_model(object.at("file", "the path of a model file")), model_options()),
-            placement);
+        const JsonValue file = object.at("file", "the path of a model file");
+        library_.place(library_.load(find_model(file), model_options(), file.pointer()), placement);
       } else if (type == "field") {
         place_field(object, find_name(object.at("field", "the name of a field"), fields_, "field"),
                     placement);

@@ -220,7 +220,8 @@ RenderSettings read_render(const JsonValue& value) {
       });
     render.caustics = object.boolean("caustics", render.caustics);
     render.sampler = object.choose("sampler", render.sampler, samplers);
-    render.seed = object.integer("seed", render.seed, 0, std::numeric_limits<int>::max());
+    if (const auto seed = object.find("seed"); seed && seed->json() != "frame")
+      render.seed = seed->integer(0, std::numeric_limits<int>::max());
     read_filter(object, render);
     read_sampling(object, render);
     render.tracer = object.choose("tracer", render.tracer, tracers);
@@ -303,6 +304,7 @@ LightDescription read_light(const JsonValue& value) {
     LightDescription light;
     light.type = type;
     object.at("type", "");
+    object.text("name", " ");  // for pointers
     light.color = object.color("color", light.color);
     if (const auto kelvin = object.find("temperature"))
       light.color *= black_body_color(kelvin->number({.low = 500, .high = 1e5}));

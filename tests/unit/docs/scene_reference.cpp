@@ -70,7 +70,7 @@ const std::vector<Group>& groups() {
        "field"},
       {"Animation",
        "An entry of `animate` has one of these types.",
-       {"keyed_track", "rotate_track", "track_key"}}};
+       {"keyed_track", "rotate_track", "track_key", "track_handle"}}};
   return all;
 }
 

@@ -66,6 +66,128 @@ TEST_CASE("a rotate track turns a point about an axis from where it stands") {
   CHECK(glm::distance(end, dvec3(0, 0, -2)) < 1e-12);
 }
 
+TEST_CASE("a smooth track never leaves the values of two neighbouring keys") {
+  const auto fov = [](double frame) {
+    return frame_of(R"({"type": "smooth", "value": "/camera/fov", "keys": [{"frame": 0, "value": 10},
+      {"frame": 10, "value": 10}, {"frame": 12, "value": 40}, {"frame": 22, "value": 40}, {"frame": 23, "value": 30}]})",
+                    frame)
+        .camera.fov;
+  };
+  for (double frame = 0; frame <= 10; frame += 0.5) CHECK(fov(frame) == 10);
+  for (double frame = 12; frame <= 22; frame += 0.5) CHECK(fov(frame) == 40);
+  for (double frame = 10; frame < 12; frame += 0.125) CHECK(fov(frame + 0.125) > fov(frame));
+  CHECK(fov(22.5) < 40);
+}
+
+TEST_CASE("a cycle begins again after its last key, without a hitch") {
+  const std::string keys = R"(, "cycle": true, "keys": [{"frame": 0, "value": 30}, {"frame": 12, "value": 50},
+    {"frame": 36, "value": 10}, {"frame": 48, "value": 30}]})";
+  const auto fov = [&](const char* type, double frame) {
+    return frame_of(fmt::format(R"({{"type": "{}", "value": "/camera/fov")", type) + keys, frame).camera.fov;
+  };
+  for (const char* type : {"step", "linear", "smooth", "bezier"}) {
+    CAPTURE(type);
+    CHECK(fov(type, 55) == Approx(fov(type, 7)));
+    CHECK(fov(type, -5) == Approx(fov(type, 43)));
+    CHECK(fov(type, 48) == 30);
+  }
+  const double h = 1e-3;
+  CHECK((fov("smooth", 48 + h) - fov("smooth", 48)) / h ==
+        Approx((fov("smooth", 48) - fov("smooth", 48 - h)) / h).epsilon(1e-3));
+  CHECK(fov("smooth", 48 + h) - fov("smooth", 48) > h);
+  const std::string turn =
+      R"({"type": "rotate", "value": "/camera/position", "degrees": 360, "last": 20, "cycle": true})";
+  CHECK(glm::distance(frame_of(turn, 25).camera.position, frame_of(turn, 5).camera.position) < 1e-12);
+}
+
+TEST_CASE("a step track, texts and booleans stay as they are until the next key") {
+  CHECK(frame_of(fov_track("step"), 9.9).camera.fov == 20);
+  CHECK(frame_of(fov_track("step"), 10).camera.fov == 40);
+  CHECK(frame_of(fov_track("step"), 30).camera.fov == 100);
+  const std::string sampler = R"({"type": "linear", "value": "/render/sampler", "keys": [
+    {"frame": 0, "value": "sobol"}, {"frame": 4, "value": "independent"}]})";
+  CHECK(frame_of(sampler, 3).render.sampler == SAMPLER_SOBOL);
+  CHECK(frame_of(sampler, 4).render.sampler == SAMPLER_INDEPENDENT);
+  const std::string splits = R"({"type": "step", "value": "/render/spatial_splits", "keys": [
+    {"frame": 0, "value": true}, {"frame": 4, "value": false}]})";
+  CHECK(frame_of(splits, 3).render.spatial_splits);
+  CHECK_FALSE(frame_of(splits, 4).render.spatial_splits);
+}
+
+TEST_CASE("a bezier track goes by its handles, and without any as a smooth one") {
+  const std::string eased = R"({"type": "bezier", "value": "/camera/fov", "keys": [
+    {"frame": 0, "value": 20, "handle_right": {"frame": 4.2, "value": 20}},
+    {"frame": 10, "value": 40, "handle_left": {"frame": 5.8, "value": 40}}]})";
+  CHECK(frame_of(eased, 5).camera.fov == Approx(30));
+  // CSS's cubic-bezier(0.42, 0, 0.58, 1), "ease-in-out": 0.1292 at a quarter of the time.
+  CHECK((frame_of(eased, 2.5).camera.fov - 20) / 20 == Approx(0.1292).margin(5e-4));
+  const std::string over = R"({"type": "bezier", "value": "/camera/fov", "keys": [
+    {"frame": 0, "value": 20}, {"frame": 10, "value": 40, "handle_left": {"frame": 5, "value": 60}}]})";
+  CHECK(frame_of(over, 8).camera.fov > 40);
+  for (const double frame : {3.0, 12.5, 19.0})
+    CHECK(frame_of(fov_track("bezier"), frame).camera.fov ==
+          Approx(frame_of(fov_track("smooth"), frame).camera.fov));
+}
+
+TEST_CASE("tracks call objects and lights by their names, and values by names with any sign in them") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", R"({"camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+    "lights": [{"type": "ambient"}, {"type": "point", "name": "lamp", "position": [0, 4, 0]}],
+    "materials": {"a=b/c": {"color": [0.5, 0.5, 0.5]}},
+    "objects": [{"type": "sphere", "material": "a=b/c"},
+      {"type": "group", "name": "pair", "objects": [{"type": "sphere", "name": "ball", "material": "a=b/c"}]}],
+    "animate": [{"type": "linear", "value": "/lights/lamp/intensity", "keys": [{"frame": 0, "value": 7}]},
+      {"type": "linear", "value": "/objects/pair/objects/ball/radius", "keys": [{"frame": 0, "value": 3}]},
+      {"type": "linear", "value": "/materials/a=b~1c/color/0", "keys": [{"frame": 0, "value": 0.25}]}]})");
+  const SceneDescription scene =
+      load_scene(folder.path() / "scene.json",
+                 {"/lights/lamp/position/1=9", "/materials/a=b~1c/color/1=0.75"}, {.frame = 0});
+  CHECK(scene.lights[1].intensity == 7);
+  CHECK(scene.lights[1].position.y == 9);
+  CHECK(std::get<SphereShape>(scene.objects[1].shape).radius == 3);
+  const dvec3 color = scene.materials[0].diffuse / scene.materials[0].diffuse.z;
+  CHECK(color.x == Approx(0.5));
+  CHECK(color.y == Approx(1.5));
+}
+
+TEST_CASE(
+    "what would be lost is refused: two tracks with keys for one value, a setting that a track undoes") {
+  const auto keyed = [](const char* pointer) {
+    return fmt::format(R"({{"type": "step", "value": "{}", "keys": [{{"frame": 0, "value": 4}}]}})", pointer);
+  };
+  const std::string turn = R"({"type": "rotate", "value": "/camera/position", "last": 9})";
+  CHECK(frame_error(keyed("/camera/fov") + "," + keyed("/camera/fov")).place == "/animate/1");
+  CHECK(
+      frame_error(keyed("/camera/position/0") + "," + keyed("/camera/fov") + "," + keyed("/camera/position"))
+          .place == "/animate/2");
+  CHECK(frame_error(turn + "," + keyed("/camera/position/1")).reason.find("before it") != std::string::npos);
+  CHECK(frame_of(keyed("/camera/position/1") + "," + turn, 0).camera.position.y == 4);
+  const auto with = [&](const char* setting, std::optional<double> frame) {
+    const TemporaryFolder folder;
+    folder.write("scene.json", R"({"camera": {"position": [0, 0, 4], "target": [0, 0, 0]}, "objects": [],
+      "animate": [)" + keyed("/camera/position/0") +
+                                   "," + turn + "]}");
+    return load_scene(folder.path() / "scene.json", {setting}, {.frame = frame});
+  };
+  try {
+    with("/camera/position/0=3", 0);
+    FAIL("no error");
+  } catch (const SettingError& error) {
+    CHECK(error.place == "/animate/0");
+    CHECK(error.reason.find("the setting /camera/position/0=3") != std::string::npos);
+  }
+  CHECK(with("/camera/position/0=3", std::nullopt).camera.position.x == 3);
+  CHECK(with("/camera/position=[1, 2, 3]", 0).camera.position == dvec3(4, 2, 3));  // the rest of it counts
+}
+
+TEST_CASE("errors of a value that a track moves name the frame and the track") {
+  const SceneError error =
+      frame_error(R"({"type": "linear", "value": "/camera/fov", "keys": [{"frame": 0, "value": 20},
+    {"frame": 2, "value": -40}]})");
+  CHECK(error.place == "/camera/fov");
+  CHECK(error.reason.find("(in frame 1, moved by /animate/0)") != std::string::npos);
+}
+
 TEST_CASE("a track's errors name the track") {
   const std::string keys = R"("keys": [{"frame": 0, "value": 1}])";
   CHECK(frame_error(R"({"type": "linear", "value": "/camera/fob", )" + keys + "}").place == "/camera/fob");
@@ -78,4 +200,33 @@ TEST_CASE("a track's errors name the track") {
     {"frame": 1, "value": 2}]})")
             .place == "/animate/0/keys/1");
   CHECK(frame_error(R"({"type": "smooth", "value": "/camera/fov", "keys": []})").place == "/animate/0/keys");
+  CHECK(frame_error(R"({"type": "step", "value": "/objects/ball/radius", )" + keys + "}")
+            .reason.find("not one alone of that name") != std::string::npos);
+  const auto bezier = [](const char* handle) {
+    return fmt::format(R"({{"type": "bezier", "value": "/camera/fov", "keys": [
+      {{"frame": 0, "value": 20, "handle_right": {}}}, {{"frame": 4, "value": 30}}]}})",
+                       handle);
+  };
+  for (const char* handle :
+       {R"({"frame": 5, "value": 20})", R"({"frame": -1, "value": 20})", R"({"frame": 2, "value": [1, 2]})"})
+    CHECK(frame_error(bezier(handle)).place == "/animate/0/keys/0");
+  CHECK(frame_error(R"({"type": "linear", "value": "/camera/fov", "keys": [{"frame": 0, "value": 20},
+    {"frame": 4, "value": "wide"}]})")
+            .place == "/animate/0/keys/1");
+}
+
+TEST_CASE("frames have seeds of their own unless the scene names one") {
+  const std::string still = fov_track("linear");
+  CHECK(frame_of(still, 0).render.seed == 0);
+  CHECK(frame_of(still, 7).render.seed == 7);
+  const TemporaryFolder folder;
+  folder.write("scene.json",
+               R"({"camera": {"position": [0, 0, 4], "target": [0, 0, 0]}, "objects": [], "animate": []})");
+  const auto seed = [&](const std::vector<std::string>& settings, std::optional<double> frame) {
+    return load_scene(folder.path() / "scene.json", settings, {.frame = frame}).render.seed;
+  };
+  CHECK(seed({"/render/seed=5"}, 7) == 5);
+  CHECK(seed({"/render/seed=frame"}, 7) == 7);
+  CHECK(seed({"/render/seed=frame"}, std::nullopt) == 0);
+  CHECK(seed({}, std::nullopt) == 0);
 }

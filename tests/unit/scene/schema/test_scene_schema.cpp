@@ -56,6 +56,7 @@ const std::string everything = R"({
     "i": {"generate": {"type": "ice_block", "subdivision": 4, "cavity": {}}},
     "l": {"generate": {"type": "ice_block", "subdivision": 4, "part": "liquid", "level": 0, "cavity": {}}}},
   "animate": [{"type": "smooth", "value": "/camera/fov", "keys": [{"frame": 0, "value": 30}, {"frame": 9, "value": 40}]},
+    {"type": "bezier", "value": "/camera/near", "keys": [{"frame": 0, "value": 0, "handle_right": {"frame": 1, "value": 0}}]},
     {"type": "rotate", "value": "/lights/1/direction", "last": 60}],
   "fields": {"f": {"field": {"type": "union", "fields": [
       {"type": "intersection", "fields": [{"type": "fractal", "formula": "mandelbulb"}, {"type": "formula", "distance": "length(p) - 1"}]},

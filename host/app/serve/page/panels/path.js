@@ -3,48 +3,67 @@ import {html, Group, Button, useEffect, useRef, useState, useStore} from '../ui.
 import {store} from '../store.js';
 import {NumberField} from '../fields.js';
 import {withView} from '../camera.js';
+import {valueAt} from '../tracks.js';
 
 const parts = ['position', 'target'];
 const pointerOf = (part) => '/camera/' + part;
-const isOfPath = (track) => parts.some((part) => track.value === pointerOf(part));
+const tracksOf = (document) => document?.animate ?? [];
+const isOwn = (track, part) => track.value === pointerOf(part) && track.keys?.length > 0 && track.keys.every((key) => key.value?.length === 3);
+const ownTrack = (document, part) => tracksOf(document).find((track) => isOwn(track, part));
 
-/** The views of the path by rising frame: [{frame, position, target}]. */
+/** The first track that moves the camera's place or target in another way: views cannot be kept beside it. */
+export const otherTrack = (document) =>
+  tracksOf(document).findIndex((track) => parts.some((part) => `${track.value}/`.startsWith(`${pointerOf(part)}/`) && track !== ownTrack(document, part)));
+
+/** The views of the path by rising frame, one at each key: [{frame, position, target}]. */
 export function viewsOf(document) {
-  const tracks = parts.map((part) => (document?.animate ?? []).find((track) => track.value === pointerOf(part) && track.keys));
-  if (!tracks[0] || !tracks[1]) return [];
-  return tracks[0].keys.map((key, i) => ({frame: key.frame, position: key.value, target: tracks[1].keys[i]?.value ?? key.value}));
+  const tracks = parts.map((part) => ownTrack(document, part));
+  const frames = [...new Set(tracks.flatMap((track) => track?.keys.map((key) => key.frame) ?? []))].sort((a, b) => a - b);
+  return frames.map((frame) => viewAt(document, frame));
 }
 
-function write(views) {
-  const others = (store.state.document.animate ?? []).filter((track) => !isOfPath(track));
-  const keys = (part) => views.map((view) => ({frame: view.frame, value: view[part]}));
-  const tracks = views.length ? parts.map((part) => ({type: 'smooth', value: pointerOf(part), keys: keys(part)})) : [];
-  const all = [...tracks, ...others];
+/** What the frame shows; a part without a track stands still. */
+function viewAt(document, frame) {
+  const view = {frame};
+  for (const part of parts) {
+    const track = ownTrack(document, part);
+    view[part] = track ? valueAt(track, frame) : (document.camera?.[part] ?? store.state.resolved.camera[part]);
+  }
+  return view;
+}
+
+/** The path's own tracks with other keys, the rest as it was; `change` makes a part's keys of those that it has. */
+function write(change) {
+  const document = store.state.document;
+  const made = new Map();
+  for (const part of parts) {
+    const track = ownTrack(document, part), keys = change(track?.keys ?? [], part);
+    made.set(part, keys.length ? {type: 'smooth', value: pointerOf(part), ...track, keys} : undefined);
+  }
+  const kept = tracksOf(document).map((track) => {
+    const part = parts.find((p) => track === ownTrack(document, p));
+    return part ? made.get(part) : track;
+  });
+  const fresh = parts.filter((part) => !ownTrack(document, part)).map((part) => made.get(part));
+  const all = [...fresh, ...kept].filter(Boolean);
   store.set('/animate', all.length ? all : undefined);
 }
 
+const without = (keys, frame) => keys.filter((key) => key.frame !== frame);
+
 /** Keeps the camera's view at that frame. */
 export function keepView(camera, frame) {
-  const {position, target} = store.state.resolved.camera;
-  const view = {frame, position: position.slice(), target: target.slice()};
-  const views = [...viewsOf(store.state.document).filter((v) => v.frame !== frame), view].sort((a, b) => a.frame - b.frame);
-  const needed = ['position', 'target'].filter((part) => !store.state.document.camera?.[part]);
+  const {position, target} = store.state.resolved.camera, view = {position: position.slice(), target: target.slice()};
+  const last = viewsOf(store.state.document).at(-1);
+  const needed = parts.filter((part) => !store.state.document.camera?.[part]);
   if (needed.length) store.edit(needed.map((part) => ({at: pointerOf(part), value: view[part]})));
-  write(views);
-}
-
-/** The view between two others: straight, which is near enough to look at. */
-function viewAt(views, frame) {
-  const after = views.findIndex((v) => v.frame >= frame);
-  if (after <= 0) return after === 0 ? views[0] : views[views.length - 1];
-  const a = views[after - 1], b = views[after], t = (frame - a.frame) / (b.frame - a.frame);
-  const mix = (part) => a[part].map((v, i) => v + t * (b[part][i] - v));
-  return {position: mix('position'), target: mix('target')};
+  const begun = (keys, part) => (keys.length || !last ? keys : [{frame: last.frame, value: last[part]}]);  // what stood still so far
+  write((keys, part) => [...without(begun(keys, part), frame), {frame, value: view[part]}].sort((a, b) => a.frame - b.frame));
 }
 
 export function CameraPath({camera, onChange}) {
   const document = useStore(store, (s) => s.document), file = useStore(store, (s) => s.file);
-  const views = viewsOf(document), last = views[views.length - 1];
+  const views = viewsOf(document), last = views[views.length - 1], other = otherTrack(document);
   const [step, setStep] = useState(24);
   const [playing, play] = useState(false);
   const began = useRef(null);
@@ -57,7 +76,7 @@ export function CameraPath({camera, onChange}) {
       if (stopped) return;
       const frame = views[0].frame + ((performance.now() - began.current) / 1000) * 24;
       if (frame > last.frame) return play(false);
-      const view = viewAt(views, frame);
+      const view = viewAt(document, frame);
       onChange(withView(camera, view.position, view.target), gesture);
       requestAnimationFrame(tick);
     };
@@ -70,12 +89,13 @@ export function CameraPath({camera, onChange}) {
   const range = views.length > 1 ? `${Math.ceil(views[0].frame)}..${Math.floor(last.frame)}` : '';
   return html`<${Group} title=${`Path (${views.length} view${views.length === 1 ? '' : 's'})`} id="path">
     <${NumberField} label="Frames apart" value=${step} min=${1} max=${200} whole onSet=${setStep} help="How many frames lie between a view and the next one." />
-    <div class="line"><${Button} kind="primary" label="Keep this view" onClick=${() => keepView(camera, last ? last.frame + step : 0)} />
+    <div class="line"><${Button} kind="primary" label="Keep this view" disabled=${other >= 0} onClick=${() => keepView(camera, last ? last.frame + step : 0)} />
       <${Button} label=${playing ? 'Stop' : 'Play'} disabled=${views.length < 2} onClick=${() => play(!playing)} />
-      <${Button} label="Clear" disabled=${!views.length} onClick=${() => write([])} /></div>
+      <${Button} label="Clear" disabled=${!views.length} onClick=${() => write(() => [])} /></div>
     <ul class="objects" aria-label="Views of the path">${views.map((view) => html`<li key=${view.frame} class="item"><div><button type="button" class="object" title="Show this view"
         onClick=${() => onChange(withView(camera, view.position, view.target))}><span>Frame ${view.frame}</span><i>${view.position.map((v) => Number(v.toPrecision(3))).join(', ')}</i></button></div>
-      <${Button} kind="small" label="✕" title=${`Remove frame ${view.frame}`} onClick=${() => write(views.filter((v) => v !== view))} /></li>`)}</ul>
+      <${Button} kind="small" label="✕" title=${`Remove frame ${view.frame}`} onClick=${() => write((keys) => without(keys, view.frame))} /></li>`)}</ul>
+    ${other >= 0 && html`<p class="hint">/animate/${other} moves the camera too (${document.animate[other].type}): take it out of the scene to keep views.</p>`}
     ${range && html`<p class="hint">Save the scene, then: <code>sundog render ${file.replace(/\.[^.]*$/, '')}.json -o frame.png --frames ${range}</code></p>`}
   </${Group}>`;
 }

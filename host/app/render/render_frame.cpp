@@ -1,0 +1,174 @@
+// See render_frame.h.
+#include "app/render/render_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "app/job/rank_watch.h"
+#include "app/job/remote_devices.h"
+#include "app/options/output_files.h"
+#include "app/options/pick_devices.h"
+#include "app/process/environment.h"
+#include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
+#include "app/process/trace_halo_map.h"
+#include "app/process/warnings.h"
+#include "app/render/render_result.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "render/device/tuning.h"
+#include "render/device/view_warnings.h"
+#include "render/film/hash.h"
+#include "render/plan/passes.h"
+#include "scene/load.h"
+
+namespace sundog {
+namespace {
+
+/// Runs `step` and adds the seconds it takes.
+template <class Step>
+auto timed(double& seconds, const Step& step) {
+  const Stopwatch clock;
+  auto result = step();
+  seconds += clock.seconds();
+  return result;
+}
+
+RenderOptions render_options(const RenderCommand& command) {
+  RenderOptions options;
+  options.work_group = command.work_group;
+  options.split = command.split;
+  if (command.part) options.part = *command.part;
+  options.tile = command.tile;
+  options.aovs = made_aovs(command);
+  options.channels = command.part ? 0 : image_channels(format_name(command));
+  options.resume = command.resume;
+  options.renews_checkpoint = !command.frames.empty();
+  if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
+    options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
+  options.faults = program_environment()->faults;
+  options.keep_failed = true;
+  options.time_limit = command.time_limit;
+  options.noise = command.noise;
+  return options;
+}
+
+/// In a job there always is one: mpirun kills all ranks when one dies.
+std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
+  const std::string name = is_standard_stream(command.out) ? "sundog" : command.out;
+  return setup.job && command.resume.empty() ? name + ".checkpoint" : command.resume;
+}
+
+/// A halo is traced by the first of the devices, unless the frame before had the same. With workers, which
+/// compile the scene too, each process traces on the host: the map is the same.
+void trace_halo(const RenderCommand& command, std::shared_ptr<const SceneDescription>& scene, Setup& setup) {
+  if (scene->environment.type != EnvironmentType::halo || command.isolate || setup.job) return;
+  const ContentKey key = KeyMaker().add_halo(scene->environment).key();
+  if (!(setup.halo.key == key)) {
+    if (setup.devices.empty()) setup.devices = choose_devices(command, setup.job);
+    TracedHalo traced = trace_halo_map(scene->environment, setup.devices, command.quiet);
+    setup.halo = {key, std::make_shared<const HaloMap>(std::move(traced.map))};
+  }
+  auto with_map = std::make_shared<SceneDescription>(*scene);
+  with_map->environment.halo_map = setup.halo.map;
+  scene = std::move(with_map);
+}
+
+std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedScene& scene,
+                                     const Setup& setup) {
+  if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat);
+  const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
+  std::vector<ServerPlan> plans;
+  for (const DeviceInfo& device : setup.devices)
+    plans.push_back(command.isolate ? plan_isolated(command, device, hash) : plan_local(scene.flat, device));
+  return plans;
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
+  if (job) return job_devices(*job, command);
+  return pick_devices(command.isolate ? enumerate_in_worker() : list_devices(), command.devices,
+                      command.verbose && !command.quiet);
+}
+
+std::vector<std::string> output_files(const RenderCommand& command) {
+  std::vector<std::string> files = {command.out, command.stats, command.resume};
+  if (command.verbose && !is_standard_stream(command.out)) files.push_back(samples_file(command));
+  if (job_rank() >= 0 && command.resume.empty()) files.push_back(command.out + ".checkpoint");
+  return files;
+}
+
+void stop_loses_nothing(const RenderCommand& command, const Setup& setup) {
+  if (!setup.job)
+    setup.stop.ends_all(fmt::format("the frame was not yet begun; {} is not written", command.out));
+}
+
+LoadOptions load_options(const RenderCommand& command) {
+  return with_streams({command.frame, command.native_code, command.outside_files});
+}
+
+LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
+                             TimeLedger& times) {
+  LoadedScene scene;
+  scene.description = timed(times.load, [&] { return load_beside(output_files(command), load); });
+  scene.flat = timed(times.compile_scene, [&] {
+    trace_halo(command, scene.description, setup);
+    return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)
+                                                               : compile(*scene.description));
+  });
+  check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
+                     frame_output(command, in_passes(scene.flat->sampling)));
+  return scene;
+}
+
+FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
+                    const Stopwatch& clock, TimeLedger& times) {
+  setup.stop.asks();
+  print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
+  for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
+    if (!file.empty()) remove_left_over(file);
+  ProgressBar bar(!command.quiet, setup.run);
+  RenderOptions options = render_options(command);
+  const std::string checkpoint = checkpoint_file(command, setup);
+  RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
+  options.stop = &setup.stop.flag();
+  options.checkpoint = checkpoint;
+  options.in_haste = setup.job != nullptr;
+  if (setup.job) options.keep_now = &setup.stop.continued();
+  options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
+  if (command.write_every > 0) {
+    options.picture_seconds = command.write_every;
+    options.on_picture = [&](const Film& film) {
+      write_so_far(command, scene.description->image.tone_map, film);
+    };
+  }
+  options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
+  const RenderResult result = setup.session
+                                  ? setup.session->render(scene.flat, options)
+                                  : render(scene.flat, plan_servers(command, scene, setup), options);
+  bar.erase();
+  const bool told = setup.job && result.checkpoint_kept && !result.failure;
+  if (told) tell_kept(result, checkpoint);
+
+  times.render = result.times;
+  const Stopwatch writing;
+  save_result(command, *scene.description, *scene.flat, result, checkpoint);
+  times.write = writing.seconds();
+  warn_of_losses(*scene.description, result);
+  if (const std::string& left = result.checkpoint_left; !left.empty())
+    print_warnings({{fmt::format("{}; the frame began anew", left.substr(0, left.find("; remove")))}});
+  times.total = clock.seconds();
+  if (!command.stats.empty()) {
+    using nlohmann::json;
+    const json stats = stats_json(command, *scene.description, *scene.flat, result, times);
+    write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  }
+  tell_result(command, *scene.description, result, times);
+  return {conclude(command, result, told), result.complete};
+}
+
+}  // namespace sundog

@@ -1,0 +1,70 @@
+// One frame of `sundog render`: compiled, rendered, saved.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/job/job.h"
+#include "app/options/options.h"
+#include "app/process/interrupt.h"
+#include "app/process/progress.h"
+#include "app/render/stats.h"
+#include "compile/parts/content_key.h"
+#include "compile/scene_compiler.h"
+#include "render/session/render_session.h"
+#include "scene/load.h"
+
+namespace sundog {
+
+/// The map of the last halo that was traced, and what it was made of.
+struct KeptHalo {
+  ContentKey key;
+  std::shared_ptr<const HaloMap> map;
+};
+
+/// What the frames of one run share.
+struct Setup {
+  const StopOnSignal& stop;
+  Mailbox* job = nullptr;  // the other processes that mpirun has started
+  std::vector<DeviceInfo> devices;
+  std::unique_ptr<RenderSession> session;  // of frames on this process's devices, which stay open
+  RunProgress run = {};
+  SceneCompiler compiler = {};  // keeps what frames have in common
+  KeptHalo halo = {};
+};
+
+/// A scene as it is read, and flattened.
+struct LoadedScene {
+  std::shared_ptr<const SceneDescription> description;
+  std::shared_ptr<const CompiledScene> flat;
+};
+
+std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);
+
+/// The files that one frame may write.
+std::vector<std::string> output_files(const RenderCommand& command);
+
+/// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
+void stop_loses_nothing(const RenderCommand& command, const Setup& setup);
+
+/// How the scene file is read.
+LoadOptions load_options(const RenderCommand& command);
+
+using LoadScene = std::function<std::shared_ptr<const SceneDescription>()>;
+
+/// Reads the scene by `load` and compiles it.
+LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
+                             TimeLedger& times);
+
+/// How a frame ended: the exit status, and whether it has all its samples.
+struct FrameEnd {
+  int status = 0;
+  bool complete = true;
+};
+
+/// `clock` began with the frame.
+FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
+                    const Stopwatch& clock, TimeLedger& times);
+
+}  // namespace sundog
