@@ -15,6 +15,7 @@ struct Faults::Fault {
   std::size_t above = 0;
   bool any_size = true;
   std::size_t only = 0;  // the Nth occasion; 0: each
+  bool and_later = false;
   std::atomic<std::size_t> occasions{0};
 };
 
@@ -22,7 +23,7 @@ namespace {
 
 template <class Fault>
 void parse(const std::string& text, std::deque<Fault>& faults) {
-  static const std::regex form(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9}))?)");
+  static const std::regex form(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9})(\+)?)?)");
   std::smatch match;
   if (!std::regex_match(text, match, form))
     throw UsageError("faults on demand: wanted KIND[=VALUE][>SIZE]@WHERE[#N], found " + text);
@@ -33,6 +34,7 @@ void parse(const std::string& text, std::deque<Fault>& faults) {
   fault.any_size = !match[5].matched;
   if (match[5].matched) fault.above = std::stoull(match[5]);
   if (match[8].matched) fault.only = std::stoull(match[8]);
+  fault.and_later = match[9].matched;
 }
 
 }  // namespace
@@ -52,7 +54,8 @@ std::optional<int> Faults::strike(std::string_view kind, std::string_view where,
   for (Fault& fault : faults_) {
     if (fault.kind != kind || fault.where != where || (!fault.any_size && size <= fault.above)) continue;
     const std::size_t occasion = ++fault.occasions;
-    if (fault.only == 0 || fault.only == occasion) return fault.value;
+    if (fault.only == 0 || fault.only == occasion || (fault.and_later && occasion > fault.only))
+      return fault.value;
   }
   return std::nullopt;
 }

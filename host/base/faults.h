@@ -10,9 +10,9 @@
 
 namespace sundog {
 
-/// Faults are a text, separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N]: it strikes where KIND
-/// happens at WHERE with more than SIZE, at the Nth such occasion or at each. The kinds, and what asks for
-/// them:
+/// Faults are a text, separated by commas, each KIND[=VALUE][>SIZE]@WHERE[#N[+]]: it strikes where KIND
+/// happens at WHERE with more than SIZE, at the Nth such occasion, with N+ at all from it on, or at each. The
+/// kinds, and what asks for them:
 ///     build@P:D           the kernels do not build on the device
 ///     kernels@P:D         the driver creates no kernels from a program that it built from source
 ///     compile@P:D         the process that compiles for the device ends without a result
@@ -22,6 +22,7 @@ namespace sundog {
 ///     limit=MOST@P:D      the driver gives no kernel's groups more than MOST work-items
 ///     hang@P:D            a launch never comes back
 ///     photons=KIBIBYTES@P:D  maps of photons take no more on the device, or one map if that is more
+///     spoil@P:D           what is read back from the device, more than SIZE bytes, is wrong
 ///     cut@P:D             the loops of launches of more than SIZE samples are ended early, without an error
 ///     crash@P:D           a launch ends the process
 ///     kill@P:D            the process is killed (SIGKILL) at a launch

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "app/bench/bench_options.h"
+#include "app/bench/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "bench/frames/kernel_figures.h"
 #include "bench/report/machine.h"
@@ -69,16 +69,17 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  Report report = new_report("kernels", "Resources of the compiled kernels", options);
+  BenchRun run("kernels", "Resources of the compiled kernels", options);
+  Report& report = run.head();
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
   report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
   const std::vector<DeviceInfo> devices = bench_devices(options);
-  add_device_facts(report, devices);
+  run.add_devices(devices);
   for (const std::string& file : options.scenes) {
-    const CompiledScene scene = bench_scene(file, options);
+    const auto scene = run.compiled(file);
     for (const DeviceInfo& info : devices) {
       show_step(options, fmt::format("{} on {}", scene_name(file), info.label()));
-      add_device(report, scene_name(file), scene, info);
+      if (!run.is_stopped()) add_device(report, scene_name(file), *scene, info);
     }
   }
   report.notes.push_back(
@@ -86,17 +87,15 @@ int bench_kernels(const BenchOptions& options) {
       "work-item) and `local` (for a group) come from the driver. Registers, stack and spills come from the "
       "build "
       "log of NVIDIA's compiler; other drivers do not report them. An empty cell: not known.");
-  return publish(report, options);
+  return run.publish();
 }
 
 }  // namespace
 
 void add_bench_kernels(Arguments& bench, Command& chosen) {
-  const auto options = std::make_shared<BenchOptions>();
-  Arguments* app =
-      bench.add_subcommand("kernels", "Work-group limits, memory and registers of each kernel of a scene");
-  add_bench_options(app, *options);
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_kernels(*options); }}; });
+  add_bench_command(bench, chosen, "kernels",
+                    "Work-group limits, memory and registers of each kernel of a scene",
+                    std::make_shared<BenchOptions>(), bench_kernels);
 }
 
 }  // namespace sundog

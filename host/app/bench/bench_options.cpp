@@ -57,17 +57,21 @@ void remember_command_line(int argc, const char* const* argv) {
   }
 }
 
+const std::string& command_line_text() { return command_line(); }
+
 void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed) {
   auto* scenes =
       value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given");
   if (scene_needed) scenes->required();
   values(app, "--device", "SPEC", options.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
-  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 5)")
+  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 6)")
       ->type_name("N")
       ->range(1, 10000);
   value(app, "--json", "FILE", options.json, "write the measurements as JSON");
   value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
+  value(app, "--continue", "FILE", options.continue_from,
+        "take the runs that this JSON of an earlier run has, and measure the others");
   value(app, "--html", "FILE", options.html, "write the report as one page with plots");
   outside_files(app, options.outside_files);
   app->add_flag("-q,--quiet", options.quiet, "print nothing");
@@ -75,39 +79,6 @@ void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed)
 
 void add_bench_size(Arguments* app, BenchOptions& options) {
   value(app, "--size", "WxH", options.size, "width and height in pixels (default: the scene's)");
-}
-
-Report new_report(const std::string& name, const std::string& title, const BenchOptions& options) {
-  check_output_files({options.json, options.csv, options.html}, options.scenes);
-  for (const std::string& file : {options.json, options.csv, options.html})
-    if (!file.empty()) check_writable(file);
-  for (const std::string& setting : options.overrides) check_override(setting);
-  Report report;
-  report.name = name;
-  report.title = title;
-  report.facts = machine_facts();
-  report.facts.insert(
-      report.facts.begin(),
-      {{"sundog", SUNDOG_VERSION}, {"revision", build_revision()}, {"command", command_line()}});
-  if (!options.overrides.empty())
-    report.facts.emplace_back("--set", fmt::format("{}", fmt::join(options.overrides, " ")));
-  if (const std::string more = program_environment()->build_options; !more.empty())
-    report.facts.emplace_back("SUNDOG_BUILD_OPTIONS", more);
-  if (const std::string note = busy_note(); !note.empty()) report.notes.push_back(note);
-  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
-    report.notes.push_back(why);
-  return report;
-}
-
-int publish(const Report& report, const BenchOptions& options) {
-  if (isatty(STDERR_FILENO) && !options.quiet) fmt::print(stderr, "\r\x1b[K");
-  if (!options.json.empty())
-    write_file(options.json,
-               report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  if (!options.csv.empty()) write_file(options.csv, report_csv(report));
-  if (!options.html.empty()) write_file(options.html, report_html(report));
-  if (!options.quiet) fmt::print("{}", report_text(report));
-  return exit_done;
 }
 
 void show_step(const BenchOptions& options, const std::string& step) {
@@ -141,12 +112,6 @@ std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
   return pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
 }
 
-void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices) {
-  for (const DeviceInfo& device : devices) report.facts.emplace_back("device", device_fact(device));
-  if (std::ranges::any_of(devices, is_pocl))
-    report.facts.emplace_back("PoCL", pocl_fact(*program_environment()));
-}
-
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {
   std::vector<int> numbers;
   std::istringstream in(text);
@@ -157,6 +122,16 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
   std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
+}
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    if (comma > at) parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
 }
 
 void add_bench(Arguments& root, Command& chosen) {

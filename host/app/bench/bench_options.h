@@ -1,14 +1,8 @@
 // What all `sundog bench` commands share: their options, the scenes, and where a report goes.
 //
 // A further benchmark is a function `void add_bench_NAME(Arguments& bench, Command& chosen)` in a file of its
-// own:
-//
-//     Arguments* app = bench.add_subcommand("rays", "Rays a second by kind");
-//     const auto options = std::make_shared<BenchOptions>();
-//     add_bench_options(app, *options);
-//     app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_rays(*options); }}; });
-//
-// It fills a Report (bench/report/report.h) that begins as new_report() and hands it to publish().
+// own, which calls add_bench_command() (bench_run.h). It measures parts by a BenchRun, each with measure()
+// and add_to(Report&), and ends with publish().
 #pragma once
 #include "app/options/options.h"
 #include "bench/report/report.h"
@@ -21,8 +15,9 @@ class Arguments;
 struct BenchOptions {
   std::vector<std::string> scenes, devices, overrides;
   std::string json, csv, html;  // files; empty: none
+  std::string continue_from;    // a report whose runs count; empty: none
   std::string size;             // "WxH" of the images; empty: the scenes'
-  int repeat = 5;
+  int repeat = 6;
   bool outside_files = false;  // as for render
   bool quiet = false;
 };
@@ -31,15 +26,8 @@ struct BenchOptions {
 /// one.
 void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed = true);
 
-/// `name` is the benchmark's. Facts: version, revision, command line, machine. Throws IoError when a file of
-/// the options cannot be written.
-Report new_report(const std::string& name, const std::string& title, const BenchOptions& options);
-
 /// --size, for benchmarks that render frames of one size.
 void add_bench_size(Arguments* app, BenchOptions& options);
-
-/// Prints the report as text and writes the files. Returns the exit status.
-int publish(const Report& report, const BenchOptions& options);
 
 /// What is being measured, on a terminal's stderr; nothing elsewhere.
 void show_step(const BenchOptions& options, const std::string& step);
@@ -61,14 +49,15 @@ SceneDescription sized(SceneDescription scene, const BenchOptions& options);
 /// The devices that the options mean.
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
 
-/// What the report must say of the devices that it is about.
-void add_device_facts(Report& report, const std::vector<DeviceInfo>& devices);
-
 /// Keeps the command line, as one could type it in a shell, for the reports' facts.
 void remember_command_line(int argc, const char* const* argv);
+const std::string& command_line_text();
 
 /// "1,2,4": whole numbers within [low, high], ascending and without doubles. Throws UsageError.
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high);
+
+/// "a,b" -> a, b.
+std::vector<std::string> split_names(const std::string& text);
 
 void add_bench(Arguments& root, Command& chosen);
 void add_bench_threads(Arguments& bench, Command& chosen);

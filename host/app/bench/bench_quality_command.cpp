@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "app/bench/bench_options.h"
+#include "app/bench/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
@@ -18,17 +18,6 @@ struct QualityOptions : BenchOptions {
   std::string reference, integrators, samplers = "auto,sobol,independent", counts = "1,4,16,64",
                                       goal = "0.02";
 };
-
-/// "a,b" -> a, b.
-std::vector<std::string> split_names(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    if (comma > at) parts.push_back(text.substr(at, comma - at));
-    at = comma + 1;
-  }
-  return parts;
-}
 
 /// Every integrator with every sampler; without --integrators the scene's own.
 std::vector<QualityWay> quality_ways(const QualityOptions& options, const std::string& file) {
@@ -45,45 +34,42 @@ std::vector<QualityWay> quality_ways(const QualityOptions& options, const std::s
 int bench_quality(const QualityOptions& options) {
   QualityPlan plan;
   plan.counts = parse_list("--counts", options.counts, 1, 65536);
-  plan.repeat = options.repeat;
   plan.goal = parse_real("--goal", options.goal, 1e-9, 1e9);
   check_output_files({options.json, options.csv, options.html}, {options.reference});
   plan.reference = read_image(options.reference);
   if (plan.reference.channels < 3)
     throw UsageError(fmt::format("{}: wanted a picture with colours", options.reference));
-  Report report = new_report("quality", "Error by time", options);
-  report.facts.emplace_back("reference", options.reference);
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  add_device_facts(report, devices);
-  for (const std::string& file : options.scenes)
-    for (const DeviceInfo& device : devices) {
-      plan.scene = scene_name(file);
-      plan.device = device;
-      plan.ways = quality_ways(options, file);
-      plan.compile_for = [&](const QualityWay& way, int samples) {
-        return bench_scene(file, options,
-                           {fmt::format("/render/samples={}", samples), "/render/adaptive/threshold=0",
-                            fmt::format("/render/integrator={}", way.integrator),
-                            fmt::format("/render/sampler={}", way.sampler)});
-      };
-      add_quality(report, plan,
-                  measure_quality(plan, [&](const std::string& step) { show_step(options, step); }));
-    }
-  report.notes.push_back(fmt::format(
+  BenchRun run("quality", "Error by time", options);
+  run.head().facts.emplace_back("reference", options.reference);
+  run.head().notes.push_back(fmt::format(
       "Median of {} frames after one to warm up; ways and counts take turns, and the image of each "
       "run was compared to the bit before its time counted. The error is the root mean square "
       "difference from the reference, in linear color. The perceived difference is the mean of "
       "FLIP (Andersson and others 2020) at 67 pixels a degree, where values above 1 count as 1.",
       options.repeat));
-  return publish(report, options);
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  run.add_devices(devices);
+  for (const std::string& file : options.scenes)
+    for (const DeviceInfo& device : devices) {
+      plan.scene = scene_name(file);
+      plan.device = device;
+      plan.ways = quality_ways(options, file);
+      plan.compile_for = [&run, file](const QualityWay& way, int samples) {
+        return run.compiled(file, {fmt::format("/render/samples={}", samples), "/render/adaptive/threshold=0",
+                                   fmt::format("/render/integrator={}", way.integrator),
+                                   fmt::format("/render/sampler={}", way.sampler)});
+      };
+      run.measure(std::make_shared<QualityTimes>(plan));
+    }
+  return run.publish();
 }
 
 }  // namespace
 
 void add_bench_quality(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<QualityOptions>();
-  Arguments* app = bench.add_subcommand("quality", "Error by time of samplers and integrators");
-  add_bench_options(app, *options);
+  Arguments* app = add_bench_command(bench, chosen, "quality", "Error by time of samplers and integrators",
+                                     options, bench_quality);
   add_bench_size(app, *options);
   value(app, "--reference", "FILE", options->reference, "the picture that counts as right, such as an EXR")
       ->required();
@@ -91,7 +77,6 @@ void add_bench_quality(Arguments& bench, Command& chosen) {
   value(app, "--samplers", "LIST", options->samplers, "samplers (default auto,sobol,independent)");
   value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,4,16,64)");
   value(app, "--goal", "E", options->goal, "the rms error to whose time ways are compared (default 0.02)");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_quality(*options); }}; });
 }
 
 }  // namespace sundog

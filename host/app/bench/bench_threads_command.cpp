@@ -7,8 +7,7 @@
 #include <memory>
 #include <thread>
 
-#include "app/bench/bench_options.h"
-#include "app/bench/bench_progress.h"
+#include "app/bench/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "app/process/progress.h"
@@ -70,14 +69,16 @@ std::vector<unsigned> counts_of(const ThreadsOptions& options) {
 
 /// One plan for each scene, cut down to the budget. What was left out goes to the report's notes.
 std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const ThreadScaling& usual,
-                                      Report& report) {
+                                      BenchRun& run) {
   std::vector<ThreadScaling> plans;
   for (const std::string& file : options.scenes) {
     ThreadScaling plan = usual;
     plan.scene = scene_name(file);
-    plan.compile_for = [&options, file](int size) {
-      return bench_scene(file, options,
-                         {fmt::format("/image/width={}", size), fmt::format("/image/height={}", size)});
+    plan.compile_for = [&run, &options, file](int size) {
+      auto scene = bench_scene(file, options,
+                               {fmt::format("/image/width={}", size), fmt::format("/image/height={}", size)});
+      run.add_scene(scene_name(file), file, scene);
+      return scene;
     };
     show_step(options, plan.scene + ", a small frame for the estimate");
     plan.cost = pixel_cost(plan);
@@ -86,7 +87,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
     if (budget > 0) {
       const auto left_out = fit_into(plan, budget / static_cast<double>(options.scenes.size()));
       if (!left_out.empty())
-        report.notes.push_back(
+        run.head().notes.push_back(
             fmt::format("{}: left out to take about {} in all: {} (--budget SECONDS, or --sizes).",
                         plan.scene, duration_text(budget), fmt::join(left_out, ", ")));
     }
@@ -96,44 +97,23 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
 }
 
 /// Before the first measurement: how long it will take, and what was left out for that.
-double announce(const ThreadsOptions& options, const std::vector<ThreadScaling>& plans,
-                const Report& report) {
+void announce(const ThreadsOptions& options, const std::vector<ThreadScaling>& plans, const Report& report) {
   double seconds = 0, plain = 0;
   for (const ThreadScaling& plan : plans) {
     seconds += expected_seconds(plan);
     for (const int size : plan.sizes) plain += plain_seconds(plan, size);
   }
-  if (options.quiet) return seconds;
+  if (options.quiet) return;
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K");
   fmt::print(stderr, "sundog: this will take about {}{}\n", duration_text(seconds),
              plain >= 1 ? fmt::format(", {} of it in plain C++ (--no-plain)", duration_text(plain)) : "");
   for (const std::string& note : report.notes)
     if (note.find(": left out to take") != std::string::npos) fmt::print(stderr, "sundog: {}\n", note);
-  return seconds;
-}
-
-void measure_plans(const ThreadsOptions& options, const std::vector<ThreadScaling>& plans, Report& report) {
-  const double expected = announce(options, plans, report);
-  BenchProgress progress(!options.quiet, expected);
-  double before = 0;
-  for (const ThreadScaling& plan : plans) {
-    const double part = expected > 0 ? expected_seconds(plan) / expected : 0;
-    const auto on_part = [&](const std::string& step, double done) {
-      progress.update(step, before + part * done);
-    };
-    const auto times = measure_threads(plan, on_part);
-    add_thread_tables(report, plan, times);
-    before += part;
-    for (const ThreadTime& time : times)
-      if (!time.problem.empty())
-        report.notes.push_back(
-            fmt::format("{}, {} pixels, {}: {}", plan.scene, time.size,
-                        time.threads ? fmt::format("{} threads", time.threads) : "plain C++", time.problem));
-  }
 }
 
 int bench_threads(const ThreadsOptions& options) {
-  Report report = new_report("threads", "Times by image size and number of threads", options);
+  BenchRun run("threads", "Times by image size and number of threads", options);
+  Report& head = run.head();
   ThreadScaling plan;
   if (!options.sizes.empty()) plan.sizes = parse_list("--sizes", options.sizes, 1, 65536);
   plan.counts = counts_of(options);
@@ -142,31 +122,32 @@ int bench_threads(const ThreadsOptions& options) {
   plan.cores = std::max(1u, std::thread::hardware_concurrency());
   allow_threads(static_cast<int>(plan.counts.back()));
   plan.device = device_to_split(options);
-  add_device_facts(report, {plan.device});
-  if (plan.plain) report.facts.emplace_back("plain C++", compiler_text() + ", one thread");
-  measure_plans(options, make_plans(options, plan, report), report);
-  report.notes.push_back(fmt::format(
-      "Median of {} frames after one to warm up, the counts in turn, from the first launch until the "
+  run.add_devices({plan.device});
+  if (plan.plain) head.facts.emplace_back("plain C++", compiler_text() + ", one thread");
+  const std::vector<ThreadScaling> plans = make_plans(options, plan, run);
+  announce(options, plans, head);
+  head.notes.push_back(fmt::format(
+      "Median of {} frames after two to warm up, sizes and counts in turn, from the first launch until the "
       "film is on the host, without building kernels. Threads are compute units of a sub-device. All "
-      "their images are the same to the bit.",
-      options.repeat));
+      "images of a size are the same to the bit.",
+      plans.empty() ? options.repeat : plans.front().repeat));
   if (plan.plain)
-    report.notes.push_back(
+    head.notes.push_back(
         "Plain C++ is the same integrator written as an ordinary program: recursion, scalar floats, the same "
-        "BVH, "
-        "none of the kernels' code. It draws one frame of each size, which is the device's image but for "
-        "rounding. "
-        "Speed-ups are over one thread of the device.");
-  return publish(report, options);
+        "BVH, none of the kernels' code. It draws one frame of each size, which is the device's image but "
+        "for "
+        "rounding. Speed-ups are over one thread of the device.");
+  for (const ThreadScaling& each : plans) run.measure(std::make_shared<ThreadTimes>(each), 0, each.repeat);
+  return run.publish();
 }
 
 }  // namespace
 
 void add_bench_threads(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<ThreadsOptions>();
-  Arguments* app =
-      bench.add_subcommand("threads", "Times by image size and number of threads, speed-up, efficiency");
-  add_bench_options(app, *options);
+  Arguments* app = add_bench_command(bench, chosen, "threads",
+                                     "Times by image size and number of threads, speed-up, efficiency",
+                                     options, bench_threads);
   value(app, "--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");
   value(app, "--counts", "N,N...", options->counts,
         "threads (default: powers of two up to the machine's cores)");
@@ -177,7 +158,6 @@ void add_bench_threads(Arguments& bench, Command& chosen) {
       ->type_name("SECONDS")
       ->range(0, 1e6);
   app->add_flag("--no-plain", options->no_plain, "without the column of plain single-threaded C++");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_threads(*options); }}; });
 }
 
 }  // namespace sundog

@@ -6,9 +6,9 @@
 #include <array>
 #include <memory>
 
-#include "app/bench/bench_options.h"
-#include "app/bench/bench_progress.h"
+#include "app/bench/bench_run.h"
 #include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/names.h"
@@ -16,6 +16,7 @@
 #include "bench/frames/work_groups.h"
 #include "bench/rays/ray_sets.h"
 #include "bench/rays/ray_tracer.h"
+#include "bench/report/machine.h"
 #include "render/film/hash.h"
 
 namespace sundog {
@@ -25,7 +26,9 @@ constexpr std::array kernel_names{"render_whitted", "trace_rays", "occluded_rays
 
 struct WorkgroupOptions : BenchOptions {
   std::vector<std::string> kernels;
+  std::string sizes;
   unsigned rays = 512;
+  double budget = 0;  // seconds; 0: no limit
 };
 
 template <class T>
@@ -33,8 +36,17 @@ std::uint64_t hash_of(const std::vector<T>& values) {
   return hash_bytes(values.data(), values.size() * sizeof(T));
 }
 
+using Times = std::map<std::string, KernelTimes>;
+
+/// The group of the kernel's last launch.
+std::pair<std::size_t, std::size_t> local_of(const Times& kernels, const std::string& name) {
+  const auto found = kernels.find(name);
+  if (found == kernels.end()) return {};
+  return {found->second.local_x, found->second.local_y};
+}
+
 /// Of the launches since the device's times were forgotten (TimedKernel::beyond_events).
-std::optional<double> beyond_events(const std::map<std::string, KernelTimes>& kernels) {
+std::optional<double> beyond_events(const Times& kernels) {
   double seconds = 0;
   for (const auto& [name, times] : kernels) {
     if (times.device_ms <= 0) return {};
@@ -44,8 +56,7 @@ std::optional<double> beyond_events(const std::map<std::string, KernelTimes>& ke
 }
 
 /// Whole frames, as `sundog render` would make them.
-TimedKernel time_frames(const DeviceInfo& device, const CompiledScene& scene) {
-  TimedKernel kernel;
+void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledScene& scene) {
   kernel.two_dimensions = true;
   const auto frames = std::make_shared<FrameRunner>(device, scene);
   kernel.limit = frames->greatest_group();
@@ -56,18 +67,19 @@ TimedKernel time_frames(const DeviceInfo& device, const CompiledScene& scene) {
     return frames->run();
   };
   kernel.beyond_events = [frames] { return beyond_events(frames->kernel_times()); };
+  const char* tracer = scene.integrator == "path" ? "render_path" : "render_whitted";
+  kernel.local = [frames, tracer] { return local_of(frames->kernel_times(), tracer); };
   kernel.result = [frames] { return hash_of(frames->image().data); };
-  return kernel;
 }
 
 /// The camera's rays through the tracer alone.
-TimedKernel time_rays(const DeviceInfo& info, const CompiledScene& scene, bool any, unsigned size) {
+void time_rays(TimedKernel& kernel, const DeviceInfo& info, const CompiledScene& scene, bool any,
+               unsigned size) {
   struct Setup {
     Device device;
     RayTracer tracer;
     Setup(const DeviceInfo& info_, const CompiledScene& scene_) : device(info_), tracer(device, scene_) {}
   };
-  TimedKernel kernel;
   const Stopwatch clock;
   const auto setup = std::make_shared<Setup>(info, scene);
   kernel.build_seconds = clock.seconds();
@@ -80,90 +92,85 @@ TimedKernel time_rays(const DeviceInfo& info, const CompiledScene& scene, bool a
     return running.seconds();
   };
   kernel.beyond_events = [setup] { return beyond_events(setup->device.times()); };
+  kernel.local = [setup, name = kernel.name] { return local_of(setup->device.times(), name); };
   kernel.result = [setup, any] {
     return any ? hash_of(setup->tracer.occluded()) : hash_of(setup->tracer.hits());
   };
-  return kernel;
 }
 
-TimedKernel prepare(const std::string& name, const DeviceInfo& device, const CompiledScene& scene,
-                    unsigned rays) {
-  TimedKernel kernel = name == "render_whitted" ? time_frames(device, scene)
-                                                : time_rays(device, scene, name == "occluded_rays", rays);
-  kernel.name = name;
-  kernel.device = fmt::format("{}:{}{}", device.platform, device.device,
-                              device.sub_units ? fmt::format("/{}", device.sub_units) : "");
-  return kernel;
-}
-
-void add_kernel(Report& report, const WorkgroupOptions& options, const std::string& file,
-                const std::string& name, const DeviceInfo& device, const CompiledScene& scene) {
-  const std::string step = fmt::format("{}, {} on {}", scene_name(file), name, device.label());
-  show_step(options, step);
-  TimedKernel kernel = prepare(name, device, scene, options.rays);
-  kernel.scene = scene_name(file);
-  BenchProgress progress(!options.quiet, 0);
-  const auto on_run = [&](std::size_t done, std::size_t of) {
-    progress.update(step, static_cast<double>(done) / static_cast<double>(of));
-  };
-  add_work_group_tables(report, kernel, measure_work_groups(kernel, options.repeat, on_run));
-  const char* origin = !kernel.cached   ? "built or loaded from the cache"
-                       : *kernel.cached ? "loaded from the cache"
-                                        : "built";
-  report.notes.push_back(fmt::format("{}, {} on {}: the program was {} in {} ms, before any run.",
-                                     kernel.scene, name, kernel.device, origin,
-                                     number_text(1e3 * kernel.build_seconds)));
+/// "4,8x8,driver".
+std::vector<WorkGroup> parse_sizes(const std::string& text) {
+  std::vector<WorkGroup> sizes;
+  for (const std::string& name : split_names(text)) sizes.push_back(parse_work_group(name, "--sizes"));
+  std::erase_if(sizes, [](const WorkGroup& group) { return group.kind == WorkGroup::Kind::automatic; });
+  return sizes;
 }
 
 int bench_workgroup(const WorkgroupOptions& options) {
-  Report report = new_report("workgroup", "Times by work-group size", options);
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  add_device_facts(report, devices);
-  for (const std::string& file : options.scenes) {
-    const CompiledScene scene = bench_scene(file, options);
-    for (const DeviceInfo& device : devices)
-      for (const std::string& name : options.kernels) add_kernel(report, options, file, name, device, scene);
-  }
-  report.notes.push_back(
-      fmt::format("Median of {} runs after one to warm up, all sizes in shuffled turn. render_whitted is a "
-                  "whole frame with "
-                  "its transfers, the others are {}x{} camera rays through the tracer alone. Each result was "
-                  "compared with "
-                  "the default's to the bit before its time counted.",
-                  options.repeat, options.rays, options.rays));
-  report.notes.push_back(
+  std::vector<std::string> kernels = options.kernels;
+  for (const std::string& name : kernels)
+    if (std::ranges::count(kernel_names, name) == 0)
+      throw UsageError(
+          fmt::format("--kernel {}: {}", name,
+                      did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
+                                   fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
+  if (kernels.empty()) kernels.assign(kernel_names.begin(), kernel_names.end());
+  TimedKernel head;
+  head.sizes = parse_sizes(options.sizes);
+  BenchRun run("workgroup", "Times by work-group size", options);
+  run.head().notes = {
+      fmt::format(
+          "Median of {} runs after one to warm up, all sizes in shuffled turn. render_whitted is a "
+          "whole frame with its transfers, the others are {}x{} camera rays through the tracer alone. "
+          "Each result was compared with the default's to the bit before its time counted.",
+          options.repeat, options.rays, options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
-      "each "
-      "of these runs was faster than each of the default's.");
-  report.notes.push_back(
+      "each of these runs was faster than each of the default's.",
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
-      "kernel "
-      "ran by the device's events, less the same of a later launch. An empty cell: the driver gives no "
-      "times.");
-  return publish(report, options);
+      "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
+      "no times."};
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  run.add_devices(devices);
+  const double parts = static_cast<double>(options.scenes.size() * devices.size() * kernels.size());
+  for (const std::string& file : options.scenes) {
+    const auto scene = run.compiled(file);
+    for (const DeviceInfo& device : devices)
+      for (const std::string& name : kernels) {
+        head.scene = scene_name(file);
+        head.device = device_place(device);
+        head.name = name;
+        const auto open = [=, rays = options.rays] {
+          TimedKernel kernel = head;
+          if (name == "render_whitted")
+            time_frames(kernel, device, *scene);
+          else
+            time_rays(kernel, device, *scene, name == "occluded_rays", rays);
+          return kernel;
+        };
+        run.measure(std::make_shared<WorkGroupTimes>(head, open), options.budget / parts);
+      }
+  }
+  return run.publish();
 }
 
 }  // namespace
 
 void add_bench_workgroup(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<WorkgroupOptions>();
-  Arguments* app = bench.add_subcommand("workgroup", "Times of each kernel by work-group size");
-  add_bench_options(app, *options);
+  Arguments* app = add_bench_command(bench, chosen, "workgroup", "Times of each kernel by work-group size",
+                                     options, bench_workgroup);
   values(app, "--kernel", "NAME", options->kernels,
          fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
+  value(app, "--sizes", "N,WxH...", options->sizes,
+        "work-groups to compare with the default (default: all that make sense)");
+  app->add_option(
+         "--budget", options->budget,
+         "about how long it may take: then further runs, and sizes, are left out (default: no limit)")
+      ->type_name("SECONDS")
+      ->range(0, 1e6);
   app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
       ->type_name("N")
       ->range(16, 16384);
-  app->callback([options, &chosen] {
-    for (const std::string& name : options->kernels)
-      if (std::ranges::count(kernel_names, name) == 0)
-        throw UsageError(
-            fmt::format("--kernel {}: {}", name,
-                        did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
-                                     fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
-    if (options->kernels.empty()) options->kernels.assign(kernel_names.begin(), kernel_names.end());
-    chosen = RunLater{[options] { return bench_workgroup(*options); }};
-  });
 }
 
 }  // namespace sundog

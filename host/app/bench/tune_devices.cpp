@@ -69,7 +69,8 @@ std::string outcome_text(const DeviceInfo& device, const TuneOutcome& outcome) {
       "{}, {} ({}), {}: {}\n  {} ms with the defaults, {} ms tuned: {}; {} tried, {} rejected{}{}",
       device.label(), entry.scene_class, entry.scene, entry.kernel, tuning_text(entry.tuning),
       number_text(entry.default_ms), number_text(entry.tuned_ms),
-      faster ? fmt::format("{:.1f} % less time", 100 * (1 - entry.tuned_ms / entry.default_ms)) : "no gain",
+      faster ? fmt::format("{:.1f} % less time", 100 * (1 - entry.tuned_ms / entry.default_ms))
+             : "nothing is worth keeping",
       outcome.tried, outcome.rejected.size(),
       outcome.left_out > 0 ? fmt::format(", at least {} left out for lack of time", outcome.left_out) : "",
       outcome.frames.empty() ? "" : fmt::format("; frames of {}", outcome.frames));

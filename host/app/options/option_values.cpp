@@ -71,7 +71,7 @@ int parse_number(const char* option, const std::string& text, int low, int high)
   return *value;
 }
 
-WorkGroup parse_work_group(const std::string& text) {
+WorkGroup parse_work_group(const std::string& text, const char* option) {
   using enum WorkGroup::Kind;
   if (text == "auto") return {automatic};
   if (text == "driver") return {driver};
@@ -79,7 +79,7 @@ WorkGroup parse_work_group(const std::string& text) {
   if (const auto pair = number_pair(text))
     return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
   throw UsageError(
-      fmt::format("--work-group {}: wanted a size (64), width x height (8x8), auto or driver", text));
+      fmt::format("{} {}: wanted a size (64), width x height (8x8), auto or driver", option, text));
 }
 
 PartOfFrame parse_part(const std::string& text) {

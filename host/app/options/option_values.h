@@ -15,7 +15,7 @@ namespace sundog {
 int parse_number(const char* option, const std::string& text, int low, int high);
 
 /// "64", "8x8", "auto" or "driver".
-WorkGroup parse_work_group(const std::string& text);
+WorkGroup parse_work_group(const std::string& text, const char* option = "--work-group");
 
 /// "i/N", i from 1 to N.
 PartOfFrame parse_part(const std::string& text);

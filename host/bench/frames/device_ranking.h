@@ -1,33 +1,44 @@
 // Devices and their combinations on one scene, best first, with the share of the picture that each made.
 #pragma once
-#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/report/report.h"
+#include "bench/runs/measure.h"
 #include "render/render.h"
 
 namespace sundog {
 
-/// Each device alone, each pair, and all together. Pure.
+/// Each device alone, each pair, and all together; no device with a part of itself. Pure.
 std::vector<std::vector<DeviceInfo>> device_combinations(const std::vector<DeviceInfo>& devices);
 
-struct DeviceTime {
-  std::vector<DeviceInfo> devices;
-  Spread seconds;               // a frame, without building kernels
-  double efficiency = 0;        // work done over what the devices could have done
-  std::vector<double> shares;   // of the pixels, in the devices' order
-  std::uint64_t differing = 0;  // pixels visibly unlike those of the first device
-  std::string problem;          // not empty: no time counts, and why
+/// The rate of a combination over the sum of its devices' rates alone: all take part or count as idle. Pure;
+/// nothing where a time is not known.
+std::optional<double> combined_efficiency(double seconds, const std::vector<double>& alone);
+
+class DeviceRanking {
+ public:
+  DeviceRanking(std::string scene_name, std::shared_ptr<const CompiledScene> scene,
+                const std::vector<DeviceInfo>& devices);
+  ~DeviceRanking();
+
+  /// Frames of all combinations in turn, on devices that are opened once. A picture that is not the first
+  /// device's but for rounding is a problem, or not its to the bit where all devices of a combination draw
+  /// the same bits.
+  void measure(const MeasureOptions& options);
+  /// Adds the ranking, bars and measurements.
+  void add_to(Report& report) const;
+
+ private:
+  struct Combination;
+  std::optional<double> efficiency(const Combination& combination) const;
+
+  std::string name_;
+  std::shared_ptr<const CompiledScene> scene_;
+  std::vector<std::shared_ptr<Combination>> combinations_;
+  std::vector<Subject> subjects_;
 };
-
-/// Renders once with each combination to warm up, then `repeat` times in turn. A picture that is not the
-/// first device's but for rounding is a problem, and so is a device that took no part. `on_step` hears what
-/// is measured.
-std::vector<DeviceTime> measure_devices(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
-                                        int repeat, const std::function<void(const std::string&)>& on_step);
-
-/// Adds the ranking, bars and measurements.
-void add_device_tables(Report& report, const std::string& scene, std::vector<DeviceTime> times, int repeat);
 
 }  // namespace sundog

@@ -3,17 +3,29 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "base/error.h"
 #include "render/device/device_server.h"
 
 namespace sundog {
 namespace {
 
+using Scene = std::shared_ptr<const CompiledScene>;
+using DeviceServers = std::vector<std::shared_ptr<DeviceServer>>;
+
 /// Opened here, so that what keeps it from working is known before any frame.
-RenderTimes open(DeviceServer& server, const std::shared_ptr<const CompiledScene>& scene,
-                 const RenderOptions& options) {
-  server.show(scene, options);
-  return server.open();
+RenderTimes open_all(const DeviceServers& servers, const Scene& scene, const RenderOptions& options) {
+  RenderTimes sum;
+  sum.cached = true;
+  for (const auto& server : servers) {
+    server->show(scene, options);
+    const RenderTimes times = server->open();
+    sum.build_kernels += times.build_kernels;
+    sum.upload += times.upload;
+    sum.cached = sum.cached && times.cached;
+  }
+  return sum;
 }
 
 /// A bench develops the film where it wants a picture: that is no part of a frame's time.
@@ -24,20 +36,30 @@ RenderOptions without_pictures(RenderOptions options) {
 
 }  // namespace
 
-FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options)
-    : scene_(std::shared_ptr<void>(), &scene),
-      options_(without_pictures(options)),
-      server_(std::make_shared<DeviceServer>(device, scene_, options_)),
-      times_(open(*server_, scene_, options_)),
-      session_(std::vector<std::shared_ptr<SceneServer>>{server_}) {}
+std::shared_ptr<DeviceServer> frame_server(const DeviceInfo& device, const Scene& scene) {
+  static const RenderOptions usual;
+  return std::make_shared<DeviceServer>(device, scene, usual);
+}
 
-std::size_t FrameRunner::greatest_group() const { return server_->greatest_group(); }
+FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options)
+    : FrameRunner({frame_server(device, Scene(std::shared_ptr<void>(), &scene))},
+                  Scene(std::shared_ptr<void>(), &scene), options) {}
+
+FrameRunner::FrameRunner(DeviceServers servers, Scene scene, const RenderOptions& options)
+    : scene_(std::move(scene)),
+      options_(without_pictures(options)),
+      servers_(std::move(servers)),
+      times_(open_all(servers_, scene_, options_)),
+      session_(std::vector<std::shared_ptr<SceneServer>>(servers_.begin(), servers_.end())) {}
+
+std::size_t FrameRunner::greatest_group() const { return servers_.front()->greatest_group(); }
 
 double FrameRunner::run() {
   last_ = session_.render(scene_, options_);
-  const DeviceReport& report = last_.devices.front();
-  if (!report.messages.empty()) throw DeviceError(report.messages.front());
-  kernel_times_ = report.kernels;
+  if (!last_.complete) return 0;  // options.stop
+  for (const DeviceReport& report : last_.devices)
+    if (!report.messages.empty()) throw DeviceError(report.messages.front());
+  kernel_times_ = last_.devices.front().kernels;
   // A group that the driver refused was made smaller: the time is not that of what was asked for.
   const WorkGroup& group = options_.work_group;
   const std::size_t most = greatest_group();
@@ -50,6 +72,48 @@ double FrameRunner::kernel_seconds(const std::string& kernel) const {
   const auto found = kernel_times_.find(kernel);
   if (found == kernel_times_.end()) return 0;
   return 1e-3 * (found->second.device_ms > 0 ? found->second.device_ms : found->second.host_ms);
+}
+
+double FrameRunner::kernel_seconds() const {
+  double sum = 0;
+  for (const auto& [name, times] : kernel_times_) sum += kernel_seconds(name);
+  return sum;
+}
+
+double FrameRunner::rays() const {
+  auto rays = static_cast<double>(last_.surfaces_seen);
+  for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
+    rays += static_cast<double>(last_.counts[static_cast<std::size_t>(kind)]);
+  return rays;
+}
+
+bool same_bits_of(const Image& a, const Image& b) {
+  return a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+Subject frame_subject(const std::string& name, FrameSubject of) {
+  struct State {
+    std::shared_ptr<FrameRunner> frames;
+    Image first;
+  };
+  const auto state = std::make_shared<State>();
+  Subject subject;
+  subject.name = name;
+  subject.prepare = [state, open = std::move(of.open)] { state->frames = open(); };
+  subject.run = [state, seconds = std::move(of.seconds)] {
+    const double frame = state->frames->run();
+    return seconds ? seconds(*state->frames) : frame;
+  };
+  subject.check = [state, first = std::move(of.first)]() -> std::string {
+    Image image = state->frames->image();
+    if (!state->first.data.empty())
+      return same_bits_of(image, state->first) ? "" : "its image is not that of its first run";
+    state->first = std::move(image);
+    if (first) first(*state->frames);
+    return "";
+  };
+  return subject;
 }
 
 }  // namespace sundog

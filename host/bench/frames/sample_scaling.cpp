@@ -5,152 +5,200 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 
 #include "bench/frames/frame_runner.h"
+#include "render/film/sampling_report.h"
 
 namespace sundog {
 namespace {
 
-/// A scene for one number of samples, ready to be rendered again and again.
-struct SampleRunner {
-  CompiledScene scene;
-  FrameRunner frames;
-  Image expected;
-  std::vector<double> seconds;
-  SampleTime result;
+constexpr const char* even_family = "even";
 
-  SampleRunner(const DeviceInfo& device, CompiledScene scene_)
-      : scene(std::move(scene_)), frames(device, scene) {}
-
-  void warm_up(const Image& reference) {
-    frames.run();
-    expected = frames.image();
-    result.error = compare_images(expected, reference, visible_error);
-    for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
-      result.rays += static_cast<double>(frames.counts()[static_cast<std::size_t>(kind)]);
-  }
-
-  void time() {
-    seconds.push_back(frames.run());
-    const Image image = frames.image();
-    if (std::memcmp(image.data.data(), expected.data.data(), image.data.size() * sizeof(float)) != 0)
-      result.problem = "the image changed from one run to the next";
-  }
-};
-
-Spread milliseconds(const Spread& seconds) {
-  return {1e3 * seconds.median, 1e3 * seconds.min, 1e3 * seconds.max};
+SampleFigures figures_of(const FrameRunner& frames, const Image& reference, unsigned samples) {
+  const RenderResult& last = frames.last();
+  SampleFigures figures;
+  figures.rays = frames.rays();
+  figures.error = compare_images(frames.image(), reference, visible_error);
+  figures.samples = last.taken.empty() ? samples : sampling_figures(last.taken, last.film.done, 0, 1).mean;
+  return figures;
 }
 
-std::vector<Cell> figures(const SampleTime& time, double samples) {
-  return {milliseconds(time.seconds),
-          1e3 * time.seconds.median / samples,
-          time.seconds.median > 0 ? time.rays / 1e6 / time.seconds.median : 0,
-          time.error.rms,
-          time.error.rms * std::sqrt(samples),
-          time.error.percentile_99,
-          100 * static_cast<double>(time.error.over_tolerance) /
-              static_cast<double>(std::max<std::uint64_t>(1, time.error.pixels))};
-}
-
-const std::vector<Column> figure_columns = {{"time", "ms"},
-                                            {"a sample", "ms"},
-                                            {"speed", "Mrays/s"},
-                                            {"rms error", ""},
-                                            {"error x sqrt(samples)", ""},
-                                            {"99 % within", ""},
-                                            {"visibly off", "%"}};
-
-/// Curves of one value over the samples, for the device of the plan.
-CurvePlot curves(const SampleScaling& plan, const std::vector<SampleTime>& times, const std::string& what,
-                 const std::string& unit, const std::function<Spread(const SampleTime&)>& value) {
-  Curve curve{plan.device.label().substr(0, plan.device.label().find(' ')), {}};
-  for (const SampleTime& time : times)
-    if (time.problem.empty()) curve.points.push_back({static_cast<double>(time.samples), value(time)});
-  return {
-      fmt::format("{}: {} by samples a pixel", plan.scene, what), "samples a pixel", unit, {curve}, false};
-}
+Spread exactly(double value) { return {value, value, value}; }
 
 }  // namespace
 
-std::vector<SampleTime> measure_samples(const SampleScaling& plan,
-                                        const std::function<void(const std::string&)>& on_step) {
-  on_step(fmt::format("{}, the reference of {} samples", plan.scene, plan.reference));
-  Image reference;
-  {
-    SampleRunner runner(plan.device, plan.compile_for(plan.reference));
-    runner.frames.run();
-    reference = runner.frames.image();
+double rays_for_error(const std::vector<SampleFigures>& even, double rms) {
+  for (std::size_t i = 0; i + 1 < even.size(); ++i) {
+    const double a = even[i].error.rms, b = even[i + 1].error.rms;
+    if (!(a > 0) || !(b > 0) || rms > a || rms < b || a == b) continue;
+    const double share = std::log(rms / a) / std::log(b / a);
+    return even[i].rays * std::pow(even[i + 1].rays / even[i].rays, share);
   }
-  std::vector<std::unique_ptr<SampleRunner>> runners;
-  for (const int samples : plan.counts) {
-    on_step(fmt::format("{}, {} samples", plan.scene, samples));
-    runners.push_back(std::make_unique<SampleRunner>(plan.device, plan.compile_for(samples)));
-    runners.back()->result.samples = samples;
-    runners.back()->warm_up(reference);
-  }
-  for (int i = 0; i < plan.repeat; ++i) {
-    on_step(fmt::format("{}, run {} of {}", plan.scene, i + 1, plan.repeat));
-    for (const auto& runner : runners) runner->time();
-  }
-  std::vector<SampleTime> times;
-  for (const auto& runner : runners) {
-    runner->result.seconds = spread(runner->seconds);
-    times.push_back(runner->result);
-  }
-  return times;
+  return 0;
 }
 
-void add_measurement(Report& report, const SampleScaling& plan, const std::string& way,
-                     const SampleTime& time, double samples, double of_even) {
-  Table& measured = report.measurements;
-  if (measured.columns.empty()) {
-    measured.columns = {
-        {"scene", ""}, {"device", ""}, {"way", ""}, {"samples", ""}, {"reference samples", ""}, {"runs", ""}};
-    measured.columns.insert(measured.columns.end(), figure_columns.begin(), figure_columns.end());
-    measured.columns.insert(measured.columns.end(),
-                            {{"rays", "millions"}, {"of even rays", "%"}, {"problem", ""}});
+SampleTimes::SampleTimes(SampleScaling plan) : plan_(std::move(plan)), reference_(std::make_shared<Image>()) {
+  for (const SampleWay& way : plan_.ways) {
+    const auto figures = std::make_shared<SampleFigures>();
+    const auto samples = std::make_shared<unsigned>();
+    figures_.push_back(figures);
+    const auto open = [=, device = plan_.device, compile_with = plan_.compile_with] {
+      auto scene = compile_with(way.overrides);
+      *samples = scene->info.samples;
+      return std::make_shared<FrameRunner>(std::vector{frame_server(device, scene)}, scene);
+    };
+    const auto first = [=, reference = reference_](const FrameRunner& frames) {
+      *figures = figures_of(frames, *reference, *samples);
+    };
+    subjects_.push_back(frame_subject(
+        fmt::format("{} on {}, {}, {}", plan_.scene, plan_.device.label(), way.family, way.setting),
+        {open, first, {}}));
   }
-  std::vector<Cell> row{plan.scene,
-                        plan.device.label(),
-                        way,
-                        samples,
-                        static_cast<double>(plan.reference),
-                        static_cast<double>(plan.repeat)};
-  if (time.problem.empty()) {
-    for (const Cell& cell : figures(time, samples)) row.push_back(cell);
-    row.emplace_back(time.rays / 1e6);
-    if (of_even > 0) row.emplace_back(of_even);
-  }
-  row.resize(measured.columns.size());
-  if (!time.problem.empty()) row.back() = time.problem;
-  measured.rows.push_back(std::move(row));
 }
 
-void add_sample_tables(Report& report, const SampleScaling& plan, const std::vector<SampleTime>& times) {
-  Table table{fmt::format("{} on {}: time and error by samples a pixel", plan.scene, plan.device.label()),
-              {{"samples", ""}},
+void SampleTimes::measure(const MeasureOptions& options) {
+  if (options.on_step) options.on_step(fmt::format("the reference of {} samples", plan_.reference), 0);
+  const auto draw_reference = [&] {
+    const auto scene = plan_.compile_with(
+        {fmt::format("/render/samples={}", plan_.reference), "/render/adaptive/threshold=0"});
+    RenderOptions stoppable;
+    stoppable.stop = options.stop;
+    FrameRunner frames({frame_server(plan_.device, scene)}, scene, stoppable);
+    frames.run();
+    *reference_ = frames.image();
+  };
+  if (prepared(subjects_, draw_reference)) sundog::measure(subjects_, options);
+}
+
+std::vector<SampleFigures> SampleTimes::even() const {
+  std::vector<SampleFigures> all;
+  for (std::size_t i = 0; i < subjects_.size(); ++i)
+    if (plan_.ways[i].family == even_family && subjects_[i].is_good()) all.push_back(*figures_[i]);
+  return all;
+}
+
+/// Its rays in per cent of those that even samples need for the same error; 0: unknown.
+double SampleTimes::of_even(std::size_t way) const {
+  if (plan_.ways[way].family == even_family) return 100;
+  const double rays = rays_for_error(even(), figures_[way]->error.rms);
+  return rays > 0 ? 100 * figures_[way]->rays / rays : 0;
+}
+
+std::vector<Field> SampleTimes::figures(std::size_t way) const {
+  const SampleFigures& made = *figures_[way];
+  const double seconds = subjects_[way].seconds().median;
+  return {{"a sample", "ms", 1e3 * seconds / made.samples},
+          {"speed", "Mrays/s", seconds > 0 ? made.rays / 1e6 / seconds : 0},
+          {"rms error", "", made.error.rms},
+          {"error x sqrt(samples)", "", made.error.rms * std::sqrt(made.samples)},
+          {"99 % within", "", made.error.percentile_99},
+          {"visibly off", "%",
+           100 * static_cast<double>(made.error.over_tolerance) /
+               static_cast<double>(std::max<std::uint64_t>(1, made.error.pixels))}};
+}
+
+Table SampleTimes::even_table() const {
+  Table table{fmt::format("{} on {}: time and error by samples a pixel", plan_.scene, plan_.device.label()),
+              {{"samples", ""}, {"time", "ms"}},
               {}};
-  table.columns.insert(table.columns.end(), figure_columns.begin(), figure_columns.end());
-  const bool sound = std::ranges::all_of(times, [](const SampleTime& time) { return time.problem.empty(); });
-  if (!sound) table.columns.push_back({"problem", ""});
-  for (const SampleTime& time : times) {
-    std::vector<Cell> row{static_cast<double>(time.samples)};
-    if (time.problem.empty())
-      for (const Cell& cell : figures(time, time.samples)) row.push_back(cell);
-    row.resize(table.columns.size());
-    if (!time.problem.empty()) row.back() = time.problem;
-    table.rows.push_back(std::move(row));
-    add_measurement(report, plan, "even", time, time.samples, 100);
+  for (std::size_t i = 0; i < subjects_.size(); ++i) {
+    if (plan_.ways[i].family != even_family) continue;
+    std::vector<Field> row{{"samples", "", plan_.ways[i].setting}};
+    if (subjects_[i].is_good()) {
+      row[0].cell = figures_[i]->samples;
+      row.push_back({"time", "ms", scaled(subjects_[i].seconds(), 1e3)});
+      for (const Field& field : figures(i)) row.push_back(field);
+    }
+    if (!subjects_[i].problem.empty()) row.push_back({"problem", "", subjects_[i].problem});
+    add_row(table, row);
   }
-  report.parts.emplace_back(std::move(table));
+  return table;
+}
+
+Table SampleTimes::way_table() const {
+  Table table{fmt::format("{} on {}: samples where they are needed", plan_.scene, plan_.device.label()),
+              {{"samples", ""}, {"a pixel", ""}, {"time", "ms"}},
+              {}};
+  for (std::size_t i = 0; i < subjects_.size(); ++i) {
+    const SampleWay& way = plan_.ways[i];
+    if (way.family == even_family) continue;
+    std::vector<Field> row{{"samples", "", fmt::format("{}, {}", way.family, way.setting)}};
+    if (subjects_[i].is_good()) {
+      const double part = of_even(i);
+      row.insert(row.end(),
+                 {{"a pixel", "", figures_[i]->samples},
+                  {"time", "ms", scaled(subjects_[i].seconds(), 1e3)},
+                  {"rays", "millions", figures_[i]->rays / 1e6},
+                  {"rms error", "", figures_[i]->error.rms},
+                  {"of the rays of even samples at this error", "%", part > 0 ? Cell(part) : Cell()}});
+    }
+    if (!subjects_[i].problem.empty()) row.push_back({"problem", "", subjects_[i].problem});
+    add_row(table, row);
+  }
+  return table;
+}
+
+CurvePlot SampleTimes::even_curves(const std::string& what, const std::string& unit,
+                                   const std::function<Spread(std::size_t way)>& value) const {
+  Curve curve{plan_.device.label().substr(0, plan_.device.label().find(' ')), {}};
+  for (std::size_t i = 0; i < subjects_.size(); ++i)
+    if (plan_.ways[i].family == even_family && subjects_[i].is_good())
+      curve.points.push_back({figures_[i]->samples, value(i)});
+  return {
+      fmt::format("{}: {} by samples a pixel", plan_.scene, what), "samples a pixel", unit, {curve}, false};
+}
+
+/// Error over what it costs: a curve for each family of ways.
+CurvePlot SampleTimes::error_curves(const std::string& what, const std::string& unit,
+                                    const std::function<double(std::size_t way)>& cost) const {
+  std::vector<Curve> curves;
+  for (std::size_t i = 0; i < subjects_.size(); ++i) {
+    const std::string& family = plan_.ways[i].family;
+    if (curves.empty() || curves.back().name != family) curves.push_back({family, {}});
+    const double error = figures_[i]->error.rms;
+    if (subjects_[i].is_good() && error > 0 && cost(i) > 0)
+      curves.back().points.push_back({cost(i), exactly(error)});
+  }
+  for (Curve& curve : curves) std::ranges::sort(curve.points, {}, &CurvePoint::x);
+  return {fmt::format("{}: error by {}", plan_.scene, what),
+          unit,
+          "rms error (linear color)",
+          curves,
+          false,
+          true};
+}
+
+void SampleTimes::add_to(Report& report) const {
+  const auto milliseconds = [&](std::size_t i) { return scaled(subjects_[i].seconds(), 1e3); };
+  report.parts.emplace_back(even_table());
+  report.parts.emplace_back(even_curves("error", "rms error (linear color)",
+                                        [&](std::size_t i) { return exactly(figures_[i]->error.rms); }));
+  report.parts.emplace_back(even_curves("time of a frame", "ms", milliseconds));
+  report.parts.emplace_back(way_table());
   report.parts.emplace_back(
-      curves(plan, times, "error", "rms error (linear color)",
-             [](const SampleTime& time) { return Spread{time.error.rms, time.error.rms, time.error.rms}; }));
-  report.parts.emplace_back(curves(plan, times, "time of a frame", "ms",
-                                   [](const SampleTime& time) { return milliseconds(time.seconds); }));
+      error_curves("rays", "millions of rays", [&](std::size_t i) { return figures_[i]->rays / 1e6; }));
+  report.parts.emplace_back(
+      error_curves("time", "ms a frame", [&](std::size_t i) { return milliseconds(i).median; }));
+  for (std::size_t i = 0; i < subjects_.size(); ++i) {
+    const SampleWay& way = plan_.ways[i];
+    const bool good = subjects_[i].is_good();
+    std::vector<Field> row{
+        {"scene", "", plan_.scene},
+        {"device", "", plan_.device.label()},
+        {"way", "", way.family == even_family ? way.family : fmt::format("{}, {}", way.family, way.setting)},
+        {"samples", "", good ? Cell(figures_[i]->samples) : Cell()},
+        {"reference samples", "", static_cast<double>(plan_.reference)}};
+    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
+    if (good) {
+      for (const Field& field : figures(i)) row.push_back(field);
+      const double part = of_even(i);
+      row.push_back({"rays", "millions", figures_[i]->rays / 1e6});
+      row.push_back({"of even rays", "%", part > 0 ? Cell(part) : Cell()});
+    }
+    add_row(report.measurements, row);
+    report.ways.push_back(subjects_[i]);
+  }
 }
 
 }  // namespace sundog

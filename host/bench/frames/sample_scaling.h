@@ -1,11 +1,14 @@
-// Times and errors of one scene against the samples a pixel: what a sample costs, and what it buys.
+// Times and errors of one scene against the samples a pixel, and of frames whose samples are shared out among
+// the pixels: what a sample costs, and what it buys.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/image_compare.h"
 #include "bench/report/report.h"
+#include "bench/runs/measure.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 
@@ -14,36 +17,56 @@ namespace sundog {
 /// In linear colour: a pixel that is off by more looks wrong.
 inline constexpr double visible_error = 0.02;
 
+/// One way to share samples out.
+struct SampleWay {
+  std::string family;                  // "even", "adaptive", "subsampled": a curve of the report
+  std::string setting;                 // the samples, or the threshold
+  std::vector<std::string> overrides;  // of the scene
+};
+
 struct SampleScaling {
   std::string scene;  // its name, for the report
-  /// The scene compiled for so many samples a pixel.
-  std::function<CompiledScene(int samples)> compile_for;
+  std::function<std::shared_ptr<const CompiledScene>(const std::vector<std::string>& overrides)> compile_with;
   DeviceInfo device;
-  std::vector<int> counts{1, 2, 4, 8, 16, 32};  // ascending
-  int reference = 128;                          // samples of the picture that counts as right
-  int repeat = 5;
+  std::vector<SampleWay> ways;  // the even ones first, by ascending samples
+  int reference = 128;          // samples of the picture that counts as right
 };
 
-struct SampleTime {
-  int samples = 0;
-  Spread seconds;
-  double rays = 0;        // of a frame, of all kinds
+/// Of one way, by its first frame.
+struct SampleFigures {
+  double samples = 0;     // a pixel, in the mean
+  double rays = 0;        // of a frame, of all kinds, those that only look too
   ImageDifference error;  // from the reference, in linear color; tolerance visible_error
-  std::string problem;    // not empty: no time counts, and why
 };
 
-/// Renders the reference, warms each count up, then times `repeat` frames of each in turn. A frame whose
-/// image is not that of the warm-up to the bit is a problem. `on_step` hears what is being measured.
-std::vector<SampleTime> measure_samples(const SampleScaling& plan,
-                                        const std::function<void(const std::string&)>& on_step);
+/// The rays that even frames need for an error of `rms`: between two measured ones as a power; 0: beyond
+/// what was measured.
+double rays_for_error(const std::vector<SampleFigures>& even, double rms);
 
-/// Appends a measurement: frames of `samples` a pixel, made in the given way ("even": the same number for
-/// each). `of_even` are their rays in per cent of those that even samples need for the same error; 0:
-/// unknown.
-void add_measurement(Report& report, const SampleScaling& plan, const std::string& way,
-                     const SampleTime& time, double samples, double of_even);
+class SampleTimes {
+ public:
+  explicit SampleTimes(SampleScaling plan);
 
-/// Adds the table, the curves and the measurements.
-void add_sample_tables(Report& report, const SampleScaling& plan, const std::vector<SampleTime>& times);
+  /// Renders the reference, then frames of all ways in turn.
+  void measure(const MeasureOptions& options);
+  /// Adds the tables, the curves and the measurements.
+  void add_to(Report& report) const;
+
+ private:
+  std::vector<SampleFigures> even() const;
+  double of_even(std::size_t way) const;
+  Table even_table() const;
+  Table way_table() const;
+  CurvePlot even_curves(const std::string& what, const std::string& unit,
+                        const std::function<Spread(std::size_t way)>& value) const;
+  CurvePlot error_curves(const std::string& what, const std::string& unit,
+                         const std::function<double(std::size_t way)>& cost) const;
+  std::vector<Field> figures(std::size_t way) const;
+
+  SampleScaling plan_;
+  std::vector<std::shared_ptr<SampleFigures>> figures_;  // of each way
+  std::vector<Subject> subjects_;
+  std::shared_ptr<Image> reference_;
+};
 
 }  // namespace sundog

@@ -10,7 +10,9 @@
 #include "base/clock.h"
 #include "base/pixels/stored_image.h"
 #include "bench/frames/frame_runner.h"
+#include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
+#include "render/film/hash.h"
 #include "scene/decode_images.h"
 #include "scene/materials/by_integrator.h"
 
@@ -77,32 +79,6 @@ void add_textured_material(SceneDescription& scene, int edge, int index) {
   scene.materials.push_back(material);
 }
 
-/// Both frames, ready to be rendered again and again.
-struct Pair {
-  CompiledScene textured, plain;
-  FrameRunner textured_frames, plain_frames;
-
-  Pair(const SceneDescription& scene, const DeviceInfo& device)
-      : textured(compile(scene)),
-        plain(compile(without_textures(scene))),
-        textured_frames(device, textured),
-        plain_frames(device, plain) {}
-};
-
-double kernel_seconds(FrameRunner& frames) {
-  frames.run();
-  double sum = 0;
-  for (const auto& [name, times] : frames.kernel_times()) sum += frames.kernel_seconds(name);
-  return sum;
-}
-
-double rays_of(const FrameRunner& frames) {
-  double rays = 0;
-  for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
-    rays += static_cast<double>(frames.counts()[static_cast<std::size_t>(kind)]);
-  return rays;
-}
-
 }  // namespace
 
 SceneDescription without_textures(SceneDescription scene) {
@@ -155,88 +131,91 @@ SceneDescription eight_textures(int edge) {
   return scene;
 }
 
-TextureCost measure_texture_cost(const SceneDescription& scene, const DeviceInfo& device, int repeat,
-                                 const std::function<void(const std::string&)>& on_step) {
-  on_step("compiling");
-  Pair pair(scene, device);
-  kernel_seconds(pair.textured_frames);
-  kernel_seconds(pair.plain_frames);
-  TextureCost cost;
-  std::vector<double> textured, plain, ratios;
-  for (int i = 0; i < repeat; ++i) {
-    on_step(fmt::format("run {} of {}", i + 1, repeat));
-    plain.push_back(kernel_seconds(pair.plain_frames));
-    textured.push_back(kernel_seconds(pair.textured_frames));
-    ratios.push_back(textured.back() / plain.back());
-  }
-  const Spread ratio = spread(ratios);
-  cost.textured = spread(textured);
-  cost.plain = spread(plain);
-  cost.ratio = ratio.median;
-  cost.ratio_low = ratio.min;
-  cost.ratio_high = ratio.max;
-  cost.rays_textured = rays_of(pair.textured_frames);
-  cost.rays_plain = rays_of(pair.plain_frames);
-  return cost;
+TextureCost::TextureCost(std::string scene_name, const SceneDescription& scene, const DeviceInfo& device)
+    : scene_(std::move(scene_name)), device_(device_place(device)) {
+  const auto add = [&](const char* what, SceneDescription described) {
+    const auto flat = std::make_shared<const CompiledScene>(compile(described));
+    const auto rays = rays_.emplace_back(std::make_shared<double>());
+    const auto open = [=] {
+      return std::make_shared<FrameRunner>(std::vector{frame_server(device, flat)}, flat);
+    };
+    subjects_.push_back(frame_subject(fmt::format("{} on {}, {}", scene_, device_, what),
+                                      {open, [rays](const FrameRunner& frames) { *rays = frames.rays(); },
+                                       [](const FrameRunner& frames) { return frames.kernel_seconds(); }}));
+  };
+  add("without", without_textures(scene));
+  add("textured", scene);
 }
 
-ImageCost measure_image_cost(int edge, int repeat, const std::function<void(const std::string&)>& on_step) {
-  on_step(fmt::format("making eight images of {} texels a side", edge));
-  SceneDescription made = eight_textures(edge);
-  std::vector<std::string> files;
-  for (ImageDescription& image : made.images) {
-    add_grain(image.pixels, static_cast<unsigned>(files.size()));
-    files.push_back(encode_png(image.pixels));
-    image.pixels = {};
+void TextureCost::add_to(Report& report) const {
+  std::vector<Field> row{{"scene", "", scene_}, {"device", "", device_}};
+  const char* names[] = {"without", "textured"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool good = subjects_[i].is_good();
+    row.push_back({names[i], "ms", good ? Cell(scaled(subjects_[i].seconds(), 1e3)) : Cell()});
+    row.push_back({fmt::format("rays {}", names[i]), "", *rays_[i]});
+    report.ways.push_back(subjects_[i]);
   }
-  std::vector<double> decode, levels, both, processor;
-  for (int i = 0; i < repeat; ++i) {
-    on_step(fmt::format("loading images, run {} of {}", i + 1, repeat));
-    SceneDescription scene = made;
-    for (std::size_t k = 0; k < files.size(); ++k) scene.images[k].encoded = files[k];
+  if (subjects_[0].is_good() && subjects_[1].is_good())
+    row.push_back({"ratio", "", subjects_[1].seconds().median / subjects_[0].seconds().median});
+  for (const Subject& subject : subjects_)
+    if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
+  add_row(report.measurements, row);
+}
+
+ImageCost::ImageCost(int edge) : edge_(edge), parts_(std::make_shared<Parts>()) {
+  struct Made {
+    SceneDescription scene;
+    std::vector<std::string> files;
+    std::uint64_t result = 0, expected = 0;
+  };
+  const auto made = std::make_shared<Made>();
+  Subject& subject = subjects_.emplace_back();
+  subject.name = fmt::format("eight PNG, {0}x{0}", edge_);
+  subject.prepare = [made, edge] {
+    made->scene = eight_textures(edge);
+    for (ImageDescription& image : made->scene.images) {
+      add_grain(image.pixels, static_cast<unsigned>(made->files.size()));
+      made->files.push_back(encode_png(image.pixels));
+      image.pixels = {};
+    }
+  };
+  subject.run = [made, parts = parts_] {
+    SceneDescription scene = made->scene;
+    for (std::size_t k = 0; k < made->files.size(); ++k) scene.images[k].encoded = made->files[k];
     const double before = processor_seconds();
-    Stopwatch clock;
+    const Stopwatch clock;
     decode_images(scene);
-    decode.push_back(clock.seconds());
-    clock = {};
-    compile(scene);
-    levels.push_back(clock.seconds());
-    both.push_back(decode.back() + levels.back());
-    processor.push_back(processor_seconds() - before);
+    const double decoded = clock.seconds();
+    const CompiledScene compiled = compile(scene);
+    const double seconds = clock.seconds();
+    parts->decode.push_back(decoded);
+    parts->levels.push_back(seconds - decoded);
+    parts->processor.push_back(processor_seconds() - before);
+    made->result = hash_scene(compiled);
+    return seconds;
+  };
+  subject.check = [made]() -> std::string {
+    if (made->expected == 0) made->expected = made->result;
+    return made->result == made->expected ? "" : "its texels are not those of the first run";
+  };
+}
+
+void ImageCost::add_to(Report& report) const {
+  const Subject& subject = subjects_.front();
+  std::vector<Field> row{{"scene", "", subject.name}};
+  if (subject.is_good()) {
+    const auto later = [&](const std::vector<double>& all) {
+      return scaled(spread(subject.counted(all)), 1e3);
+    };
+    row.insert(row.end(), {{"decoding", "ms", later(parts_->decode)},
+                           {"levels", "ms", later(parts_->levels)},
+                           {"loading", "ms", scaled(subject.seconds(), 1e3)},
+                           {"loading on processors", "ms", later(parts_->processor)}});
   }
-  return {spread(decode), spread(levels), spread(both), spread(processor)};
-}
-
-void add_texture_rows(Report& report, const std::string& scene, const DeviceInfo& device,
-                      const TextureCost& cost) {
-  if (report.measurements.columns.empty())
-    report.measurements.columns = {{"scene", ""},
-                                   {"device", ""},
-                                   {"without", "ms"},
-                                   {"textured", "ms"},
-                                   {"ratio", ""},
-                                   {"ratio low", ""},
-                                   {"ratio high", ""},
-                                   {"rays without", ""},
-                                   {"rays textured", ""},
-                                   {"decoding", "ms"},
-                                   {"levels", "ms"},
-                                   {"loading", "ms"},
-                                   {"loading on processors", "ms"}};
-  const std::string label = device.label();
-  report.measurements.rows.push_back({scene, label.substr(0, label.find(' ')), scaled(cost.plain, 1e3),
-                                      scaled(cost.textured, 1e3), cost.ratio, cost.ratio_low, cost.ratio_high,
-                                      cost.rays_plain, cost.rays_textured, Cell(), Cell(), Cell(), Cell()});
-}
-
-void add_image_rows(Report& report, int edge, const ImageCost& cost) {
-  std::vector<Cell> row(report.measurements.columns.size());
-  row[0] = fmt::format("eight PNG, {0}x{0}", edge);
-  row[row.size() - 4] = scaled(cost.decode, 1e3);
-  row[row.size() - 3] = scaled(cost.levels, 1e3);
-  row[row.size() - 2] = scaled(cost.both, 1e3);
-  row[row.size() - 1] = scaled(cost.processor, 1e3);
-  report.measurements.rows.push_back(std::move(row));
+  if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
+  add_row(report.measurements, row);
+  report.ways.push_back(subject);
 }
 
 }  // namespace sundog

@@ -1,11 +1,12 @@
 // What textures cost: a scene's frame with its textures and without them, and the time that its images take
 // to load.
 #pragma once
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/report/report.h"
+#include "bench/runs/measure.h"
 #include "device/devices.h"
 #include "scene/description.h"
 
@@ -18,26 +19,34 @@ SceneDescription without_textures(SceneDescription scene);
 /// two mirrors. The images are made here.
 SceneDescription eight_textures(int edge);
 
-struct TextureCost {
-  Spread textured, plain;  // seconds of kernels in a frame
-  double ratio = 0;        // the median over the pairs
-  double ratio_low = 0, ratio_high = 0;
-  double rays_textured = 0, rays_plain = 0;
+/// Frames with a scene's textures and without them, in turn, by the time of their kernels.
+class TextureCost {
+ public:
+  TextureCost(std::string scene_name, const SceneDescription& scene, const DeviceInfo& device);
+  void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
+  void add_to(Report& report) const;
+
+ private:
+  std::string scene_, device_;
+  std::vector<Subject> subjects_;              // without textures, with them
+  std::vector<std::shared_ptr<double>> rays_;  // of a frame of each
 };
 
-/// Renders both once to warm up, then `repeat` times in turn.
-TextureCost measure_texture_cost(const SceneDescription& scene, const DeviceInfo& device, int repeat,
-                                 const std::function<void(const std::string&)>& on_step);
+/// Loading eight PNG files of `edge` texels a side, from their bytes to the tables of texels: decoding, and
+/// the rest, which is smaller levels and tiles.
+class ImageCost {
+ public:
+  explicit ImageCost(int edge);
+  void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
+  void add_to(Report& report) const;
 
-/// What loading eight PNG files of `edge` texels a side takes, from their bytes to the tables of texels, in
-/// seconds: decoding, and the rest, which is smaller levels and tiles.
-struct ImageCost {
-  Spread decode, levels, both, processor;  // the last: processor time of both
+ private:
+  struct Parts {
+    std::vector<double> decode, levels, processor;  // seconds of each run, the first one too
+  };
+  int edge_;
+  std::shared_ptr<Parts> parts_;
+  std::vector<Subject> subjects_;
 };
-ImageCost measure_image_cost(int edge, int repeat, const std::function<void(const std::string&)>& on_step);
-
-void add_texture_rows(Report& report, const std::string& scene, const DeviceInfo& device,
-                      const TextureCost& cost);
-void add_image_rows(Report& report, int edge, const ImageCost& cost);
 
 }  // namespace sundog

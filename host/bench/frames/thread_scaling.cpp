@@ -9,153 +9,64 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "bench/frames/frame_runner.h"
-#include "bench/frames/thread_budget.h"
 #include "bench/plain/whitted.h"
 
 namespace sundog {
 namespace {
 
-/// One count at work on one size.
-struct ThreadRunner {
-  ThreadTime result;
-  std::function<double()> run;  // a frame's seconds; empty: there is a problem
-  std::function<Image()> image;
-  std::vector<double> seconds, cores;
+std::string threads_text(unsigned threads) {
+  return threads ? fmt::format("{} thread{}", threads, threads == 1 ? "" : "s") : "plain C++";
+}
 
-  bool is_plain() const { return result.threads == 0; }
-  std::string name() const {
-    if (is_plain()) return "plain C++";
-    return fmt::format("{} thread{}", result.threads, result.threads == 1 ? "" : "s");
-  }
-  void warm_up(const DeviceInfo& whole, const CompiledScene& scene) {
-    try {
-      is_plain() ? prepare_plain(scene) : prepare(whole, scene);
-      if (!run) return;
-      // Plain C++ compiles nothing and may take minutes: its first frame is the one that counts.
-      is_plain() ? time() : void(run());
-    } catch (const DeviceError& error) {
-      fail(error.what());
-    }
-  }
-  void prepare(DeviceInfo part, const CompiledScene& scene) {
-    if (result.threads > part.compute_units)
-      return fail(fmt::format("the device has {} compute units", part.compute_units));
-    part.sub_units = result.threads;
-    const auto frames = std::make_shared<FrameRunner>(part, scene);
-    frames->run();
-    run = [frames] { return frames->run(); };
-    image = [frames] { return frames->image(); };
-  }
-  void prepare_plain(const CompiledScene& scene) {
-    if (const std::string refusal = plain_refusal(scene); !refusal.empty()) return fail(refusal);
-    const auto last = std::make_shared<Image>();
-    run = [last, &scene] {
-      const Stopwatch clock;
-      *last = render_plain(scene);
-      return clock.seconds();
-    };
-    image = [last] { return *last; };
-  }
-  void time() {
-    const Stopwatch clock;
-    const double processor = processor_seconds();
-    seconds.push_back(run());
-    cores.push_back((processor_seconds() - processor) / clock.seconds());
-  }
-  void fail(const std::string& why) {
-    result.problem = why;
-    run = nullptr;
-  }
+/// A size's scene and the image that all counts must show.
+struct OneSize {
+  CompiledScene scene;
+  Image expected;
+  unsigned first = 0;  // the count that drew it
 };
 
-/// The image of the first count that works is what all must show.
-void check_images(std::vector<ThreadRunner>& runners) {
-  const ThreadRunner* first = nullptr;
-  Image expected;
-  for (ThreadRunner& runner : runners) {
-    if (!runner.run || runner.is_plain()) continue;
-    const Image image = runner.image();
-    if (!first) {
-      first = &runner;
-      expected = image;
-    } else if (image.data != expected.data) {
-      runner.fail(fmt::format("its image differs from that of {} threads", first->result.threads));
+Subject thread_subject(const ThreadScaling& plan, unsigned threads, const std::shared_ptr<OneSize>& size) {
+  const auto frames = std::make_shared<std::shared_ptr<FrameRunner>>();
+  Subject subject;
+  subject.prepare = [=, part = plan.device]() mutable {
+    if (threads > part.compute_units)
+      throw DeviceError(fmt::format("the device has {} compute units", part.compute_units));
+    part.sub_units = threads;
+    *frames = std::make_shared<FrameRunner>(part, size->scene);
+    (*frames)->run();
+  };
+  subject.run = [frames] { return (*frames)->run(); };
+  subject.check = [=]() -> std::string {
+    Image image = (*frames)->image();
+    if (size->first == 0) {
+      size->first = threads;
+      size->expected = std::move(image);
+      return "";
     }
-  }
-  for (ThreadRunner& runner : runners) {
-    if (!runner.run || !runner.is_plain()) continue;
-    const std::string why =
-        first ? plain_difference(runner.image(), expected) : "there is no device image to compare it with";
-    if (!why.empty()) runner.fail(why);
-  }
+    if (same_bits_of(image, size->expected)) return "";
+    return fmt::format("its image differs from that of {}", threads_text(size->first));
+  };
+  return subject;
 }
 
-const ThreadTime* find(const std::vector<ThreadTime>& times, int size, unsigned threads) {
-  for (const ThreadTime& time : times)
-    if (time.size == size && time.threads == threads && time.problem.empty()) return &time;
-  return nullptr;
-}
-
-double milliseconds(double seconds) { return 1e3 * seconds; }
-
-/// How many times as fast as one thread; where the least count is greater, that one counts as ideal.
-std::optional<Spread> speed_up(const std::vector<ThreadTime>& times, const ThreadScaling& plan, int size,
-                               unsigned count) {
-  const ThreadTime *one = find(times, size, plan.counts.front()), *many = find(times, size, count);
-  if (!one || !many) return {};
-  const double base = plan.counts.front();
-  return Spread{base * one->seconds.median / many->seconds.median,
-                base * one->seconds.median / many->seconds.max,
-                base * one->seconds.median / many->seconds.min};
-}
-
-/// A row a size and a column a count, of what `cell` makes of them.
-Table pivot(const std::string& title, const std::string& unit, const ThreadScaling& plan,
-            const std::function<Cell(int, unsigned)>& cell) {
-  Table table{title, {{"pixels a side", ""}}, {}};
-  if (plan.plain) table.columns.push_back({"plain C++", unit});
-  for (const unsigned count : plan.counts)
-    table.columns.push_back({fmt::format("{} thread{}", count, count == 1 ? "" : "s"), unit});
-  for (const int size : plan.sizes) {
-    std::vector<Cell> row{static_cast<double>(size)};
-    if (plan.plain) row.push_back(cell(size, 0));
-    for (const unsigned count : plan.counts) row.push_back(cell(size, count));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-CurvePlot speed_up_curves(const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
-  CurvePlot plot{plan.scene + ": speed-up by threads", "threads", "times as fast", {}, true};
-  for (const int size : plan.sizes) {
-    Curve curve{fmt::format("{0} × {0}", size), {}};
-    for (const unsigned count : plan.counts)
-      if (const auto value = speed_up(times, plan, size, count))
-        curve.points.push_back({static_cast<double>(count), *value});
-    if (!curve.points.empty()) plot.curves.push_back(std::move(curve));
-  }
-  return plot;
-}
-
-void add_measurements(Table& table, const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
-  if (table.columns.empty())
-    table.columns = {{"scene", ""}, {"device", ""},   {"size", "pixels"}, {"threads", ""}, {"time", "ms"},
-                     {"runs", ""},  {"speed-up", ""}, {"cores used", ""}, {"problem", ""}};
-  for (const ThreadTime& time : times) {
-    const bool is_plain = time.threads == 0;
-    std::vector<Cell> row{plan.scene, is_plain ? "plain C++" : plan.device.label(),
-                          static_cast<double>(time.size), is_plain ? 1.0 : time.threads};
-    if (!time.problem.empty()) {
-      row.resize(table.columns.size());
-    } else {
-      row.insert(row.end(), {scaled(time.seconds, 1e3), static_cast<double>(time.seconds.runs.size())});
-      const auto gain = speed_up(times, plan, time.size, time.threads);
-      row.push_back(gain ? Cell(gain->median) : Cell());
-      row.insert(row.end(), {time.cores, Cell()});
-    }
-    if (!time.problem.empty()) row.back() = time.problem;
-    table.rows.push_back(std::move(row));
-  }
+/// Compiles nothing and may take minutes: its first frame is the one that counts.
+Subject plain_subject(const std::shared_ptr<OneSize>& size) {
+  const auto last = std::make_shared<Image>();
+  Subject subject;
+  subject.once = true;
+  subject.prepare = [size] {
+    if (const std::string refusal = plain_refusal(size->scene); !refusal.empty()) throw DeviceError(refusal);
+  };
+  subject.run = [size, last] {
+    const Stopwatch clock;
+    *last = render_plain(size->scene);
+    return clock.seconds();
+  };
+  subject.check = [size, last]() -> std::string {
+    return size->first ? plain_difference(*last, size->expected)
+                       : "there is no device image to compare it with";
+  };
+  return subject;
 }
 
 }  // namespace
@@ -185,59 +96,87 @@ PixelCost pixel_cost(const ThreadScaling& plan) {
   return cost;
 }
 
-std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart& on_part) {
-  const double expected = expected_seconds(plan);
-  double done = 0;
-  const auto tell = [&](int size, const std::string& what) {
-    on_part(fmt::format("{}, {}x{}, {}", plan.scene, size, size, what), expected > 0 ? done / expected : 0);
-  };
-  std::vector<ThreadTime> times;
-  for (const int size : plan.sizes) {
-    const CompiledScene scene = plan.compile_for(size);
-    std::vector<unsigned> counts = plan.counts;
-    if (plan.plain && size <= plan.greatest_plain_size) counts.insert(counts.begin(), 0);
-    std::vector<ThreadRunner> runners(counts.size());
-    for (std::size_t i = 0; i < runners.size(); ++i) {
-      runners[i].result.size = size;
-      runners[i].result.threads = counts[i];
-      tell(size, runners[i].name());
-      runners[i].warm_up(plan.device, scene);
-      done += counts[i] ? 2 * frame_seconds(plan, size, counts[i]) : plain_seconds(plan, size);
-    }
-    check_images(runners);
-    for (int i = 0; i < plan.repeat; ++i)
-      for (ThreadRunner& runner : runners) {
-        if (!runner.run || runner.is_plain()) continue;
-        tell(size, runner.name());
-        runner.time();
-        done += frame_seconds(plan, size, runner.result.threads);
-      }
-    for (ThreadRunner& runner : runners) {
-      runner.result.seconds = spread(runner.seconds);
-      runner.result.cores = spread(runner.cores).median;
-      times.push_back(runner.result);
-    }
+ThreadTimes::ThreadTimes(ThreadScaling plan) : plan_(std::move(plan)) {
+  for (const int side : plan_.sizes) {
+    const auto size = std::make_shared<OneSize>(OneSize{plan_.compile_for(side), {}, 0});
+    const auto add = [&](unsigned threads, Subject subject) {
+      subject.name = fmt::format("{}, {}x{}, {}", plan_.scene, side, side, threads_text(threads));
+      ways_.emplace_back(side, threads);
+      subjects_.push_back(std::move(subject));
+    };
+    for (const unsigned count : plan_.counts) add(count, thread_subject(plan_, count, size));
+    if (plan_.plain && side <= plan_.greatest_plain_size) add(0, plain_subject(size));
   }
-  return times;
 }
 
-void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vector<ThreadTime>& times) {
-  const auto time_cell = [&](int size, unsigned count) -> Cell {
-    const ThreadTime* time = find(times, size, count);
-    return time ? Cell(milliseconds(time->seconds.median)) : Cell();
+void ThreadTimes::measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
+
+const Subject* ThreadTimes::find(int size, unsigned threads) const {
+  for (std::size_t i = 0; i < ways_.size(); ++i)
+    if (ways_[i] == std::pair(size, threads) && subjects_[i].is_good()) return &subjects_[i];
+  return nullptr;
+}
+
+/// How many times as fast as one thread; where the least count is greater, that one counts as ideal.
+std::optional<Spread> ThreadTimes::speed_up(int size, unsigned count) const {
+  const Subject *one = find(size, plan_.counts.front()), *many = find(size, count);
+  if (!one || !many) return {};
+  const Spread seconds = many->seconds();
+  const Interval interval = median_interval(seconds);
+  const double base = plan_.counts.front() * one->seconds().median;
+  return Spread{base / seconds.median, base / interval.high, base / interval.low};
+}
+
+/// A row a size and a column a count, of what `cell` makes of them.
+Table ThreadTimes::pivot(const std::string& title, const std::string& unit,
+                         const std::function<Cell(int, unsigned)>& cell) const {
+  Table table{fmt::format("{}: {}", plan_.scene, title), {{"pixels a side", ""}}, {}};
+  for (const int size : plan_.sizes) {
+    std::vector<Field> row{{"pixels a side", "", static_cast<double>(size)}};
+    if (plan_.plain) row.push_back({threads_text(0), unit, cell(size, 0)});
+    for (const unsigned count : plan_.counts) row.push_back({threads_text(count), unit, cell(size, count)});
+    add_row(table, row);
+  }
+  return table;
+}
+
+void ThreadTimes::add_to(Report& report) const {
+  const auto time_cell = [&](int size, unsigned count) {
+    const Subject* time = find(size, count);
+    return time ? Cell(1e3 * time->seconds().median) : Cell();
   };
-  const auto gain_cell = [&](double scale, int size, unsigned count) -> Cell {
-    const auto gain = speed_up(times, plan, size, count);
+  const auto gain_cell = [&](double scale, int size, unsigned count) {
+    const auto gain = speed_up(size, count);
     return gain ? Cell(gain->median * scale) : Cell();
   };
-  report.parts.push_back(pivot(plan.scene + ": time of a frame", "ms", plan, time_cell));
-  report.parts.push_back(pivot(plan.scene + ": speed-up", "", plan,
-                               [&](int size, unsigned count) { return gain_cell(1, size, count); }));
+  report.parts.push_back(pivot("time of a frame", "ms", time_cell));
   report.parts.push_back(
-      pivot(plan.scene + ": efficiency (speed-up by threads)", "", plan,
-            [&](int size, unsigned count) { return count ? gain_cell(1.0 / count, size, count) : Cell(); }));
-  report.parts.push_back(speed_up_curves(plan, times));
-  add_measurements(report.measurements, plan, times);
+      pivot("speed-up", "", [&](int size, unsigned count) { return gain_cell(1, size, count); }));
+  report.parts.push_back(pivot("efficiency (speed-up by threads)", "", [&](int size, unsigned count) {
+    return count ? gain_cell(1.0 / count, size, count) : Cell();
+  }));
+  CurvePlot plot{plan_.scene + ": speed-up by threads", "threads", "times as fast", {}, true};
+  for (const int size : plan_.sizes) {
+    Curve curve{fmt::format("{0} × {0}", size), {}};
+    for (const unsigned count : plan_.counts)
+      if (const auto value = speed_up(size, count))
+        curve.points.push_back({static_cast<double>(count), *value});
+    if (!curve.points.empty()) plot.curves.push_back(std::move(curve));
+  }
+  report.parts.emplace_back(std::move(plot));
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const auto [size, threads] = ways_[i];
+    std::vector<Field> row{{"scene", "", plan_.scene},
+                           {"device", "", threads ? plan_.device.label() : "plain C++"},
+                           {"size", "pixels", static_cast<double>(size)},
+                           {"threads", "", threads ? static_cast<double>(threads) : 1.0}};
+    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
+    row.push_back({"speed-up", "", threads ? gain_cell(1, size, threads) : Cell()});
+    add_row(report.measurements, row);
+    report.ways.push_back(subjects_[i]);
+    if (!subjects_[i].problem.empty())
+      report.notes.push_back(fmt::format("{}: {}", subjects_[i].name, subjects_[i].problem));
+  }
 }
 
 }  // namespace sundog

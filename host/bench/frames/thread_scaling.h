@@ -2,10 +2,12 @@
 // compute units of a sub-device.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/report/report.h"
+#include "bench/runs/measure.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 
@@ -23,36 +25,36 @@ struct ThreadScaling {
   DeviceInfo device;  // splits into sub-devices
   std::vector<int> sizes{128, 256, 352, 448, 512, 640};
   std::vector<unsigned> counts{1, 2, 4, 8, 16};
-  int repeat = 5;
+  int repeat = 6;
   bool plain = true;  // time the plain C++ integrator too: one frame a size, up to this one
   int greatest_plain_size = 1 << 16;
   unsigned cores = 1;  // that the threads can have
   PixelCost cost;      // by pixel_cost(), for estimates
 };
 
-/// One size and count; 0 threads: the plain C++ program. `cores` is processor seconds by wall second: what
-/// the threads really had.
-struct ThreadTime {
-  int size = 0;
-  unsigned threads = 0;
-  Spread seconds;
-  double cores = 0;
-  std::string problem;  // not empty: no time counts, and why
-};
-
 /// Times a small frame of the scene, which also compiles its kernels into the cache. Zeros where it cannot be
 /// drawn.
 PixelCost pixel_cost(const ThreadScaling& plan);
 
-/// What is being measured, and which part of the expected time is over, from 0 to 1.
-using OnPart = std::function<void(const std::string& step, double done)>;
+/// The sizes and counts of a plan, all in turn. An image that is not that of the size's first count to the
+/// bit is a problem, and so is the plain program's when it is another but for rounding.
+class ThreadTimes {
+ public:
+  explicit ThreadTimes(ThreadScaling plan);
 
-/// Warms up, then times `repeat` frames of each count in turn, and one frame of plain C++; a count whose
-/// image is not that of the first one to the bit has a problem instead of a time, and so has the plain
-/// program when its image is another.
-std::vector<ThreadTime> measure_threads(const ThreadScaling& plan, const OnPart& on_part);
+  void measure(const MeasureOptions& options);
+  /// Adds the scene's tables (times, speed-up, efficiency), curves and measurements.
+  void add_to(Report& report) const;
 
-/// Adds the scene's tables (times, speed-up, efficiency), curves and measurements.
-void add_thread_tables(Report& report, const ThreadScaling& plan, const std::vector<ThreadTime>& times);
+ private:
+  const Subject* find(int size, unsigned threads) const;
+  std::optional<Spread> speed_up(int size, unsigned count) const;
+  Table pivot(const std::string& title, const std::string& unit,
+              const std::function<Cell(int, unsigned)>& cell) const;
+
+  ThreadScaling plan_;
+  std::vector<std::pair<int, unsigned>> ways_;  // side and threads of each subject; 0 threads: plain C++
+  std::vector<Subject> subjects_;
+};
 
 }  // namespace sundog

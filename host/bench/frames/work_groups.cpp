@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
-#include <random>
 #include <set>
 
-#include "base/error.h"
 #include "render/device/tuning.h"
 
 namespace sundog {
@@ -23,90 +20,18 @@ constexpr std::size_t most_in_two_dimensions = 256;
 /// Primes below the powers of two: no range of pixels is a multiple of one.
 constexpr std::size_t primes[] = {61, 31, 13, 7, 3};
 
-const WorkGroupTime* default_time(const std::vector<WorkGroupTime>& times) {
-  for (const WorkGroupTime& time : times)
-    if (time.group.kind == automatic && time.problem.empty()) return &time;
-  return nullptr;
+bool is_padded_prime(const WorkGroup& group) {
+  return group.kind == fixed && std::ranges::count(primes, group.x) > 0 && group.y == 1;
 }
 
-const WorkGroupTime* least_time(const std::vector<WorkGroupTime>& times) {
-  const WorkGroupTime* least = nullptr;
-  for (const WorkGroupTime& time : times)
-    if (time.problem.empty() && (!least || time.seconds.median < least->seconds.median)) least = &time;
-  return least;
-}
-
-std::string title_of(const TimedKernel& kernel) {
-  return fmt::format("{}, {} on {}", kernel.scene, kernel.name, kernel.device);
-}
-
-HeatMap heat_map(const TimedKernel& kernel, const std::vector<WorkGroupTime>& times, bool has_best) {
-  std::set<std::size_t> xs, ys;
-  for (const WorkGroupTime& time : times)
-    if (time.group.kind == fixed) xs.insert(time.group.x), ys.insert(time.group.y);
-  HeatMap map{title_of(kernel) + ": ms by work-group", "ms", "work-items in x", "in y", {}, {}, {}, has_best};
-  for (const std::size_t x : xs) map.columns.push_back(std::to_string(x));
-  for (const std::size_t y : ys) {
-    map.rows.push_back(std::to_string(y));
-    auto& row = map.values.emplace_back(xs.size());
-    for (const WorkGroupTime& time : times)
-      if (time.group.kind == fixed && time.group.y == y && time.problem.empty())
-        row[static_cast<std::size_t>(std::distance(xs.begin(), xs.find(time.group.x)))] =
-            1e3 * time.seconds.median;
-  }
-  return map;
-}
-
-/// The sizes that people ask about: the default, the driver's, a prime one, and the one of the least median.
-BarPlot bars(const TimedKernel& kernel, const WorkGroupTimes& times) {
-  BarPlot plot{title_of(kernel) + ": selected sizes", "ms", {}};
-  const WorkGroupTime *usual = default_time(times.sizes), *least = least_time(times.sizes);
-  const bool is_best = times.duel && times.duel->is_clear();
-  for (const WorkGroupTime& time : times.sizes) {
-    const bool prime =
-        time.group.kind == fixed && std::ranges::count(primes, time.group.x) > 0 && time.group.y == 1;
-    if (!time.problem.empty() || (time.group.kind == fixed && !prime && &time != least)) continue;
-    std::string label = work_group_text(time.group);
-    if (prime) label += ", padded";
-    if (is_best && &time == least) label.insert(0, "best: ");
-    const bool compared = usual && usual->seconds.median > 0 && &time != usual;
-    plot.bars.push_back(
-        {label, scaled(time.seconds, 1e3),
-         compared ? fmt::format("{:.2f} of the default", time.seconds.median / usual->seconds.median) : ""});
-  }
-  return plot;
-}
-
-Cell compile_cell(const WorkGroupTime& time) {
-  return time.compile_seconds ? Cell(1e3 * *time.compile_seconds) : Cell();
-}
-
-Table table(const TimedKernel& kernel, const std::vector<WorkGroupTime>& times) {
-  Table result{
-      title_of(kernel),
-      {{"work-group", ""}, {"time", "ms"}, {"of the default", ""}, {"compiled at first launch", "ms"}},
-      {}};
-  const WorkGroupTime* usual = default_time(times);
-  const bool problems = std::ranges::any_of(times, [](const auto& time) { return !time.problem.empty(); });
-  if (problems) result.columns.push_back({"problem", ""});
-  for (const WorkGroupTime& time : times) {
-    std::vector<Cell> row{work_group_text(time.group)};
-    if (time.problem.empty()) {
-      row.push_back(scaled(time.seconds, 1e3));
-      row.push_back(usual ? Cell(time.seconds.median / usual->seconds.median) : Cell());
-      row.push_back(compile_cell(time));
-    }
-    row.resize(result.columns.size());
-    if (problems) row.back() = time.problem;
-    result.rows.push_back(std::move(row));
-  }
-  return result;
+std::string range_text(const Spread& seconds) {
+  return fmt::format("{} to {} ms", number_text(1e3 * seconds.min), number_text(1e3 * seconds.max));
 }
 
 }  // namespace
 
 std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensions) {
-  std::vector<WorkGroup> groups{{automatic, 0, 0}, {driver, 0, 0}};
+  std::vector<WorkGroup> groups{{driver, 0, 0}};
   for (std::size_t x = 1; x <= limit; x *= 2) groups.push_back({fixed, x, 1});
   for (const std::size_t prime : primes)
     if (prime <= limit) {
@@ -119,148 +44,189 @@ std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensi
   return groups;
 }
 
-namespace {
+std::optional<double> WorkGroupTimes::Way::compile_seconds() const {
+  if (beyond.size() < 2) return {};
+  // The rest of a later launch is no compiling: queueing, and the host's own work.
+  return std::max(0.0, beyond.front() - spread({beyond.begin() + 1, beyond.end()}).median);
+}
 
-/// One after another in another order each time, so that what else the machine does falls on all alike.
-struct Sweep {
-  const TimedKernel& kernel;
-  const OnRun& on_run;
-  std::size_t done = 0, of = 0;
-  std::mt19937 random = std::mt19937();
+WorkGroupTimes::WorkGroupTimes(TimedKernel head, std::function<TimedKernel()> open)
+    : name_(fmt::format("{}, {} on {}", head.scene, head.name, head.device)),
+      open_(std::move(open)),
+      kernel_(std::move(head)) {}
 
-  double run(const WorkGroup& group) {
-    const double seconds = kernel.run(group);
-    ++done;
-    if (on_run) on_run(done, of);
+void WorkGroupTimes::add_way(const WorkGroup& group, const std::string& text) {
+  const auto way = std::make_shared<Way>(Way{group, text, {}});
+  ways_.push_back(way);
+  Subject& subject = subjects_.emplace_back();
+  subject.name = fmt::format("{}, {}", name_, text);
+  subject.run = [this, way] {
+    const double seconds = kernel_.run(way->group);
+    const auto more = kernel_.beyond_events ? kernel_.beyond_events() : std::nullopt;
+    if (more) way->beyond.push_back(*more);
     return seconds;
-  }
-  std::optional<double> beyond_events() const {
-    return kernel.beyond_events ? kernel.beyond_events() : std::nullopt;
-  }
-};
+  };
+  subject.check = [this]() -> std::string {
+    const std::uint64_t result = kernel_.result();
+    if (!expected_) expected_ = result;
+    return result == *expected_ ? "" : "its result is not the default's";
+  };
+}
 
-/// Runs each size for the first time, and compares its result.
-std::vector<WorkGroupTime> warm_up(Sweep& sweep, const std::vector<WorkGroup>& groups) {
-  std::vector<WorkGroupTime> times;
-  std::uint64_t expected = 0;
+void WorkGroupTimes::measure(const MeasureOptions& options) {
+  if (options.on_step) options.on_step(name_ + ", the default", 0);
+  add_way({}, "default");
+  const auto open = [&] {
+    kernel_ = open_();
+    kernel_.run({});
+  };
+  if (!prepared(subjects_, open) || options.is_stopped()) return;
+  const auto [x, y] = kernel_.local ? kernel_.local() : std::pair<std::size_t, std::size_t>();
+  const WorkGroup usual{fixed, x, y};
+  ways_.front()->text = fmt::format("default ({})", x > 0 ? work_group_text(usual) : "the driver's choice");
+  std::vector<WorkGroup> groups = kernel_.sizes;
+  if (groups.empty()) groups = work_group_candidates(kernel_.limit, kernel_.two_dimensions);
   for (const WorkGroup& group : groups) {
-    WorkGroupTime& time = times.emplace_back();
-    time.group = group;
-    try {
-      sweep.run(group);
-      time.compile_seconds = sweep.beyond_events();
-      if (group.kind == automatic)
-        expected = sweep.kernel.result();
-      else if (sweep.kernel.result() != expected)
-        time.problem = "its result is not the default's";
-    } catch (const DeviceError& error) {
-      time.problem = error.what();
-    }
+    const bool is_default = group.kind == fixed ? x == group.x && y == group.y : x == 0;
+    if (!is_default) add_way(group, group.kind == driver ? "driver's choice" : work_group_text(group));
   }
-  return times;
-}
-
-void time_sizes(Sweep& sweep, std::vector<WorkGroupTime>& times, int repeat) {
-  std::vector<std::vector<double>> seconds(times.size()), beyond(times.size());
-  std::vector<std::size_t> order(times.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (int i = 0; i < repeat; ++i) {
-    std::shuffle(order.begin(), order.end(), sweep.random);
-    for (const std::size_t k : order) {
-      if (!times[k].problem.empty()) continue;
-      seconds[k].push_back(sweep.run(times[k].group));
-      if (const auto more = sweep.beyond_events()) beyond[k].push_back(*more);
-    }
+  MeasureOptions sweep = options, duel = options;
+  sweep.budget *= 0.8, duel.budget *= 0.2;
+  sundog::measure(subjects_, sweep);
+  // Of dozens of sizes the one of the least median owes some of it to luck: it must win again.
+  const Subject* best = least();
+  if (!best || best == &subjects_.front() || options.is_stopped()) return;
+  duel_ = {subjects_.front(), *best};
+  for (Subject& subject : duel_) {
+    subject.name += ", duel";
+    subject.runs.clear();
+    subject.noisy = false;
   }
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    times[k].seconds = spread(seconds[k]);
-    // The rest of a later launch is no compiling: queueing, and the host's own work.
-    if (times[k].compile_seconds && !beyond[k].empty())
-      times[k].compile_seconds = std::max(0.0, *times[k].compile_seconds - spread(beyond[k]).median);
-  }
+  sundog::measure(duel_, duel);
 }
 
-/// Of dozens of sizes the one of the least median owes some of it to luck: it must win again.
-std::optional<Duel> run_duel(Sweep& sweep, const std::vector<WorkGroupTime>& times, int repeat) {
-  const WorkGroupTime *usual = default_time(times), *least = least_time(times);
-  if (!usual || least == usual) return {};
-  std::vector<double> of_usual, of_least;
-  for (int i = 0; i < repeat; ++i) {
-    if (i % 2 == 0) of_usual.push_back(sweep.run(usual->group));
-    of_least.push_back(sweep.run(least->group));
-    if (i % 2 == 1) of_usual.push_back(sweep.run(usual->group));
-  }
-  return Duel{least->group, spread(of_usual), spread(of_least)};
+const Subject* WorkGroupTimes::least() const {
+  const Subject* least = nullptr;
+  for (const Subject& subject : subjects_)
+    if (subject.is_good() && (!least || subject.seconds().median < least->seconds().median)) least = &subject;
+  return subjects_.empty() || !subjects_.front().is_good() ? nullptr : least;
 }
 
-std::string range_text(const Spread& seconds) {
-  return fmt::format("{} to {} ms", number_text(1e3 * seconds.min), number_text(1e3 * seconds.max));
+const std::string& WorkGroupTimes::text_of(const Subject& subject) const {
+  return ways_[static_cast<std::size_t>(&subject - subjects_.data())]->text;
 }
 
-std::vector<Cell> measurement(const TimedKernel& kernel, const WorkGroup& group, const char* round) {
-  std::vector<Cell> row{kernel.scene, kernel.device, kernel.name, work_group_text(group),
-                        Cell(),       Cell(),        round};
-  if (group.kind == fixed) row[4] = static_cast<double>(group.x), row[5] = static_cast<double>(group.y);
-  return row;
+bool WorkGroupTimes::is_clear() const {
+  if (duel_.empty() || !duel_[0].is_good() || !duel_[1].is_good()) return false;
+  const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
+  return best.runs.size() >= 3 && best.max < usual.min;
 }
 
-}  // namespace
-
-bool Duel::is_clear() const { return best.runs.size() >= 3 && best.max < usual.min; }
-
-WorkGroupTimes measure_work_groups(const TimedKernel& kernel, int repeat, const OnRun& on_run) {
-  const std::vector<WorkGroup> groups = work_group_candidates(kernel.limit, kernel.two_dimensions);
-  const auto repeats = static_cast<std::size_t>(repeat);
-  Sweep sweep{kernel, on_run, 0, groups.size() * (1 + repeats) + 2 * repeats};
-  WorkGroupTimes times{warm_up(sweep, groups), {}};
-  time_sizes(sweep, times.sizes, repeat);
-  times.duel = run_duel(sweep, times.sizes, repeat);
-  return times;
-}
-
-std::string verdict_text(const WorkGroupTimes& times) {
-  if (!times.duel) return "no clear winner: no size has a smaller median than the default";
-  const Duel& duel = *times.duel;
-  if (duel.best.runs.size() < 3) return "no clear winner: too few runs to name one (--repeat 3 or more)";
-  const std::string name = work_group_text(duel.group), best = range_text(duel.best),
-                    usual = range_text(duel.usual);
-  if (!duel.is_clear())
+std::string WorkGroupTimes::verdict() const {
+  if (duel_.empty()) return "no clear winner: no size has a smaller median than the default";
+  for (const Subject& subject : duel_)
+    if (!subject.problem.empty())
+      return fmt::format("no clear winner: {} failed: {}", subject.name, subject.problem);
+  const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
+  if (best.runs.size() < 3) return "no clear winner: too few runs to name one (--repeat 3 or more)";
+  const Subject* winner = least();
+  const std::string name = winner ? text_of(*winner) : "";
+  if (!is_clear())
     return fmt::format("no clear winner: {}, the size with the smallest median, took {}, the default {}",
-                       name, best, usual);
-  return fmt::format("best: {} took {}, {:.2f} of the default's time ({})", name, best,
-                     duel.best.median / duel.usual.median, usual);
+                       name, range_text(best), range_text(usual));
+  return fmt::format("best: {} took {}, {:.2f} of the default's time ({})", name, range_text(best),
+                     best.median / usual.median, range_text(usual));
 }
 
-void add_work_group_tables(Report& report, const TimedKernel& kernel, const WorkGroupTimes& times) {
-  const bool best_in_map = times.duel && times.duel->is_clear() && times.duel->group.kind == fixed;
-  report.parts.push_back(bars(kernel, times));
-  report.parts.push_back(heat_map(kernel, times.sizes, best_in_map));
-  report.parts.push_back(table(kernel, times.sizes));
-  report.notes.push_back(fmt::format("{}: {}.", title_of(kernel), verdict_text(times)));
-  Table& all = report.measurements;
-  if (all.columns.empty())
-    all.columns = {{"scene", ""},   {"device", ""},
-                   {"kernel", ""},  {"work-group", ""},
-                   {"local x", ""}, {"local y", ""},
-                   {"round", ""},   {"time", "ms"},
-                   {"runs", ""},    {"compiled at first launch", "ms"},
-                   {"problem", ""}};
-  for (const WorkGroupTime& time : times.sizes) {
-    std::vector<Cell> row = measurement(kernel, time.group, "sweep");
-    const bool good = time.problem.empty();
-    row.push_back(good ? Cell(scaled(time.seconds, 1e3)) : Cell());
-    row.push_back(good ? Cell(static_cast<double>(time.seconds.runs.size())) : Cell());
-    row.push_back(good ? compile_cell(time) : Cell());
-    row.push_back(good ? Cell() : Cell(time.problem));
-    all.rows.push_back(std::move(row));
+HeatMap WorkGroupTimes::heat_map() const {
+  std::set<std::size_t> xs, ys;
+  for (const auto& way : ways_)
+    if (way->group.kind == fixed) xs.insert(way->group.x), ys.insert(way->group.y);
+  HeatMap map{name_ + ": ms by work-group", "ms", "work-items in x", "in y", {}, {}, {}, is_clear()};
+  for (const std::size_t x : xs) map.columns.push_back(std::to_string(x));
+  for (const std::size_t y : ys) {
+    map.rows.push_back(std::to_string(y));
+    auto& row = map.values.emplace_back(xs.size());
+    for (std::size_t i = 0; i < ways_.size(); ++i)
+      if (ways_[i]->group.kind == fixed && ways_[i]->group.y == y && subjects_[i].is_good())
+        row[static_cast<std::size_t>(std::distance(xs.begin(), xs.find(ways_[i]->group.x)))] =
+            1e3 * subjects_[i].seconds().median;
   }
-  if (!times.duel) return;
-  for (const auto& [group, seconds] :
-       {std::pair(WorkGroup{}, times.duel->usual), std::pair(times.duel->group, times.duel->best)}) {
-    std::vector<Cell> row = measurement(kernel, group, "duel");
-    row.insert(row.end(), {scaled(seconds, 1e3), static_cast<double>(seconds.runs.size()), Cell(), Cell()});
-    all.rows.push_back(std::move(row));
+  return map;
+}
+
+/// The sizes that people ask about: the default, the driver's, a prime one, and the one of the least median.
+BarPlot WorkGroupTimes::bars() const {
+  BarPlot plot{name_ + ": selected sizes", "ms", {}};
+  const Subject* best = least();
+  const double usual = subjects_.empty() ? 0 : subjects_.front().seconds().median;
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const WorkGroup& group = ways_[i]->group;
+    if (!subjects_[i].is_good()) continue;
+    if (group.kind == fixed && !is_padded_prime(group) && &subjects_[i] != best) continue;
+    std::string label = ways_[i]->text;
+    if (is_padded_prime(group)) label += ", padded";
+    if (is_clear() && &subjects_[i] == best) label.insert(0, "best: ");
+    plot.bars.push_back({label, scaled(subjects_[i].seconds(), 1e3),
+                         usual > 0 && i > 0
+                             ? fmt::format("{:.2f} of the default", subjects_[i].seconds().median / usual)
+                             : ""});
   }
+  return plot;
+}
+
+Table WorkGroupTimes::table() const {
+  Table result{
+      name_,
+      {{"work-group", ""}, {"time", "ms"}, {"of the default", ""}, {"compiled at first launch", "ms"}},
+      {}};
+  const bool compared = !subjects_.empty() && subjects_.front().is_good();
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const Subject& subject = subjects_[i];
+    std::vector<Field> row{{"work-group", "", ways_[i]->text}};
+    if (subject.is_good()) {
+      row.push_back({"time", "ms", scaled(subject.seconds(), 1e3)});
+      if (compared)
+        row.push_back({"of the default", "", subject.seconds().median / subjects_.front().seconds().median});
+      if (const auto compile = ways_[i]->compile_seconds())
+        row.push_back({"compiled at first launch", "ms", 1e3 * *compile});
+    }
+    if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
+    add_row(result, row);
+  }
+  return result;
+}
+
+void WorkGroupTimes::add_to(Report& report) const {
+  report.parts.push_back(bars());
+  report.parts.push_back(heat_map());
+  report.parts.push_back(table());
+  report.notes.push_back(fmt::format("{}: {}.", name_, verdict()));
+  const char* origin = !kernel_.cached   ? "built or loaded from the cache"
+                       : *kernel_.cached ? "loaded from the cache"
+                                         : "built";
+  report.notes.push_back(fmt::format("{}: the program was {} in {} ms, before any run.", name_, origin,
+                                     number_text(1e3 * kernel_.build_seconds)));
+  const auto measured = [&](const Subject& subject, const Way& way, const char* round) {
+    std::vector<Field> row{{"scene", "", kernel_.scene}, {"device", "", kernel_.device},
+                           {"kernel", "", kernel_.name}, {"work-group", "", way.text},
+                           {"local x", "", Cell()},      {"local y", "", Cell()},
+                           {"round", "", round}};
+    if (way.group.kind == fixed) {
+      row[4].cell = static_cast<double>(way.group.x);
+      row[5].cell = static_cast<double>(way.group.y);
+    }
+    for (const Field& field : run_fields(subject)) row.push_back(field);
+    const auto compile = way.compile_seconds();
+    if (round == std::string("sweep"))
+      row.push_back({"compiled at first launch", "ms", compile ? Cell(1e3 * *compile) : Cell()});
+    add_row(report.measurements, row);
+    report.ways.push_back(subject);
+  };
+  for (std::size_t i = 0; i < ways_.size(); ++i) measured(subjects_[i], *ways_[i], "sweep");
+  if (duel_.empty() || !least()) return;
+  measured(duel_[0], *ways_[0], "duel");
+  measured(duel_[1], *ways_[static_cast<std::size_t>(least() - subjects_.data())], "duel");
 }
 
 }  // namespace sundog

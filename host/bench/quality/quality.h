@@ -2,10 +2,12 @@
 // reference that is given.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/report/report.h"
+#include "bench/runs/measure.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 
@@ -18,12 +20,11 @@ struct QualityWay {
 
 struct QualityPlan {
   std::string scene;
-  std::function<CompiledScene(const QualityWay& way, int samples)> compile_for;
+  std::function<std::shared_ptr<const CompiledScene>(const QualityWay& way, int samples)> compile_for;
   DeviceInfo device;
   std::vector<QualityWay> ways;
   std::vector<int> counts;  // samples a pixel, ascending
   Image reference;
-  int repeat = 5;
   double goal = 0.02;  // root mean square error to whose time ways are compared
 };
 
@@ -33,19 +34,30 @@ struct QualityTime {
   int samples = 0;
   Spread seconds;
   double rms = 0, perceived = 0;  // against the reference
-  std::string problem;            // empty: sound
 };
-
-/// Warms each way up, then times `repeat` frames of each in turn, and compares each picture to the bit with
-/// its first. Throws UsageError where the scene's picture has another size than the reference.
-std::vector<QualityTime> measure_quality(const QualityPlan& plan,
-                                         const std::function<void(const std::string&)>& on_step);
 
 /// Seconds until a way has the error `goal`, between two measured ones as a power of the error; 0: none was
 /// measured on one of its sides.
 double seconds_to(const std::vector<QualityTime>& of_one_way, double goal);
 
-/// Adds tables, curves and measurements of them.
-void add_quality(Report& report, const QualityPlan& plan, const std::vector<QualityTime>& times);
+class QualityTimes {
+ public:
+  explicit QualityTimes(QualityPlan plan);
+
+  /// Times frames of all ways and counts in turn. Throws UsageError where the scene's picture has another
+  /// size than the reference.
+  void measure(const MeasureOptions& options);
+  /// Adds tables, curves and measurements.
+  void add_to(Report& report) const;
+
+ private:
+  std::vector<std::vector<QualityTime>> by_way() const;
+  CurvePlot curves(const std::string& what, const std::function<double(const QualityTime&)>& error_of) const;
+  Table goal_table() const;
+
+  QualityPlan plan_;
+  std::vector<std::shared_ptr<QualityTime>> times_;  // of each way, its counts
+  std::vector<Subject> subjects_;
+};
 
 }  // namespace sundog

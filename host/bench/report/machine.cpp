@@ -31,11 +31,6 @@ std::string system_name() {
                               : "unknown";
 }
 
-std::string load_text() {
-  std::array<double, 1> load{};
-  return ::getloadavg(load.data(), 1) == 1 ? fmt::format("{:.1f}", load[0]) : "unknown";
-}
-
 std::string time_text() {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};
@@ -52,7 +47,25 @@ Facts machine_facts() {
            fmt::format("{}, {} logical cores", processor_name(), std::thread::hardware_concurrency())},
           {"system", system_name()},
           {"load before", load_text()},
+          {"clock before", clock_text()},
           {"time", time_text()}};
+}
+
+std::string load_text() {
+  std::array<double, 1> load{};
+  return ::getloadavg(load.data(), 1) == 1 ? fmt::format("{:.1f}", load[0]) : "unknown";
+}
+
+std::string clock_text() {
+  std::ifstream in("/proc/cpuinfo");
+  std::vector<double> clocks;
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("cpu MHz"))
+      if (const std::size_t colon = line.find(": "); colon != std::string::npos)
+        clocks.push_back(std::strtod(line.c_str() + colon + 2, nullptr));
+  if (clocks.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(clocks);
+  return fmt::format("{:.0f} to {:.0f} MHz", least, most);
 }
 
 std::string busy_note() {
@@ -76,9 +89,38 @@ std::string pocl_fact(const HostEnvironment& environment) {
                      on ? "again for each work-group size" : "once for all work-group sizes");
 }
 
+std::string device_place(const DeviceInfo& device) {
+  const std::string label = device.label();
+  return label.substr(0, label.find(' '));
+}
+
+namespace {
+
+unsigned units_of(const DeviceInfo& device) {
+  return device.sub_units > 0 ? device.sub_units : device.compute_units;
+}
+
+}  // namespace
+
+void add_device_row(Table& table, const DeviceInfo& device) {
+  const auto number = [](auto value) { return Cell(static_cast<double>(value)); };
+  add_row(table, {{"label", "", device.label()},
+                  {"platform", "", device.platform_name},
+                  {"platform version", "", device.platform_version},
+                  {"name", "", device.name},
+                  {"driver", "", device.driver},
+                  {"version", "", device.version},
+                  {"type", "", device.type},
+                  {"compute units", "", number(units_of(device))},
+                  {"compute units of the whole", "", number(device.compute_units)},
+                  {"clock", "MHz", number(device.clock_mhz)},
+                  {"memory", "bytes", number(device.global_memory)}});
+}
+
 std::string device_fact(const DeviceInfo& device) {
-  return fmt::format("{}, {} compute unit{}, driver {}", device.label(), device.compute_units,
-                     device.compute_units == 1 ? "" : "s", device.driver);
+  const unsigned units = units_of(device);
+  return fmt::format("{}, {} compute unit{}, driver {}", device.label(), units, units == 1 ? "" : "s",
+                     device.driver);
 }
 
 }  // namespace sundog

@@ -25,7 +25,7 @@ struct Cell {
   Cell(const Spread& measured) : kind(Kind::spread), spread(measured) {}
 };
 
-/// `unit` may be empty. A Spread takes three columns of a CSV: name, name_min, name_max.
+/// `unit` may be empty. A Spread takes four columns of a CSV: name, name_min, name_max, name_runs.
 struct Column {
   std::string name, unit;
 };
@@ -36,6 +36,18 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
 };
+
+/// A cell and its column.
+struct Field {
+  std::string name, unit;
+  Cell cell;
+};
+
+/// Appends a row; a name that the table has no column for gets one.
+void add_row(Table& table, const std::vector<Field>& fields);
+
+/// What each bench tells of a way: time, runs, cores, load, problem.
+std::vector<Field> run_fields(const MeasuredWay& way);
 
 struct CurvePoint {
   double x = 0;
@@ -74,21 +86,25 @@ struct HeatMap {
 
 using Part = std::variant<Table, CurvePlot, BarPlot, HeatMap>;
 
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
 struct Report {
-  std::string name;   // "threads": of `sundog bench threads`
-  std::string title;  // the page's headline
-  std::vector<std::pair<std::string, std::string>>
-      facts;                       // device, driver, scene...: what the figures hold for
+  std::string name;                // "threads": of `sundog bench threads`
+  std::string title;               // the page's headline
+  Facts facts;                     // device, driver, scene...: what the figures hold for
   std::vector<std::string> notes;  // a sentence each: how it was measured, what failed
   std::vector<Part> parts;         // what a person reads, in this order
   Table measurements;              // tidy: a row a measurement, for other programs
+  std::vector<MeasuredWay> ways;   // with every raw run
+  Facts environment;               // variables that drivers and sundog read
+  Table devices, scenes;           // what was measured, for other programs
+  bool complete = true;            // false: the bench still runs, or was interrupted
 };
 
 /// Facts, the tables among the parts (the measurements when there are none), notes.
 std::string report_text(const Report& report);
 
-/// {"schema": 1, "bench": name, "facts", "notes", "measurements": [{column: value}]}; a Spread is an object
-/// of median, min, max and the runs.
+/// docs/bench-reports.md describes it; a Spread is an object of median, low, high, min, max and the runs.
 nlohmann::json report_json(const Report& report);
 
 /// The measurements alone, as RFC 4180 has it, with one line of names.
@@ -101,7 +117,7 @@ std::string report_html(const Report& report);
 /// A number with about three digits that count: "0.0123", "4.57", "12.3", "1234".
 std::string number_text(double value);
 
-/// "12.3 ±4%": the median, and half the range in per cent of it. Empty for nothing.
+/// "12.3 [11.9, 12.8]": the median and median_interval(). Empty for nothing.
 std::string cell_text(const Cell& cell);
 
 }  // namespace sundog

@@ -7,20 +7,7 @@
 namespace sundog {
 namespace {
 
-// The curves' colours are those of Okabe and Ito's palette, which people with colour blindness can tell
-// apart, darkened for white paper and lightened for dark screens.
 constexpr const char* style = R"(
-:root { color-scheme: light dark;
-  --paper: #ffffff; --ink: #1c2126; --soft: #59636e; --line: #d8dde2; --fill: #f3f5f7; --accent: #0072b2;
-  --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #1c2126; --c7: #8b3a3a; }
-@media (prefers-color-scheme: dark) { :root {
-  --paper: #14181c; --ink: #e6e9ec; --soft: #9aa5b0; --line: #333b43; --fill: #1d2329; --accent: #56b4e9;
-  --c0: #56b4e9; --c1: #f08a3c; --c2: #2fc59a; --c3: #e193c3; --c4: #e6c34a; --c5: #9ccbea; --c6: #e6e9ec; --c7: #e58a8a; } }
-@media print { :root { color-scheme: light;
-  --paper: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb; --fill: #ffffff; --accent: #0072b2;
-  --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #000000; --c7: #8b3a3a; }
-  body { font-size: 10pt; padding: 0; } .scroll { overflow-x: visible; } th, td { padding: 3px 6px; font-size: 8.5pt; } figure, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; }
-  details:not([open]) { display: none; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 860px; padding: 32px 24px 64px; background: var(--paper); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
@@ -28,13 +15,7 @@ h1 { font-size: 1.6em; line-height: 1.25; margin: 0 0 16px; } h2 { font-size: 1.
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 2px 16px; margin: 0; }
 dt { color: var(--soft); } dd { margin: 0; overflow-wrap: anywhere; }
 li, h1, h2 { overflow-wrap: anywhere; }
-figure { margin: 0; } svg { display: block; width: 100%; height: auto; font: 13px system-ui, "DejaVu Sans", sans-serif; }
-svg text { fill: var(--ink); } svg .mid { text-anchor: middle; } svg .end { text-anchor: end; } svg .axis { fill: var(--soft); }
-svg .grid { stroke: var(--line); } svg .l { fill: none; stroke-width: 2; } svg .ideal { fill: none; stroke: var(--soft); stroke-dasharray: 2 4; stroke-width: 1.5; }
-svg .d1 { stroke-dasharray: 7 3; } svg .d2 { stroke-dasharray: 3 3; } svg .d3 { stroke-dasharray: 9 3 2 3; }
-svg .bar { fill: var(--accent); fill-opacity: .75; } svg .whisker { stroke: var(--ink); stroke-width: 1.5; fill: none; }
-svg .on-dark { fill: #ffffff; } svg .on-light { fill: #1c2126; } svg .best { stroke: var(--ink); stroke-width: 2.5; }
-svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
+figure { margin: 0; } svg { display: block; width: 100%; height: auto;}
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 9px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
 th { color: var(--soft); font-weight: 600; background: var(--fill); white-space: normal; vertical-align: bottom; } th.w, td.w { text-align: left; }
@@ -43,14 +24,9 @@ th small { font-weight: 400; display: block; } td small { display: block; color:
 @media screen and (max-width: 640px) { body { padding: 20px 14px 40px; } h1 { font-size: 1.4em; } th, td { padding: 4px 6px; font-size: 14px; }
   dl { display: block; } dd { margin-bottom: 6px; } figure { overflow-x: auto; } svg { min-width: calc(.85 * var(--width)); } }
 ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } summary { cursor: pointer; color: var(--soft); }
+@media print { body { font-size: 10pt; padding: 0; } .scroll { overflow-x: visible; } th, td { padding: 3px 6px; font-size: 8.5pt; } figure, tr, h2 { break-inside: avoid; } h2 { break-after: avoid; }
+  details:not([open]) { display: none; } }
 )";
-
-std::string curve_styles() {
-  std::string text;
-  for (int i = 0; i < 8; ++i)
-    text += fmt::format("svg .l.c{0} {{ stroke: var(--c{0}); }} svg .m.c{0} {{ fill: var(--c{0}); }}\n", i);
-  return text;
-}
 
 bool is_word_column(const Table& table, std::size_t column) {
   for (const auto& row : table.rows)
@@ -141,7 +117,7 @@ std::string report_html(const Report& report) {
       "content=\"width=device-width, "
       "initial-scale=1\">\n<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}"
       "</body>\n</html>\n",
-      escape_html(report.title), style, curve_styles(), body);
+      escape_html(report.title), plot_style(), style, body);
 }
 
 }  // namespace sundog

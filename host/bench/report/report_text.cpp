@@ -1,5 +1,6 @@
 // Reports for terminals and for programs: aligned text, JSON and CSV.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,15 +54,20 @@ std::string table_text(const Table& table) {
 }
 
 json spread_json(const Spread& spread) {
-  json values{{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+  const Interval interval = median_interval(spread);
+  json values{{"median", spread.median},
+              {"low", interval.low},
+              {"high", interval.high},
+              {"min", spread.min},
+              {"max", spread.max}};
   if (!spread.runs.empty()) values["runs"] = spread.runs;
   return values;
 }
 
 /// A name that stands several times, as "device" may, has an array of what it holds.
-json facts_json(const Report& report) {
+json facts_json(const Facts& all) {
   json facts = json::object();
-  for (const auto& [name, value] : report.facts) {
+  for (const auto& [name, value] : all) {
     json& fact = facts[name];
     if (fact.is_string()) fact = json::array({fact});
     if (fact.is_array())
@@ -85,6 +91,38 @@ json cell_json(const Cell& cell) {
   }
 }
 
+/// "time [ms]" as a name that programs like: "time_ms".
+std::string plain_name(const Column& column) {
+  std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
+json rows_json(const Table& table) {
+  json rows = json::array();
+  for (const auto& row : table.rows) {
+    json values = json::object();
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      values[plain_name(table.columns[i])] = cell_json(row[i]);
+    rows.push_back(std::move(values));
+  }
+  return rows;
+}
+
+json way_json(const MeasuredWay& way) {
+  json runs = json::array();
+  for (const Run& run : way.runs)
+    runs.push_back({{"seconds", run.seconds},
+                    {"cores", run.cores},
+                    {"others", run.others < 0 ? json() : json(run.others)},
+                    {"at", run.at},
+                    {"left_out", run.left_out.empty() ? json() : json(run.left_out)}});
+  return {{"name", way.name},
+          {"problem", way.problem.empty() ? json() : json(way.problem)},
+          {"noisy", way.noisy},
+          {"runs", std::move(runs)}};
+}
+
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted;
@@ -94,20 +132,38 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_cell(const Cell& cell, bool as_spread) {
   const Spread& spread = cell.spread;
-  if (cell.kind == Cell::Kind::spread) return fmt::format("{},{},{}", spread.median, spread.min, spread.max);
+  if (cell.kind == Cell::Kind::spread)
+    return fmt::format("{},{},{},{}", spread.median, spread.min, spread.max, fmt::join(spread.runs, " "));
   const std::string text =
       cell.kind == Cell::Kind::number ? fmt::format("{}", spread.median) : csv_field(cell.word);
-  return as_spread ? text + ",," : text;
-}
-
-/// "time [ms]" as a name that programs like: "time_ms".
-std::string csv_name(const Column& column) {
-  std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;
-  std::ranges::replace(name, ' ', '_');
-  return csv_field(name);
+  return as_spread ? text + ",,," : text;
 }
 
 }  // namespace
+
+void add_row(Table& table, const std::vector<Field>& fields) {
+  std::vector<Cell>& row = table.rows.emplace_back(table.columns.size());
+  for (const Field& field : fields) {
+    const auto named = [&](const Column& column) { return column.name == field.name; };
+    const auto at =
+        static_cast<std::size_t>(std::ranges::find_if(table.columns, named) - table.columns.begin());
+    if (at == table.columns.size()) table.columns.push_back({field.name, field.unit});
+    row.resize(table.columns.size());
+    row[at] = field.cell;
+  }
+  for (auto& each : table.rows) each.resize(table.columns.size());
+}
+
+std::vector<Field> run_fields(const MeasuredWay& way) {
+  const bool good = way.is_good();
+  const Spread seconds = way.seconds(), others = way.others();
+  return {{"time", "ms", good ? Cell(scaled(seconds, 1e3)) : Cell()},
+          {"runs", "", good ? Cell(static_cast<double>(seconds.runs.size())) : Cell()},
+          {"cores used", "", good ? Cell(way.cores()) : Cell()},
+          {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
+          {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
+          {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}};
+}
 
 std::string number_text(double value) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
@@ -124,8 +180,9 @@ std::string cell_text(const Cell& cell) {
   const Spread& spread = cell.spread;
   if (cell.kind == Cell::Kind::number) return number_text(spread.median);
   if (cell.kind != Cell::Kind::spread) return cell.word;
-  const double half = spread.median != 0 ? 50 * (spread.max - spread.min) / std::abs(spread.median) : 0;
-  return fmt::format("{} ±{:.0f}%", number_text(spread.median), half);
+  const Interval interval = median_interval(spread);
+  return fmt::format("{} [{}, {}]", number_text(spread.median), number_text(interval.low),
+                     number_text(interval.high));
 }
 
 std::string report_text(const Report& report) {
@@ -147,22 +204,18 @@ std::string report_text(const Report& report) {
 }
 
 json report_json(const Report& report) {
-  json rows = json::array();
-  for (const auto& row : report.measurements.rows) {
-    json values = json::object();
-    for (std::size_t i = 0; i < report.measurements.columns.size(); ++i) {
-      const Column& column = report.measurements.columns[i];
-      std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;
-      std::ranges::replace(name, ' ', '_');
-      values[name] = cell_json(row[i]);
-    }
-    rows.push_back(std::move(values));
-  }
-  return {{"schema", 1},
+  json ways = json::array();
+  for (const MeasuredWay& way : report.ways) ways.push_back(way_json(way));
+  return {{"schema", 2},
           {"bench", report.name},
-          {"facts", facts_json(report)},
+          {"complete", report.complete},
+          {"facts", facts_json(report.facts)},
+          {"environment", facts_json(report.environment)},
+          {"devices", rows_json(report.devices)},
+          {"scenes", rows_json(report.scenes)},
           {"notes", report.notes},
-          {"measurements", rows}};
+          {"measurements", rows_json(report.measurements)},
+          {"ways", std::move(ways)}};
 }
 
 std::string report_csv(const Report& report) {
@@ -172,9 +225,9 @@ std::string report_csv(const Report& report) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const auto holds_spread = [&](const auto& row) { return row[i].kind == Cell::Kind::spread; };
     spreads.push_back(std::ranges::any_of(table.rows, holds_spread));
-    const std::string name = csv_name(table.columns[i]);
+    const std::string name = csv_field(plain_name(table.columns[i]));
     text += i ? "," : "";
-    text += spreads[i] ? fmt::format("{0},{0}_min,{0}_max", name) : name;
+    text += spreads[i] ? fmt::format("{0},{0}_min,{0}_max,{0}_runs", name) : name;
   }
   text += "\r\n";
   for (const auto& row : table.rows) {

@@ -4,8 +4,19 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace sundog {
+namespace {
+
+Spread spread_of(const std::vector<Run>& runs, double Run::* figure) {
+  std::vector<double> values;
+  for (const Run& run : runs)
+    if (run.left_out.empty()) values.push_back(run.*figure);
+  return spread(values);
+}
+
+}  // namespace
 
 Spread spread(const std::vector<double>& runs) {
   if (runs.empty()) return {};
@@ -22,10 +33,33 @@ Spread scaled(const Spread& spread, double factor) {
   return result;
 }
 
+Interval median_interval(const Spread& spread) {
+  constexpr double beyond = 0.025;  // at each end
+  std::vector<double> values = spread.runs;
+  if (values.empty()) return {spread.min, spread.max};
+  std::sort(values.begin(), values.end());
+  const auto count = static_cast<double>(values.size());
+  std::size_t k = 0;  // runs outside at each end
+  if (values.size() > 100) {
+    k = static_cast<std::size_t>(0.5 * count - 0.98 * std::sqrt(count));
+  } else {
+    double term = std::pow(0.5, count), chance = term;  // that just k, or at most k, lie below the median
+    for (;; ++k, chance += term) {
+      term *= (count - static_cast<double>(k)) / static_cast<double>(k + 1);
+      if (chance + term > beyond) break;
+    }
+  }
+  return {values[k], values[values.size() - 1 - k]};
+}
+
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+Spread MeasuredWay::seconds() const { return spread_of(runs, &Run::seconds); }
+Spread MeasuredWay::cores() const { return spread_of(runs, &Run::cores); }
+Spread MeasuredWay::others() const { return spread_of(runs, &Run::others); }
 
 }  // namespace sundog

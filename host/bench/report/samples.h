@@ -1,5 +1,7 @@
-// Repeated measurements and what is quoted of them.
+// Repeated measurements: raw runs, and what is quoted of them.
 #pragma once
+#include <exception>
+#include <string>
 #include <vector>
 
 namespace sundog {
@@ -16,8 +18,48 @@ Spread spread(const std::vector<double>& runs);
 /// All of it times `factor`: seconds as milliseconds.
 Spread scaled(const Spread& spread, double factor);
 
-/// Seconds of processor time that this process has used, all threads together: on a machine that others use
-/// too it says more than the wall clock.
+/// Bounds that hold the median with 95 % confidence whatever the distribution, by order statistics (Le
+/// Boudec, "Performance Evaluation of Computer and Communication Systems", 2010, theorem 2.1); the range
+/// where there are fewer than six runs.
+struct Interval {
+  double low = 0, high = 0;
+};
+Interval median_interval(const Spread& spread);
+
+/// Seconds of processor time that this process has used, all threads together.
 double processor_seconds();
+
+/// One timed run.
+struct Run {
+  double seconds = 0;
+  double cores = 0;      // that this process had: processor seconds by wall second
+  double others = -1;    // cores that other processes had meanwhile; below 0: unknown
+  double at = 0;         // seconds since the bench began
+  std::string left_out;  // why it does not count: "busy" or "wrong result"; empty: it counts
+};
+
+/// One way of doing the work that a bench times: a row of its table.
+struct MeasuredWay {
+  std::string name;  // unlike any other of the bench
+  std::vector<Run> runs;
+  std::size_t known = 0;         // the first of them, that an earlier report had
+  std::string problem;           // not empty: no time counts, and why
+  std::exception_ptr failure{};  // what the problem was thrown as; null: a wrong result
+  bool noisy = false;  // too few quiet runs could be had: the least disturbed of the others count too
+
+  bool is_good() const { return problem.empty() && !seconds().runs.empty(); }
+  /// Of the runs that count.
+  Spread seconds() const;
+  /// Of figures that were noted at each run, the first one too, those of the runs that count.
+  template <class T>
+  std::vector<T> counted(const std::vector<T>& figures) const {
+    std::vector<T> all;
+    for (std::size_t i = known; i < runs.size(); ++i)
+      if (runs[i].left_out.empty() && i - known + 1 < figures.size()) all.push_back(figures[i - known + 1]);
+    return all;
+  }
+  Spread cores() const;
+  Spread others() const;
+};
 
 }  // namespace sundog

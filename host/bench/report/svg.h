@@ -1,5 +1,5 @@
-// Plots as SVG text, to stand in a page whose style sheet (report_html.cpp) names their colours: c0..c7 are
-// the curves' classes. Internal to the report writers.
+// Plots as SVG text with their own style: a plot stands in a page or alone as a file. c0..c7 are the curves'
+// classes. Internal to the report writers.
 #pragma once
 #include <string>
 
@@ -9,6 +9,13 @@ namespace sundog {
 
 /// Text with < > & " escaped.
 std::string escape_html(const std::string& text);
+
+/// Colours, light, dark and for print, and the rules of all plots.
+std::string plot_style();
+
+/// The opening tag and style of a plot.
+std::string svg_begin(double width, double height, const std::string& title,
+                      const std::string& more_style = "");
 
 std::string svg(const CurvePlot& plot);
 std::string svg(const BarPlot& plot);

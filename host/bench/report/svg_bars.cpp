@@ -62,9 +62,7 @@ std::string svg(const BarPlot& plot) {
   const double height = row * static_cast<double>(plot.bars.size()) + 44;
   const double length = width - left - right, end = axis_ticks(most > 0 ? most : 1).back();
   const auto x = [&](double value) { return left + value / end * length; };
-  std::string text =
-      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
-                  width, height, escape_html(plot.title));
+  std::string text = svg_begin(width, height, plot.title);
   for (const double tick : axis_ticks(end))
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"4\" y2=\"{1}\"/><text class=\"mid\" "
@@ -79,7 +77,7 @@ std::string svg(const BarPlot& plot) {
         escape_html(bar.label), cell_text(bar.value), left, y, x(bar.value.median) - left);
     text += fmt::format(
         "<path class=\"whisker\" d=\"M{0:.1f} {2} v8 M{0:.1f} {3} H{1:.1f} M{1:.1f} {2} v8\"/></g>",
-        x(bar.value.min), x(bar.value.max), y + 6, y + 10);
+        x(median_interval(bar.value).low), x(median_interval(bar.value).high), y + 6, y + 10);
     text += fmt::format(
         "<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>", left - 8,
         y + 15, escape_html(bar.label), x(bar.value.max) + 8, y + 15,
@@ -96,9 +94,7 @@ std::string svg(const HeatMap& map) {
   const double width = left + cell_w * static_cast<double>(map.columns.size()) + 4,
                height = top + cell_h * static_cast<double>(map.rows.size()) + 4;
   const ValueRange range = range_of(map);
-  std::string text = fmt::format(
-      "<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px;max-width:{0}px\" role=\"img\" aria-label=\"{2}\">",
-      width, height, escape_html(map.title));
+  std::string text = svg_begin(width, height, map.title, fmt::format(";max-width:{}px", width));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
                       escape_html(map.x_label));
   text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",

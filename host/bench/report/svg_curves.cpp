@@ -135,9 +135,9 @@ std::string draw(const Curve& curve, std::size_t index, const Axes& axes) {
   for (const CurvePoint& point : curve.points) {
     const double x = axes.x(point.x);
     points += fmt::format("{:.1f},{:.1f} ", x, axes.y(point.y.median));
-    marks +=
-        fmt::format("<line class=\"l c{0}\" x1=\"{1:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{3:.1f}\"/>",
-                    index % styles, x, axes.y(point.y.min), axes.y(point.y.max));
+    marks += fmt::format(
+        "<line class=\"l c{0}\" x1=\"{1:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{3:.1f}\"/>",
+        index % styles, x, axes.y(median_interval(point.y).low), axes.y(median_interval(point.y).high));
     marks += fmt::format("<g><title>{}, {}: {}</title>{}</g>", escape_html(curve.name), number_text(point.x),
                          cell_text(point.y), marker(index, x, axes.y(point.y.median)));
   }
@@ -177,9 +177,7 @@ std::vector<double> axis_ticks(double most, int count) {
 
 std::string svg(const CurvePlot& plot) {
   const Axes axes = make_axes(plot);
-  std::string text =
-      fmt::format("<svg viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px\" role=\"img\" aria-label=\"{2}\">",
-                  width, height, escape_html(plot.title));
+  std::string text = svg_begin(width, height, plot.title);
   text += frame(plot, axes);
   if (plot.ideal) text += ideal_line(axes);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) text += draw(plot.curves[i], i, axes);

@@ -1,6 +1,7 @@
 // See tune_search.h.
 #include "bench/tune/tune_search.h"
 
+#include <cmath>
 #include <map>
 
 namespace sundog {
@@ -48,6 +49,10 @@ struct Search {
 
 }  // namespace
 
+bool TunePairs::confirm() const {
+  return best < worthwhile * usual && wins >= 0.5 * pairs + std::sqrt(pairs);
+}
+
 TuneResult search_tuning(const TuneProblem& problem) {
   Search search{problem, {}, {}};
   TuneResult& result = search.result;
@@ -66,12 +71,12 @@ TuneResult search_tuning(const TuneProblem& problem) {
     better = result.best != before;
   }
   if (result.best == problem.start) return result;
-  const auto [usual_again, best_again] = problem.measure_again(problem.start, result.best);
-  result.default_seconds = usual_again;
-  result.best_seconds = best_again;
-  if (best_again < worthwhile * usual_again) return result;
+  const TunePairs again = problem.measure_again(problem.start, result.best);
+  result.default_seconds = again.usual;
+  result.best_seconds = again.best;
+  if (again.confirm()) return result;
   result.best = problem.start;
-  result.best_seconds = usual_again;
+  result.best_seconds = again.usual;
   return result;
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using enum WorkGroup::Kind;
 
-constexpr int runs = 3, runs_at_the_end = 5;
+constexpr int runs = 3, runs_at_the_end = 20;
 
 constexpr double budget_of_surfaces = 0.15;  // of the whole
 constexpr double frame_part = 1.0 / 200;     // of the whole, that a frame may take: a candidate takes eight
@@ -76,6 +76,14 @@ Choices choices_of_surfaces(const DeviceInfo& device, const CompiledScene& scene
   return choices;
 }
 
+/// To the bit.
+bool are_same(const Film& a, const Film& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+  };
+  return same(a.sums, b.sums) && same(a.weights, b.weights) && same(a.aovs, b.aovs);
+}
+
 /// Frames with one tuning; nothing where the device refuses it.
 class Candidate {
  public:
@@ -96,9 +104,14 @@ class Candidate {
     double& most = frames_->times().cached ? costs.open : costs.compile;
     most = std::max(most, start_seconds_);
   }
+  /// What each of its frames must be.
+  void expect(const Film& film) { expected_ = &film; }
   /// Seconds: the frame's, or of the kernel that it is about, which takes too little to be seen in the frame.
+  /// Throws DeviceError for another picture than is expected.
   double run() {
     const double seconds = frames_->run();
+    if (expected_ && !are_same(film(), *expected_))
+      throw DeviceError("another picture than with the defaults");
     return kernel_ == surfaces_kernel ? frames_->kernel_seconds(kernel_) : seconds;
   }
   double median(int count) {
@@ -111,25 +124,23 @@ class Candidate {
  private:
   std::string kernel_;
   std::unique_ptr<FrameRunner> frames_;
+  const Film* expected_ = nullptr;
   double start_seconds_ = 0;
 };
 
-/// To the bit.
-bool are_same(const Film& a, const Film& b) {
-  const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
-  };
-  return same(a.sums, b.sums) && same(a.weights, b.weights) && same(a.aovs, b.aovs);
-}
-
-/// The two in turn, so that what else the machine does falls on both.
-std::pair<double, double> duel(Candidate& a, Candidate& b, int count) {
-  std::vector<double> of_a, of_b;
+/// The two in turn, so that what else the machine does falls on both; each is first as often as the other.
+TunePairs duel(Candidate& usual, Candidate& best, int count) {
+  std::vector<double> of_usual, of_best;
+  TunePairs pairs{0, 0, 0, count};
   for (int i = 0; i < count; ++i) {
-    of_a.push_back(a.run());
-    of_b.push_back(b.run());
+    if (i % 2 == 0) of_usual.push_back(usual.run());
+    of_best.push_back(best.run());
+    if (i % 2 == 1) of_usual.push_back(usual.run());
+    pairs.wins += of_best.back() < of_usual.back();
   }
-  return {spread(of_a).median, spread(of_b).median};
+  pairs.usual = spread(of_usual).median;
+  pairs.best = spread(of_best).median;
+  return pairs;
 }
 
 /// The time that remains for a kernel, and the part of it that measuring a point will take.
@@ -181,6 +192,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   });
   problem.axes = choices.sizes();
   const Film expected = usual.film();
+  usual.expect(expected);
   const double first_seconds = usual.run();
   const double default_seconds = time.has_started_in_time(first_seconds) ? usual.median(runs) : first_seconds;
   problem.affordable = [&](const TunePoint& point) { return time.is_enough_for(program_of(point)); };
@@ -197,9 +209,10 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
       Candidate candidate(device, scene, choices, point);
       time.add(candidate, program_of(point));
       if (!are_same(candidate.film(), expected)) return reject("another picture than with the defaults");
+      candidate.expect(expected);
       // The default beside it: a machine that has become slower meanwhile slows both.
-      const auto [own, beside] = duel(candidate, usual, runs);
-      return default_seconds * own / beside;
+      const TunePairs beside = duel(usual, candidate, runs);
+      return default_seconds * beside.best / beside.usual;
     } catch (const DeviceError& error) {
       return reject(error.what());
     } catch (const BuildError& error) {
@@ -209,6 +222,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   problem.measure_again = [&](const TunePoint&, const TunePoint& best) {
     tell("the winner against the defaults");
     Candidate winner(device, scene, choices, best);
+    winner.expect(expected);
     return duel(usual, winner, runs_at_the_end);
   };
   const TuneResult found = search_tuning(problem);

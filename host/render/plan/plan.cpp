@@ -10,8 +10,11 @@
 namespace sundog {
 namespace {
 
-constexpr double longest_tile = 0.25;     // seconds: a progress bar moves, a checkpoint loses little
-constexpr double shortest_tile = 0.02;    // seconds: long against what a tile costs beside its launches
+constexpr double longest_tile = 0.25;  // seconds: a progress bar moves, a checkpoint loses little
+// Seconds: long against what a tile costs beside its launches (0.1 ms), short enough that each device has
+// several tiles of a frame of 30 ms.
+constexpr double shortest_tile = 0.001;
+constexpr double unknown_tile = 0.02;     // seconds that a tile may take a device of unknown speed
 constexpr double growth = 4;              // of a tile over those that its speed was measured by
 constexpr std::uint64_t cell = 16;        // pixels: a tile of 4x4 is the smallest there is
 constexpr std::uint64_t probe = 4096;     // pixels of a first tile
@@ -126,7 +129,7 @@ std::optional<std::size_t> tile_to_repeat(std::span<const DeviceSpeed> devices, 
     const auto is_own = [&](const HeldTile::Holder& holder) { return holder.device == device; };
     if (std::ranges::any_of(tiles[i].holders, is_own)) continue;
     const double theirs = seconds_left(devices, tiles[i]);
-    const double own = speed > 0 ? static_cast<double>(tiles[i].pixels) / speed : shortest_tile;
+    const double own = speed > 0 ? static_cast<double>(tiles[i].pixels) / speed : unknown_tile;
     if (own > clear_win * theirs || theirs <= most) continue;
     most = theirs;
     longest = i;

@@ -153,16 +153,17 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
                                    const RenderOptions& options) {
   const std::lock_guard one_at_a_time(state_->rendering);
   std::vector<ServerPlan> plans;
+  std::vector<std::shared_ptr<State::Worker>> workers;
   {
     const std::lock_guard lock(state_->mutex);
-    for (const auto& worker : state_->workers)
-      plans.push_back({worker->server->info(), worker->server->processor(),
-                       [server = worker->server](const RenderOptions&) { return server; }, 0, 0});
+    workers = state_->workers;
   }
   // A single device keeps no other waiting, so an outdated speed does no harm.
-  const bool alone = plans.size() == 1;
-  if (alone) plans[0].pixels_a_second = state_->pixels_a_second;
-  if (alone) plans[0].measured_pixels = state_->measured_pixels;
+  const bool comparable = workers.size() == 1 || state_->rated == scene.get();
+  for (const auto& worker : workers)
+    plans.push_back({worker->server->info(), worker->server->processor(),
+                     [server = worker->server](const RenderOptions&) { return server; },
+                     comparable ? worker->pixels_a_second : 0, comparable ? worker->measured_pixels : 0});
   RenderResult result = render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
     const auto mine = std::make_shared<SessionFrame>();
     mine->flat = scene;
@@ -170,10 +171,13 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     mine->final = true;
     state_->run(mine, false);
   });
-  const DeviceReport& report = result.devices.front();
-  const bool measured = alone && report.busy_seconds > 0;
-  state_->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
-  state_->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
+  for (std::size_t i = 0; i < workers.size(); ++i) {
+    const DeviceReport& report = result.devices[i];
+    const bool measured = report.busy_seconds > 0;
+    workers[i]->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
+    workers[i]->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
+  }
+  state_->rated = scene.get();
   return result;
 }
 

@@ -43,6 +43,8 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     bool closed = false;                 // the server, behind a frame
     bool leave = false, gone = false;
     bool abandoned = false;  // a frame did not wait for it, and nobody does
+    // Of the last frame that was rendered to its end; 0: it made nothing.
+    double pixels_a_second = 0, measured_pixels = 0;
   };
   struct Pick {
     Generation generation = 0;
@@ -66,10 +68,9 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   Generation rested = 0;  // the last for which a server has prepared for what comes
   bool closing = false;
   std::thread control;
-  SceneCompiler compiler;  // the control thread's
-  std::mutex rendering;    // taken before `mutex`: one frame at a time is rendered to its end
-  // Of the last such frame, by a session's only device:
-  double pixels_a_second = 0, measured_pixels = 0;
+  SceneCompiler compiler;       // the control thread's
+  std::mutex rendering;         // taken before `mutex`: one frame at a time is rendered to its end
+  const void* rated = nullptr;  // the scene of the last such frame, by which workers' speeds are known
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;

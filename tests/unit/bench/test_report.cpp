@@ -43,21 +43,22 @@ TEST_CASE("numbers keep about three digits that count") {
   CHECK(number_text(0.5) == "0.500");
   CHECK(number_text(0.01234) == "0.0123");
   CHECK(number_text(-2.5) == "-2.50");
-  CHECK(cell_text(Spread{10.04, 9, 11}) == "10.0 ±10%");
-  CHECK(cell_text(Spread{}) == "0 ±0%");
+  CHECK(cell_text(Spread{10.04, 9, 11}) == "10.0 [9, 11]");
+  CHECK(cell_text(Spread{}) == "0 [0, 0]");
   CHECK(cell_text(Cell()).empty());
 }
 
-TEST_CASE("a CSV has a line of names, three columns for a spread, and quotes what needs it") {
+TEST_CASE("a CSV has a line of names, four columns for a spread with every run, and quotes what needs it") {
   CHECK(report_csv(small_report()) ==
-        "scene,time_ms,time_ms_min,time_ms_max,runs\r\n"
-        "\"ice, hollow\",12.345,12,13,3\r\n"
-        "\"say \"\"x\"\"\",,,,\r\n");
+        "scene,time_ms,time_ms_min,time_ms_max,time_ms_runs,runs\r\n"
+        "\"ice, hollow\",12.345,12,13,13 12 12.345,3\r\n"
+        "\"say \"\"x\"\"\",,,,,\r\n");
 }
 
 TEST_CASE("JSON holds facts and a row a measurement, with null for what was not measured") {
   const nlohmann::json json = report_json(small_report());
-  CHECK(json.at("schema") == 1);
+  CHECK(json.at("schema") == 2);
+  CHECK(json.at("complete") == true);
   CHECK(json.at("bench") == "threads");
   CHECK(json.at("facts").at("device") == "a \"fast\" one");
   CHECK(json.at("facts").at("driver") == nlohmann::json({"1", "2"}));  // one of several devices each
@@ -74,7 +75,7 @@ TEST_CASE("JSON holds facts and a row a measurement, with null for what was not 
 
 TEST_CASE("text shows the parts' tables, or the measurements where there are none") {
   Report report = small_report();
-  CHECK_THAT(report_text(report), ContainsSubstring("time [ms]") && ContainsSubstring("12.3 ±4%") &&
+  CHECK_THAT(report_text(report), ContainsSubstring("time [ms]") && ContainsSubstring("12.3 [12, 13]") &&
                                       ContainsSubstring("device  a \"fast\" one"));
   report.parts = {Table{"Best", {{"size", ""}}, {{64.0}}}};
   CHECK_THAT(report_text(report), ContainsSubstring("Best\n") && !ContainsSubstring("time [ms]"));
@@ -101,14 +102,18 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
                        ContainsSubstring("&lt;bar&gt;") && ContainsSubstring("Curves &lt;1&gt;") &&
                        ContainsSubstring("a &amp; b") && ContainsSubstring("All 2 measurements") &&
                        ContainsSubstring("prefers-color-scheme: dark") && ContainsSubstring("@media print"));
-  for (const char* outside : {"<script", "http:", "https:", "src=", "href=", "url("})
-    CHECK(count(page, outside) == 0);
-  CHECK(count(page, "<svg") == 3);
+  for (const char* outside : {"<script", "https:", "src=", "href=", "url("}) CHECK(count(page, outside) == 0);
+  // A plot that is cut out of the page is a file of its own.
+  CHECK(count(page, "http:") == 3);
+  CHECK(count(page, "<svg xmlns=\"http://www.w3.org/2000/svg\"") == 3);
+  for (const std::string& plot : {svg(CurvePlot{}), svg(BarPlot{}), svg(HeatMap{})})
+    CHECK_THAT(plot, ContainsSubstring("<style>") && ContainsSubstring("--ink: #1c2126"));
   // On a narrow screen plots keep a width at which they can be read, and scroll like tables.
   CHECK(count(page, "style=\"--width:") == 3);
   CHECK_THAT(page, ContainsSubstring("max-width: 640px") && ContainsSubstring("calc(.85 * var(--width))"));
   CHECK(count(page, "</svg>") == 3);
-  CHECK_THAT(page, ContainsSubstring("12.3 ±4%<small>13 12 12.3</small>"));  // raw runs, in the details alone
+  CHECK_THAT(page,
+             ContainsSubstring("12.3 [12, 13]<small>13 12 12.3</small>"));  // raw runs, in the details alone
   CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
 }
 

@@ -10,6 +10,7 @@ ThreadScaling plan_of(double device, double plain) {
   ThreadScaling plan;
   plan.sizes = {100, 200, 300};
   plan.counts = {1, 2, 4};
+  plan.repeat = 5;
   plan.cores = 2;
   plan.cost = {device, plain};
   return plan;

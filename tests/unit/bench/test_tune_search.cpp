@@ -32,7 +32,7 @@ struct Bowl {
       return seconds(at);
     };
     result.measure_again = [this](const TunePoint& usual, const TunePoint& best) {
-      return std::pair(seconds(usual), seconds(best));
+      return TunePairs{seconds(usual), seconds(best), 20, 20};
     };
     result.affordable = [this](const TunePoint&) { return measured.size() < budget; };
     return result;
@@ -91,7 +91,7 @@ TEST_CASE("points that cost too much are left out, and cheaper ones still measur
 TEST_CASE("a winner that is no faster when it is measured again gives way to the default") {
   Bowl bowl;
   TuneProblem problem = bowl.problem();
-  problem.measure_again = [](const TunePoint&, const TunePoint&) { return std::pair(1.0, 0.995); };
+  problem.measure_again = [](const TunePoint&, const TunePoint&) { return TunePairs{1.0, 0.995, 20, 20}; };
   const TuneResult result = search_tuning(problem);
   CHECK(result.best == TunePoint{0, 0, 0});
   CHECK(result.best_seconds == 1.0);
@@ -105,4 +105,17 @@ TEST_CASE("a default that does not work is no ground to search from") {
   CHECK(result.tried == 1);
   CHECK(result.rejected == 1);
   CHECK(result.best == problem.start);
+}
+
+TEST_CASE("a tuning is kept only where pairs in turn confirm it") {
+  CHECK(TunePairs{1, 0.9, 20, 20}.confirm());
+  CHECK(TunePairs{1, 0.9, 15, 20}.confirm());
+  CHECK_FALSE(TunePairs{1, 0.9, 14, 20}.confirm());
+  CHECK_FALSE(TunePairs{1, 0.99, 20, 20}.confirm());
+  Bowl bowl;
+  TuneProblem problem = bowl.problem();
+  problem.measure_again = [](const TunePoint&, const TunePoint&) { return TunePairs{1, 0.9, 12, 20}; };
+  const TuneResult result = search_tuning(problem);
+  CHECK(result.best == problem.start);
+  CHECK(result.best_seconds == result.default_seconds);
 }

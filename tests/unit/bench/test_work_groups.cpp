@@ -34,13 +34,27 @@ TimedKernel fake_kernel(std::size_t limit, std::function<double(const WorkGroup&
   return kernel;
 }
 
+std::vector<std::string> texts_of(const WorkGroupTimes& times) {
+  std::vector<std::string> all;
+  for (const auto& way : times.ways()) all.push_back(way->text);
+  return all;
+}
+
+std::shared_ptr<WorkGroupTimes> measured(const TimedKernel& kernel, int repeat) {
+  const auto times = std::make_shared<WorkGroupTimes>(kernel, [kernel] { return kernel; });
+  MeasureOptions options;
+  options.repeat = repeat;
+  options.load = std::make_shared<LoadMeter>(2, [] { return ProcessorTimes{}; });
+  times->measure(options);
+  return times;
+}
+
 }  // namespace
 
-TEST_CASE("work-group sizes are powers of two, one prime, the driver's and the default, within the limit") {
-  CHECK(texts(1, false) == std::vector<std::string>{"default", "driver", "1"});
-  CHECK(texts(8, false) == std::vector<std::string>{"default", "driver", "1", "2", "4", "8", "7"});
-  CHECK(texts(4, true) ==
-        std::vector<std::string>{"default", "driver", "1", "2", "4", "3", "1x2", "2x2", "1x4"});
+TEST_CASE("work-group sizes are powers of two, one prime and the driver's, within the limit") {
+  CHECK(texts(1, false) == std::vector<std::string>{"driver", "1"});
+  CHECK(texts(8, false) == std::vector<std::string>{"driver", "1", "2", "4", "8", "7"});
+  CHECK(texts(4, true) == std::vector<std::string>{"driver", "1", "2", "4", "3", "1x2", "2x2", "1x4"});
   for (const std::size_t limit : {0u, 1u, 2u, 3u, 100u, 273u, 1024u})
     for (const WorkGroup& group : work_group_candidates(limit, true))
       if (group.kind == fixed) CHECK((group.x * group.y <= limit && group.x > 0 && group.y > 0));
@@ -53,52 +67,62 @@ TEST_CASE("work-group sizes are powers of two, one prime, the driver's and the d
 }
 
 TEST_CASE("a size whose result differs or that is refused has a problem and no time") {
-  const WorkGroupTimes all = measure_work_groups(fake_kernel(8), 3);
-  const auto& times = all.sizes;
-  REQUIRE(times.size() == 7);
-  for (const WorkGroupTime& time : times) {
-    CAPTURE(work_group_text(time.group));
-    const bool bad = time.group.kind == fixed && (time.group.x == 4 || time.group.x == 8);
-    CHECK(time.problem.empty() != bad);
-    if (!bad)
-      CHECK(time.seconds.median == (time.group.kind == fixed ? static_cast<double>(time.group.x) : 3.0));
+  const auto times = measured(fake_kernel(8), 3);
+  REQUIRE(times->ways().size() == 6);  // the driver's choice is the default here
+  for (std::size_t i = 0; i < times->ways().size(); ++i) {
+    const WorkGroup& group = times->ways()[i]->group;
+    const Subject& subject = times->subjects()[i];
+    CAPTURE(times->ways()[i]->text);
+    const bool bad = group.kind == fixed && (group.x == 4 || group.x == 8);
+    CHECK(subject.is_good() != bad);
+    if (!bad) CHECK(subject.seconds().median == (group.kind == fixed ? static_cast<double>(group.x) : 3.0));
   }
-  CHECK(times[5].problem == "too large");
   Report report;
-  add_work_group_tables(report, fake_kernel(8), all);
-  CHECK(report.measurements.rows.size() == 9);  // with the two of the duel
+  times->add_to(report);
+  CHECK(report.measurements.rows.size() == times->ways().size() + 2);  // with the two of the duel
+  CHECK(report.ways.size() == report.measurements.rows.size());
   CHECK_THAT(report_text(report),
              ContainsSubstring("too large") && ContainsSubstring("its result is not the default's"));
   CHECK_THAT(report_html(report), ContainsSubstring("best: 1<"));
 }
 
+TEST_CASE("the default is named with its size, which stands once") {
+  TimedKernel kernel = fake_kernel(2);
+  kernel.local = [] { return std::pair<std::size_t, std::size_t>(2, 1); };
+  CHECK(texts_of(*measured(kernel, 1)) == std::vector<std::string>{"default (2)", "driver's choice", "1"});
+  kernel.local = [] { return std::pair<std::size_t, std::size_t>(0, 0); };
+  CHECK(texts_of(*measured(kernel, 1)) ==
+        std::vector<std::string>{"default (the driver's choice)", "1", "2"});
+}
+
+TEST_CASE("sizes of one's own are tried instead of the usual ones") {
+  TimedKernel kernel = fake_kernel(8);
+  kernel.sizes = {{fixed, 2, 1}, {fixed, 3, 2}};
+  CHECK(texts_of(*measured(kernel, 1)) ==
+        std::vector<std::string>{"default (the driver's choice)", "2", "3x2"});
+}
+
 TEST_CASE("compilation is what a first launch takes beyond the device's events, and not part of a time") {
   TimedKernel kernel = fake_kernel(2);
-  CHECK_FALSE(measure_work_groups(kernel, 3).sizes[0].compile_seconds);  // no events
-  const auto runs = std::make_shared<int>(0);
-  kernel.run = [runs](const WorkGroup&) { return ++*runs <= 4 ? 100.0 : 1.0; };  // four sizes are warmed up
-  kernel.beyond_events = [runs] { return std::optional(*runs == 1 ? 99.5 : 0.5); };
-  const WorkGroupTimes times = measure_work_groups(kernel, 3);
-  REQUIRE(times.sizes.size() == 4);
-  CHECK(times.sizes[0].compile_seconds == 99.0);  // compiled for all sizes at once
-  CHECK(times.sizes[1].compile_seconds == 0.0);   // a slow first run is no compilation
-  CHECK(times.sizes[0].seconds.median == 1);
-  Report report;
-  add_work_group_tables(report, kernel, times);
-  CHECK_THAT(report_text(report), ContainsSubstring("compiled at first launch [ms]"));
+  const auto times = measured(kernel, 3);
+  CHECK_FALSE(times->ways()[0]->compile_seconds());  // no events
+  WorkGroupTimes::Way way;
+  way.beyond = {99.5, 0.5, 0.4, 0.6};
+  CHECK(way.compile_seconds() == 99.0);
+  way.beyond = {0.5, 0.5, 0.6};  // a slow first run is no compilation
+  CHECK(way.compile_seconds() == 0.0);
 }
 
 TEST_CASE(
     "a best size is named only where all its runs are faster than all of the default's, run again in turn") {
   const auto text_of = [](int repeat, std::function<double(const WorkGroup&)> seconds_of) {
-    const TimedKernel kernel = fake_kernel(2, seconds_of);
-    const WorkGroupTimes times = measure_work_groups(kernel, repeat);
+    const auto times = measured(fake_kernel(2, seconds_of), repeat);
     Report report;
-    add_work_group_tables(report, kernel, times);
+    times->add_to(report);
     const std::string page = report_html(report);
     for (const char* mark : {">best: 1<", "\"cell best\""})
-      CHECK((page.find(mark) != std::string::npos) == verdict_text(times).starts_with("best: "));
-    return verdict_text(times);
+      CHECK((page.find(mark) != std::string::npos) == times->verdict().starts_with("best: "));
+    return times->verdict();
   };
   const auto of_one = [](double one, double usual) {
     return [=](const WorkGroup& group) { return group.kind == fixed && group.x == 1 ? one : usual; };
@@ -108,6 +132,6 @@ TEST_CASE(
   CHECK(text_of(2, of_one(0.5, 1)) == "no clear winner: too few runs to name one (--repeat 3 or more)");
   CHECK(text_of(5, of_one(2, 1)) == "no clear winner: no size has a smaller median than the default");
   int runs = 0;  // each third run of any size takes twice the time
-  CHECK_THAT(text_of(5, [&](const WorkGroup& group) { return of_one(0.9, 1)(group) * (++runs % 3 ? 1 : 2); }),
-             ContainsSubstring("no clear winner: 1, the size with the smallest median, took 900 to 1800 ms"));
+  CHECK_THAT(text_of(9, [&](const WorkGroup& group) { return of_one(0.7, 1)(group) * (++runs % 3 ? 1 : 2); }),
+             ContainsSubstring("no clear winner: 1, the size with the smallest median, took 700 to 1400 ms"));
 }

@@ -29,32 +29,46 @@ struct Simulated {
   double ready = 0;        // seconds until its kernels are built
   double first_delay = 0;  // seconds more for its first tile
   int hangs_in = 0;        // the tile that it never comes back from, from 1; 0: none
+  double known = 0;        // speed that the frame before was made with; 0: none
 };
 
 struct Outcome {
   double seconds = 0;  // when the last pixel was there
   std::vector<std::uint64_t> kept;
+  std::vector<int> tiles;
 };
 
 /// A frame in simulated time, as TileQueue runs it: waiting tiles by guided_pixels, then tile_to_repeat.
 class Simulation {
  public:
-  Simulation(int width, int height, std::vector<Simulated> devices)
-      : devices_(std::move(devices)),
+  /// `tile_cost`: seconds of each tile beside its pixels. With `dear_below` the pixels of the lower half take
+  /// so many times as long as the others.
+  Simulation(int width, int height, std::vector<Simulated> devices, double tile_cost = 0,
+             double dear_below = 1)
+      : tile_cost_(tile_cost),
+        dear_below_(dear_below),
+        middle_(height / 2),
+        devices_(std::move(devices)),
         waiting_({{0, 0, width, height}}),
         speeds_(devices_.size()),
         jobs_(devices_.size()),
         made_(devices_.size()) {
     outcome_.kept.resize(devices_.size());
-    for (std::size_t i = 0; i < devices_.size(); ++i) speeds_[i].estimate = devices_[i].estimate;
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      speeds_[i].estimate = devices_[i].estimate;
+      speeds_[i].measured = devices_[i].known;
+      speeds_[i].sample = devices_[i].known > 0 ? 1e9 : 0;
+    }
     left_ = pixel_count({0, 0, width, height});
   }
 
   Outcome run() {
-    constexpr double step = 1e-3, end_of_time = 1000;
+    constexpr double end_of_time = 1000;
+    const double step = tile_cost_ > 0 ? 1e-5 : 1e-3;
     for (now_ = 0; left_ > 0 && now_ < end_of_time; now_ += step)
       for (std::size_t i = 0; i < devices_.size(); ++i) advance(i);
     outcome_.seconds = left_ > 0 ? std::numeric_limits<double>::infinity() : now_;
+    outcome_.tiles = made_;
     return outcome_;
   }
 
@@ -114,10 +128,14 @@ class Simulation {
   void start(std::size_t i, int id, const Tile& tile) {
     const Simulated& device = devices_[i];
     const bool hangs = device.speed <= 0 || device.hangs_in == made_[i] + 1;
-    const double seconds = hangs ? 1e9 : static_cast<double>(pixel_count(tile)) / device.speed;
+    const int below = std::clamp(tile.y + tile.height - middle_, 0, tile.height);
+    const double work = tile.width * (tile.height - below + below * dear_below_);
+    const double seconds = hangs ? 1e9 : tile_cost_ + work / device.speed;
     jobs_[i] = {id, tile, now_, now_ + seconds + (made_[i] == 0 ? device.first_delay : 0)};
   }
 
+  double tile_cost_, dear_below_;
+  int middle_;
   std::vector<Simulated> devices_;
   WaitingTiles waiting_;
   std::vector<DeviceSpeed> speeds_;
@@ -142,6 +160,29 @@ TEST_CASE("equal devices make a frame in half the time") {
   const Outcome outcome = Simulation(640, 480, {device, device}).run();
   CHECK(static_cast<double>(outcome.kept[0]) / static_cast<double>(outcome.kept[1]) ==
         Approx(1.0).epsilon(0.05));
+}
+
+TEST_CASE("a frame of 30 ms has several tiles a device, and a second one never costs") {
+  constexpr int width = 320, height = 240;
+  constexpr double tile_cost = 2e-4;
+  for (const double seconds : {0.01, 0.03, 0.1, 0.5})
+    for (const double dear : {1.0, 4.0})
+      for (const double slower : {1.0, 3.0, 10.0}) {
+        CAPTURE(seconds, dear, slower);
+        const double speed = width * height * 0.5 * (1 + dear) / seconds, mean = width * height / seconds;
+        Simulated fast{speed, 1}, slow{speed / slower, 1};
+        fast.known = mean;
+        slow.known = mean / slower;
+        const double alone = Simulation(width, height, {fast}, tile_cost, dear).run().seconds;
+        const Outcome both = Simulation(width, height, {fast, slow}, tile_cost, dear).run();
+        // A tenth of 10 ms is as long as a tile's own cost.
+        CHECK(both.seconds < (seconds > 0.01 || slower < 10 ? 1.0 : 1.1) * alone);
+        // What both could do, with a part of it for tiles.
+        if (seconds >= 0.03) CHECK(both.seconds < alone / (1 + 1 / slower) / 0.8);
+        if (seconds >= 0.5) CHECK(both.seconds < alone / (1 + 1 / slower) / 0.95);
+        if (seconds >= 0.03 && slower < 2)
+          for (const int tiles : both.tiles) CHECK(tiles >= 4);
+      }
 }
 
 TEST_CASE("devices share a frame by their speeds, whatever the estimates said") {

@@ -1,0 +1,135 @@
+// See ray_times.h.
+#include "bench/rays/ray_times.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/report/machine.h"
+#include "render/device/kernel_config.h"
+#include "render/film/hash.h"
+
+namespace sundog {
+namespace {
+
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) {
+  return hash_bytes(values.data(), values.size() * sizeof(T), 1);
+}
+
+double number(std::size_t n) { return static_cast<double>(n); }
+
+/// Millions a second, for each of the times.
+Spread rates(std::size_t rays, const std::vector<double>& seconds) {
+  std::vector<double> all;
+  for (const double time : seconds) all.push_back(1e-6 * number(rays) / time);
+  return spread(all);
+}
+
+}  // namespace
+
+RayTimes::RayTimes(std::string scene_name, std::shared_ptr<const CompiledScene> scene,
+                   const DeviceInfo& device, unsigned size, std::vector<std::string> kinds)
+    : name_(std::move(scene_name)),
+      scene_(std::move(scene)),
+      info_(device),
+      size_(size),
+      wanted_(std::move(kinds)) {}
+
+std::string RayTimes::check(Kind& kind) {
+  RayTracer& tracer = tracing_->tracer;
+  const Answers answers = kind.set.any ? Answers{{}, tracer.occluded()} : Answers{tracer.hits(), {}};
+  const std::uint64_t result = kind.set.any ? hash_of(answers.occluded) : hash_of(answers.hits);
+  if (kind.expected != 0) return result == kind.expected ? "" : "its answers are not those of its first run";
+  kind.expected = result;
+  kind.check = check_hits(*scene_, kind.set, answers);
+  const HitCheck& found = kind.check;
+  if (found.differ > 0)
+    return fmt::format("{}: {} of {} {} rays have wrong answers, so nothing was timed", name_, found.differ,
+                       found.checked, kind.set.kind);
+  if (found.plain_is_sound()) return "";
+  return fmt::format(
+      "{}: the host's plain tracer has wrong answers to {} of {} {} rays, so nothing was timed", name_,
+      found.plain_wrong, found.checked, kind.set.kind);
+}
+
+void RayTimes::measure(const MeasureOptions& options) {
+  if (options.on_step) options.on_step("making rays", 0);
+  Subject all;
+  all.name = fmt::format("{} on {}", name_, info_.label());
+  subjects_ = {all};
+  std::vector<RaySet> sets;
+  const auto open = [&] {
+    tracing_ = std::make_shared<Tracing>(info_, *scene_);
+    const auto trace = [&](std::span<const Ray> rays) { return tracing_->tracer.trace(rays); };
+    sets = frame_rays(*scene_, scene_viewpoint(*scene_), size_, trace, wanted_);
+  };
+  if (!prepared(subjects_, open)) return;
+  subjects_.clear();
+  for (RaySet& set : sets) {
+    const auto kind = std::make_shared<Kind>(Kind{std::move(set), {}, 0, {}});
+    kinds_.push_back(kind);
+    Subject& subject = subjects_.emplace_back();
+    subject.name = fmt::format("{}, {} rays", all.name, kind->set.kind);
+    subject.run = [this, kind] {
+      RayTracer& tracer = tracing_->tracer;
+      tracer.upload(kind->set.rays);
+      const Stopwatch clock;
+      kind->kernel_seconds.push_back(tracer.run({kind->set.any, kind->set.coherent}));
+      return clock.seconds();
+    };
+    subject.check = [this, kind] { return check(*kind); };
+  }
+  sundog::measure(subjects_, options);
+}
+
+std::optional<Spread> RayTimes::rate(std::size_t kind) const {
+  if (!subjects_[kind].is_good()) return {};
+  return rates(kinds_[kind]->set.rays.size(), subjects_[kind].seconds().runs);
+}
+
+std::optional<Spread> RayTimes::kernel_rate(std::size_t kind) const {
+  const std::vector<double> seconds = subjects_[kind].counted(kinds_[kind]->kernel_seconds);
+  const bool known = std::ranges::all_of(seconds, [](double time) { return time > 0; });
+  if (!subjects_[kind].is_good() || seconds.empty() || !known) return {};
+  return rates(kinds_[kind]->set.rays.size(), seconds);
+}
+
+void RayTimes::add_to(Report& report) const {
+  const std::string tracer = traces_compact(*scene_, info_) ? "compact" : "wide";
+  Table table{fmt::format("{} on {}, {} tracer", name_, info_.label(), tracer), {}, {}};
+  BarPlot bars{table.title, "Mrays/s", {}};
+  for (std::size_t i = 0; i < subjects_.size(); ++i) {
+    report.ways.push_back(subjects_[i]);
+    std::vector<Field> row{{"scene", "", name_}, {"device", "", info_.label()}, {"tracer", "", tracer}};
+    std::vector<Field> shown;
+    if (i < kinds_.size()) {
+      const Kind& kind = *kinds_[i];
+      const auto per_second = rate(i), kernel = kernel_rate(i);
+      const std::size_t rays = kind.set.rays.size();
+      shown = {{"kind", "", kind.set.kind},
+               {"rays", "", number(rays)},
+               {"hits", "%", 100.0 * number(kind.check.hits) / number(rays)},
+               {"rate", "Mrays/s", per_second ? Cell(*per_second) : Cell()},
+               {"kernel", "Mrays/s", kernel ? Cell(*kernel) : Cell()},
+               {"checked", "", fmt::format("{}, {} by rounding", kind.check.checked, kind.check.rounded)}};
+      row.insert(row.end(), {shown[0],
+                             shown[1],
+                             {"hits", "", number(kind.check.hits)},
+                             shown[3],
+                             shown[4],
+                             {"checked", "", number(kind.check.checked)},
+                             {"rounded", "", number(kind.check.rounded)},
+                             {"differ", "", number(kind.check.differ)}});
+      if (per_second) bars.bars.push_back({kind.set.kind, *per_second, fmt::format("{} rays", rays)});
+    }
+    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
+    if (!subjects_[i].problem.empty()) shown.push_back({"problem", "", subjects_[i].problem});
+    add_row(table, shown);
+    add_row(report.measurements, row);
+  }
+  report.parts.emplace_back(std::move(table));
+  if (!bars.bars.empty()) report.parts.emplace_back(std::move(bars));
+}
+
+}  // namespace sundog

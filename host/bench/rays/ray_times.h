@@ -1,0 +1,51 @@
+// Rays a second by kind: one scene's rays through one device's tracer.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/rays/check_hits.h"
+#include "bench/rays/ray_tracer.h"
+#include "bench/report/report.h"
+#include "bench/runs/measure.h"
+
+namespace sundog {
+
+class RayTimes {
+ public:
+  /// `size`: camera rays a side; `kinds`: of ray_kinds, or empty for all.
+  RayTimes(std::string scene_name, std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device,
+           unsigned size, std::vector<std::string> kinds);
+
+  /// Every answer of the first run of a kind is checked; later runs must have the same answers to the bit.
+  void measure(const MeasureOptions& options);
+  void add_to(Report& report) const;
+
+ private:
+  struct Tracing {
+    Device device;
+    RayTracer tracer;
+    Tracing(const DeviceInfo& info, const CompiledScene& scene) : device(info), tracer(device, scene) {}
+  };
+  struct Kind {
+    RaySet set;
+    HitCheck check;
+    std::uint64_t expected = 0;          // hash of the answers
+    std::vector<double> kernel_seconds;  // of each run, the first one too, by the device's events
+  };
+  std::string check(Kind& kind);
+  std::optional<Spread> rate(std::size_t kind) const;
+  std::optional<Spread> kernel_rate(std::size_t kind) const;
+
+  std::string name_;
+  std::shared_ptr<const CompiledScene> scene_;
+  DeviceInfo info_;
+  unsigned size_;
+  std::vector<std::string> wanted_;
+  std::shared_ptr<Tracing> tracing_;
+  std::vector<std::shared_ptr<Kind>> kinds_;
+  std::vector<Subject> subjects_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,39 @@
+// What the machine's processors do while something is timed, for this process and for others.
+#pragma once
+#include <deque>
+#include <functional>
+
+#include "base/clock.h"
+#include "bench/report/samples.h"
+
+namespace sundog {
+
+/// Seconds since some moment, and processor seconds until then.
+struct ProcessorTimes {
+  double wall = 0, own = 0;
+  double all = -1;  // of all processes; below 0: unknown
+};
+
+/// By /proc/stat, which counts in hundredths of a second. Stolen time counts: the machine's host took it.
+ProcessorTimes processor_times();
+
+class LoadMeter {
+ public:
+  /// `clock`: processor_times(), or made-up times of a test.
+  explicit LoadMeter(unsigned cores, std::function<ProcessorTimes()> clock = processor_times);
+
+  void begin();
+  /// The run since begin(): its cores, and the cores that others had. A short run is judged together with the
+  /// half second before its end, because the system's clock is coarse.
+  Run end();
+  /// From how many cores of others on a run is disturbed.
+  double limit() const;
+
+ private:
+  unsigned cores_;
+  std::function<ProcessorTimes()> clock_;
+  std::deque<ProcessorTimes> before_;
+  ProcessorTimes begun_, first_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,174 @@
+// See measure.h.
+#include "bench/runs/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <thread>
+
+#include "base/error.h"
+
+namespace sundog {
+namespace {
+
+constexpr const char* busy = "busy";
+// A run that had so much less cores, and took so much longer, than another of its way was disturbed.
+constexpr double fewer_cores = 0.85, longer = 1.1;
+
+std::size_t counted(const MeasuredWay& way) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(way.runs, [](const Run& run) { return run.left_out.empty(); }));
+}
+
+class Measurement {
+ public:
+  Measurement(std::vector<Subject>& subjects, const MeasureOptions& options)
+      : subjects_(subjects), options_(options) {
+    for (Subject& subject : subjects_)
+      if (const auto found = options_.known.find(subject.name); found != options_.known.end())
+        subject.runs = found->second.runs, subject.known = subject.runs.size();
+  }
+
+  void warm_up() {
+    for (Subject& subject : subjects_) {
+      if (options_.is_stopped()) return;
+      if (subject.once && counted(subject) > 0) continue;
+      if (is_over() && &subject != &subjects_.front()) {
+        subject.problem = "left out for lack of time (--budget)";
+        continue;
+      }
+      tell(subject, "the first run");
+      run(subject, subject.once, true);
+      ++done_;
+    }
+    judge();
+  }
+
+  void rounds() {
+    const auto repeat = static_cast<std::size_t>(options_.repeat);
+    std::vector<std::size_t> order(subjects_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t round = 1; round <= 2 * repeat && (round == 1 || !is_over()); ++round) {
+      std::ranges::shuffle(order, random_);
+      bool any = false;
+      for (const std::size_t i : order) {
+        Subject& subject = subjects_[i];
+        if (subject.once || !subject.problem.empty() || counted(subject) >= repeat) continue;
+        if (options_.is_stopped()) return;
+        any = true;
+        tell(subject, fmt::format("run {}", subject.runs.size() + 1));
+        run(subject, true, false);
+        ++done_;
+      }
+      if (!any) return;
+      judge();
+    }
+  }
+
+  /// Where quiet runs are too few the least disturbed count, too.
+  void settle() {
+    const auto repeat = static_cast<std::size_t>(options_.repeat);
+    for (Subject& subject : subjects_) {
+      std::vector<Run*> left_out;
+      for (Run& run : subject.runs)
+        if (run.left_out == busy) left_out.push_back(&run);
+      std::ranges::stable_sort(left_out, {}, [](const Run* run) { return run->others; });
+      std::size_t wanted = (subject.once ? 1 : repeat) - std::min(repeat, counted(subject));
+      for (Run* run : left_out) {
+        if (wanted == 0) break;
+        --wanted;
+        run->left_out.clear();
+        subject.noisy = true;
+      }
+    }
+    if (options_.on_runs) options_.on_runs();
+  }
+
+ private:
+  bool is_over() const { return options_.budget > 0 && clock_.seconds() > options_.budget; }
+
+  void tell(const Subject& subject, const std::string& what) const {
+    const double all = static_cast<double>(subjects_.size()) * (1 + options_.repeat);
+    if (options_.on_step)
+      options_.on_step(subject.name + ", " + what, std::min(0.99, static_cast<double>(done_) / all));
+  }
+
+  void run(Subject& subject, bool counts, bool first) {
+    try {
+      if (first && subject.prepare) subject.prepare();
+      options_.load->begin();
+      const double seconds = subject.run();
+      Run run = options_.load->end();
+      run.seconds = seconds;
+      if (options_.is_stopped()) return;
+      const std::string wrong = subject.check ? subject.check() : "";
+      if (!wrong.empty()) fail(subject, wrong);
+      if (!wrong.empty()) run.left_out = "wrong result";
+      if (counts) subject.runs.push_back(run);
+    } catch (const DeviceError& error) {
+      fail(subject, error.what());
+    } catch (const BuildError& error) {
+      fail(subject, error.what());
+    }
+    if (options_.on_runs) options_.on_runs();
+  }
+
+  static void fail(Subject& subject, const std::string& why) {
+    subject.failure = std::current_exception();
+    subject.problem = subject.runs.empty() ? why : fmt::format("run {}: {}", subject.runs.size() + 1, why);
+  }
+
+  void judge() {
+    for (Subject& subject : subjects_) {
+      for (Run& run : subject.runs) {
+        if (!run.left_out.empty() && run.left_out != busy) continue;
+        run.left_out = is_disturbed(subject, run, options_.load->limit()) ? busy : "";
+      }
+    }
+  }
+
+  std::vector<Subject>& subjects_;
+  const MeasureOptions& options_;
+  std::size_t done_ = 0;
+  std::mt19937 random_;
+  Stopwatch clock_;
+};
+
+}  // namespace
+
+bool is_disturbed(const MeasuredWay& way, const Run& run, double limit) {
+  return run.others > limit || std::ranges::any_of(way.runs, [&](const Run& other) {
+           return run.cores < fewer_cores * other.cores && run.seconds > longer * other.seconds;
+         });
+}
+
+bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work) {
+  const auto fail_all = [&](const char* why) {
+    for (Subject& subject : subjects) {
+      subject.problem = why;
+      subject.failure = std::current_exception();
+    }
+  };
+  try {
+    work();
+    return true;
+  } catch (const DeviceError& error) {
+    fail_all(error.what());
+  } catch (const BuildError& error) {
+    fail_all(error.what());
+  }
+  return false;
+}
+
+void measure(std::vector<Subject>& subjects, const MeasureOptions& options) {
+  MeasureOptions own = options;
+  if (!own.load) own.load = std::make_shared<LoadMeter>(std::thread::hardware_concurrency());
+  Measurement measurement(subjects, own);
+  measurement.warm_up();
+  measurement.rounds();
+  measurement.settle();
+}
+
+}  // namespace sundog

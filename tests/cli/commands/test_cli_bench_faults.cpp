@@ -1,0 +1,165 @@
+// `sundog bench` where something goes wrong: spoiled results, devices that fail, interrupts; and what its
+// reports hold for whoever continues or recomputes them.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/file.h"
+#include "catch.h"
+#include "cli_scene.h"
+
+using nlohmann::json;
+
+namespace {
+
+/// Options of a small run of each bench that times a device's results.
+std::vector<std::vector<std::string>> small_benches(const CliFolder& folder) {
+  return {{"devices", folder.scene, "--device", "0:0/1", "--device", "0:0/1", "--size", "96x64"},
+          {"threads", folder.scene, "--device", "0:0", "--sizes", "64", "--counts", "1,2", "--no-plain"},
+          {"workgroup", folder.scene, "--device", "0:0", "--sizes", "2,4", "--rays", "32", "--kernel",
+           "trace_rays", "--kernel", "render_whitted"},
+          {"samples", folder.scene, "--device", "0:0", "--counts", "1,2", "--adaptive", "0.05", "--size",
+           "96x64"},
+          {"rays", folder.scene, "--device", "0:0", "--rays", "48", "--kinds", "primary,shadow"},
+          {"textures", "--device", "0:0", "--size", "64x48", "--edge", "16", "--loaded-edge", "16"}};
+}
+
+CommandResult run_bench(std::vector<std::string> arguments, const std::vector<std::string>& more,
+                        const std::string& faults = "") {
+  CommandOptions options;
+  options.environment["POCL_DEVICES"] = "pthread";
+  if (!faults.empty()) options.environment["SUNDOG_FAULTS"] = faults;
+  arguments.insert(arguments.begin(), "bench");
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_sundog(arguments, options);
+}
+
+}  // namespace
+
+TEST_CASE("each bench compares every timed result: one that was spoiled later is a row with a problem") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  for (const auto& bench : small_benches(folder)) {
+    const CommandResult result =
+        run_bench(bench, {"--repeat", "30", "--json", file, "--quiet"}, "spoil>2500@0:0#20+");
+    CAPTURE(bench[0], result.out, result.err);
+    CHECK((result.status == 0 || result.status == 4));
+    const json report = json::parse(sundog::read_file(file));
+    std::size_t problems = 0;
+    for (const json& way : report.at("ways")) {
+      if (way.at("problem").is_null()) continue;
+      ++problems;
+      CHECK_THAT(way.at("problem").get<std::string>(),
+                 ContainsSubstring(" not ") || ContainsSubstring("differs"));
+    }
+    CHECK(problems > 0);
+    for (const json& row : report.at("measurements"))
+      if (row.contains("problem") && !row.at("problem").is_null() && row.contains("time_ms"))
+        CHECK(row.at("time_ms").is_null());
+    std::filesystem::remove(file);
+  }
+}
+
+TEST_CASE("a device that fails in timed runs is a row with its error, beside the runs that it had made") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  for (const auto& bench : small_benches(folder)) {
+    const CommandResult result =
+        run_bench(bench, {"--repeat", "30", "--json", file, "--quiet"}, "launch=-36@0:0#60+");
+    CAPTURE(bench[0], result.out, result.err);
+    CHECK((result.status == 0 || result.status == 4));
+    const json report = json::parse(sundog::read_file(file));
+    std::size_t failed = 0;
+    for (const json& way : report.at("ways")) {
+      if (way.at("problem").is_null()) continue;
+      ++failed;
+      CHECK_THAT(way.at("problem").get<std::string>(), ContainsSubstring("CL_INVALID_COMMAND_QUEUE"));
+    }
+    CHECK(failed > 0);
+    std::filesystem::remove(file);
+  }
+}
+
+TEST_CASE("a bench that is interrupted leaves its report, and another run continues it") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  const std::vector<std::string> arguments = {"bench",    "threads", folder.scene, "--device", "portable",
+                                              "--sizes",  "32",      "--counts",   "1,2",      "--no-plain",
+                                              "--repeat", "10000",   "--json",     file};
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::filesystem::remove(file);
+    CommandOptions options;
+    options.signal_at = "this will take";
+    options.signal = signal;
+    const CommandResult result = run_sundog(arguments, options);
+    CAPTURE(result.out, result.err);
+    CHECK(result.status == 130);
+    CHECK_THAT(result.err, ContainsSubstring("sundog: interrupted: --continue " + file));
+    CHECK(json::parse(sundog::read_file(file)).at("complete") == false);
+  }
+  const auto first = run_bench(
+      {"threads", folder.scene, "--device", "0:0", "--sizes", "32", "--counts", "1,2", "--no-plain"},
+      {"--repeat", "2", "--json", file});
+  REQUIRE(first.status == 0);
+  const json before = json::parse(sundog::read_file(file));
+  CHECK(before.at("complete") == true);
+  const auto next = run_bench(
+      {"threads", folder.scene, "--device", "0:0", "--sizes", "32", "--counts", "1,2", "--no-plain"},
+      {"--repeat", "3", "--json", file, "--continue", file});
+  CAPTURE(next.out, next.err);
+  REQUIRE(next.status == 0);
+  const json after = json::parse(sundog::read_file(file));
+  for (std::size_t way = 0; way < 2; ++way) {
+    const json &old = before.at("ways")[way].at("runs"), &all = after.at("ways")[way].at("runs");
+    REQUIRE(all.size() >= old.size());
+    for (std::size_t i = 0; i < old.size(); ++i) CHECK(all[i].at("seconds") == old[i].at("seconds"));
+  }
+  const auto other = run_bench({"threads", folder.scene, "--device", "0:0", "--sizes", "32", "--no-plain"},
+                               {"--continue", file, "--set", "/camera/fov=30"});
+  CHECK(other.status == 2);
+  CHECK_THAT(other.err, ContainsSubstring("--continue " + file) && ContainsSubstring("measured another"));
+  const auto wrong = run_bench({"devices", folder.scene, "--device", "0:0"}, {"--continue", file});
+  CHECK(wrong.status == 2);
+  CHECK_THAT(wrong.err, ContainsSubstring("it is of bench threads"));
+}
+
+TEST_CASE("bench devices measures a device and its parts, told apart by their labels") {
+  const CliFolder folder;
+  const std::string file = folder.file("d.json");
+  const CommandResult result =
+      run_bench({"devices", folder.scene, "--device", "0:0/1", "--device", "0:0", "--device", "0:0/1"},
+                {"--repeat", "1", "--json", file});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  std::set<std::string> names;
+  const json report = json::parse(sundog::read_file(file));
+  for (const json& row : report.at("measurements")) {
+    const std::string name = row.at("devices");
+    names.insert(name.find('+') == std::string::npos ? name.substr(0, name.find(' ')) : name);
+    CHECK((row.at("efficiency").is_number() && row.at("efficiency") > 0));
+  }
+  CHECK(names == std::set<std::string>{"0:0", "0:0/1", "0:0/1@1", "0:0/1 + 0:0/1@1"});
+  CHECK(report.at("devices").size() == 3);
+  CHECK(report.at("devices")[1].at("compute_units") == 1);
+  CHECK(report.at("scenes")[0].at("width_pixels") == 32);
+  CHECK(report.at("scenes")[0].at("seed") == 0);
+  CHECK(report.at("environment").at("POCL_DEVICES") == "pthread");
+  CHECK(report.at("facts").contains("compiler"));
+}
+
+TEST_CASE("bench workgroup takes sizes of one's own and ends about when its budget is over") {
+  const CliFolder folder;
+  const std::string file = folder.file("w.json");
+  const CommandResult result =
+      run_bench({"workgroup", folder.scene, "--device", "0:0", "--rays", "16", "--kernel", "occluded_rays"},
+                {"--sizes", "2,4x2", "--budget", "1", "--repeat", "10000", "--json", file});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json rows = json::parse(sundog::read_file(file)).at("measurements");
+  REQUIRE(rows.size() >= 3);
+  CHECK(rows[2].at("work-group") == "4x2");
+  for (const json& row : rows)
+    if (row.at("problem").is_null() && row.at("round") == "sweep") CHECK(row.at("runs") < 10000);
+  const CommandResult wrong = run_bench({"workgroup", folder.scene}, {"--sizes", "2,big"});
+  CHECK(wrong.status == 2);
+  CHECK_THAT(wrong.err, ContainsSubstring("--sizes big"));
+}

@@ -1,0 +1,173 @@
+// Ways of doing work, timed in turn: what counts, what is left out, and what fails. All times are made up.
+#include "bench/runs/measure.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "bench/report/report.h"
+#include "catch.h"
+
+using namespace sundog;
+
+namespace {
+
+/// A machine of two cores: a run takes what it is said to take, and others what they have of the cores.
+struct Machine {
+  ProcessorTimes now{0, 0, 0};
+  double others = 0;  // cores
+
+  void pass(double seconds, double cores) {
+    now.wall += seconds;
+    now.own += cores * seconds;
+    now.all += (cores + others) * seconds;
+  }
+  MeasureOptions options(int repeat) {
+    MeasureOptions options;
+    options.repeat = repeat;
+    options.load = std::make_shared<LoadMeter>(2, [this] { return now; });
+    return options;
+  }
+};
+
+/// A way that takes a second on one core.
+Subject second(Machine& machine, const std::string& name, std::function<void(int run)> before = {}) {
+  Subject subject;
+  subject.name = name;
+  subject.run = [&machine, before, runs = std::make_shared<int>(0)] {
+    if (before) before((*runs)++);
+    machine.pass(1, 1);
+    return 1.0;
+  };
+  return subject;
+}
+
+}  // namespace
+
+TEST_CASE("each way is warmed up once and has the runs that were asked for") {
+  Machine machine;
+  int prepared = 0;
+  std::vector<Subject> subjects{second(machine, "a"), second(machine, "b")};
+  subjects[0].prepare = [&] { ++prepared; };
+  int told = 0;
+  MeasureOptions options = machine.options(5);
+  options.on_runs = [&] { ++told; };
+  measure(subjects, options);
+  CHECK(prepared == 1);
+  CHECK(told >= 12);
+  for (const Subject& subject : subjects) {
+    CHECK(subject.runs.size() == 5);
+    CHECK(subject.seconds().median == 1);
+    CHECK(subject.cores().median == 1);
+    CHECK_FALSE(subject.noisy);
+  }
+  CHECK(machine.now.wall == 12);
+}
+
+TEST_CASE("a wrong result in any run takes the way out, and the others are measured") {
+  for (const int bad : {0, 1, 4}) {
+    CAPTURE(bad);
+    Machine machine;
+    std::vector<Subject> subjects{second(machine, "a"), second(machine, "b")};
+    int checks = 0;
+    subjects[1].check = [&]() -> std::string { return checks++ == bad ? "its image differs" : ""; };
+    measure(subjects, machine.options(5));
+    CHECK(subjects[0].is_good());
+    CHECK_FALSE(subjects[1].is_good());
+    CHECK_THAT(subjects[1].problem, ContainsSubstring("its image differs"));
+    CHECK(checks == bad + 1);
+    if (bad > 0) CHECK(subjects[1].runs.back().left_out == "wrong result");
+  }
+}
+
+TEST_CASE("a device that fails in a timed run leaves a row with its runs and its error") {
+  Machine machine;
+  std::vector<Subject> subjects{second(machine, "a"), second(machine, "b", [](int run) {
+                                  if (run == 3) throw DeviceError("out of resources");
+                                })};
+  measure(subjects, machine.options(5));
+  CHECK(subjects[0].runs.size() == 5);
+  CHECK(subjects[1].runs.size() == 2);
+  CHECK(subjects[1].problem == "run 3: out of resources");
+  Report report;
+  report.ways = {subjects[0], subjects[1]};
+  const nlohmann::json ways = report_json(report).at("ways");
+  CHECK(ways[1].at("problem") == "run 3: out of resources");
+  CHECK(ways[1].at("runs").size() == 2);
+  CHECK(ways[0].at("runs")[0].at("seconds") == 1);
+}
+
+TEST_CASE("runs beside which other programs work are left out and measured again") {
+  Machine machine;
+  const auto burst = [&](int run) { machine.others = run == 2 || run == 3 ? 0.8 : 0; };
+  std::vector<Subject> subjects{second(machine, "a", burst)};
+  measure(subjects, machine.options(5));
+  CHECK(subjects[0].runs.size() == 7);
+  CHECK(subjects[0].seconds().runs.size() == 5);
+  CHECK(subjects[0].runs[1].left_out == "busy");
+  CHECK(subjects[0].runs[1].others > 0.5);
+  CHECK_FALSE(subjects[0].noisy);
+}
+
+TEST_CASE("where quiet runs cannot be had the least disturbed count, and the way is noisy") {
+  Machine machine;
+  const auto always = [&](int run) { machine.others = run % 2 ? 0.5 : 1; };
+  std::vector<Subject> subjects{second(machine, "a", always)};
+  measure(subjects, machine.options(3));
+  CHECK(subjects[0].noisy);
+  CHECK(subjects[0].runs.size() == 6);
+  CHECK(subjects[0].seconds().runs.size() == 3);
+  CHECK(subjects[0].others().max < 0.9);
+}
+
+TEST_CASE("a run that had fewer cores than others of its way, and took longer, is disturbed") {
+  MeasuredWay way;
+  way.runs = {{1, 2, -1, 0, ""}, {2, 1, -1, 0, ""}, {0.9, 1, -1, 0, ""}};
+  CHECK_FALSE(is_disturbed(way, way.runs[0], 0.1));
+  CHECK(is_disturbed(way, way.runs[1], 0.1));
+  CHECK_FALSE(is_disturbed(way, way.runs[2], 0.1));
+}
+
+TEST_CASE("runs of an earlier report count, and only the rest is measured") {
+  Machine machine;
+  std::vector<Subject> subjects{second(machine, "a"), second(machine, "b")};
+  MeasureOptions options = machine.options(3);
+  MeasuredWay known;
+  known.runs = {{1, 1, 0, 0, ""}, {1, 1, 0, 0, ""}};
+  options.known["a"] = known;
+  measure(subjects, options);
+  CHECK(subjects[0].runs.size() == 3);
+  CHECK(machine.now.wall == 2 + 1 + 3);
+}
+
+TEST_CASE("a stop leaves what was measured, and a budget ends with the round") {
+  Machine machine;
+  std::atomic<bool> stop = false;
+  std::vector<Subject> subjects{second(machine, "a", [&](int run) { stop = run == 3; })};
+  MeasureOptions options = machine.options(10);
+  options.stop = &stop;
+  measure(subjects, options);
+  CHECK(subjects[0].runs.size() == 2);  // the run that was stopped does not count
+  stop = false;
+  std::vector<Subject> others{second(machine, "a"), second(machine, "b")};
+  MeasureOptions brief = machine.options(1000000);
+  brief.budget = 1e-9;
+  measure(others, brief);
+  CHECK(others[0].runs.size() == 1);
+  CHECK_THAT(others[1].problem, ContainsSubstring("--budget"));
+}
+
+TEST_CASE("a median's interval holds it with 95 % confidence, from six runs on") {
+  const auto interval = [](std::vector<double> runs) {
+    const Interval found = median_interval(spread(runs));
+    return std::pair(found.low, found.high);
+  };
+  CHECK(interval({5, 1, 3}) == std::pair(1.0, 5.0));
+  CHECK(interval({6, 5, 4, 3, 2, 1}) == std::pair(1.0, 6.0));
+  CHECK(interval({1, 2, 3, 4, 5, 6, 7, 8, 9}) == std::pair(2.0, 8.0));
+  std::vector<double> many;
+  for (int i = 1; i <= 20; ++i) many.push_back(i);
+  CHECK(interval(many) == std::pair(6.0, 15.0));
+  for (int i = 21; i <= 1000; ++i) many.push_back(i);
+  CHECK(interval(many).first > 465);
+  CHECK(interval(many).second < 536);
+}
