@@ -112,7 +112,7 @@ def add_darkness():
 def set_up(samples):
     """Without what makes Cycles biased: clamping, glossy filters, adaptive samples, the denoiser. The box filter has the width of a pixel. Its usual
     samples are blue noise, by which pixels depend on each other; here they come from tables, an experimental setting. Short passes of tables depend
-    too: docs/path_tracing.md has figures of every pattern. SOBOL_BURLEY puts regions of `cornell` up to 2 % off at 32 samples, alike with every seed."""
+    too: docs/measurements/path_tracing.md has figures of every pattern. SOBOL_BURLEY puts regions of `cornell` up to 2 % off at 32 samples, alike with every seed."""
     scene, preferences = bpy.context.scene, bpy.context.preferences
     preferences.view.show_developer_ui = preferences.experimental.use_cycles_debug = True
     scene.render.engine = "CYCLES"

@@ -160,7 +160,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
 // The fraction of light from wi that bent normals of `lanes` reflect: none from behind the surface, and less
 // near its terminator, as microfacets of the bend's slope occlude each other (Conty Estevez and others 2019,
 // "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"; alternatives:
-// docs/textures.md).
+// docs/measurements/textures.md).
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-6f);
   const REAL geometric = dot3(s->ng, wi), between = dot3(s->ng, s->ns);

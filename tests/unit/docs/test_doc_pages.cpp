@@ -42,8 +42,8 @@ std::string language_text() {
 
 std::vector<fs::path> pages() {
   std::vector<fs::path> all{root / "README.md", root / "CONTRIBUTING.md", root / "host/README.md",
-                            root / "host/scene/models/README.md"};
-  for (const auto& entry : fs::directory_iterator(root / "docs"))
+                            root / "kernels/README.md", root / "host/scene/models/README.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
     if (entry.path().extension() == ".md") all.push_back(entry.path());
   return all;
 }
