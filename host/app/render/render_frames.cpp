@@ -53,7 +53,7 @@ enum class Outcome { rendered, kept, unfinished, elsewhere };
 class FrameRun {
  public:
   FrameRun(const RenderCommand& command, Setup& setup)
-      : command_(command), setup_(setup), log_(frame_list(command)) {}
+      : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {}
 
   int render();
 
@@ -64,8 +64,8 @@ class FrameRun {
 
   const RenderCommand& command_;
   Setup& setup_;
-  FrameLog log_;
   std::unique_ptr<SceneFrames> frames_;
+  FrameLog log_;  // after all frames have been checked
   int status_ = exit_done;
   std::size_t kept_ = 0;
   std::vector<int> unfinished_;
@@ -74,8 +74,6 @@ class FrameRun {
 
 int FrameRun::render() {
   print_warnings(log_.warnings());
-  stop_loses_nothing(frame_command(command_, command_.frames.front()), setup_);
-  frames_ = open_frames(command_);
   setup_.run.total = command_.frames.size();
   bool waits = false;
   for (std::vector<int> to_do = command_.frames; !to_do.empty();) {
@@ -158,6 +156,9 @@ std::string frame_list(const RenderCommand& command) {
   return command.frames.empty() || command.resume.empty() ? "" : command.resume + ".frames";
 }
 
-int render_frames(const RenderCommand& command, Setup& setup) { return FrameRun(command, setup).render(); }
+int render_frames(const RenderCommand& command, Setup& setup) {
+  stop_loses_nothing(frame_command(command, command.frames.front()), setup);
+  return FrameRun(command, setup).render();
+}
 
 }  // namespace sundog

@@ -43,7 +43,7 @@ class SceneReader {
   SceneDescription read() {
     root_.object("scene", [&](JsonObject& object) { read_root(object); });
     decode_images(scene_, cache());
-    displace_meshes(scene_);
+    if (!cache() || !cache()->checks()) displace_meshes(scene_);
     return std::move(scene_);
   }
 
