@@ -239,7 +239,8 @@ ExpressionPtr Parser::vector_of(Type type, const Place& where) {
                                                        : converted(std::move(given), part));
   }
   if (parts == 1) return converted(std::move(e->of[0]), type);
-  if (parts != type.form->parts) fail(where, fmt::format("a {} of {} parts", type.name, parts));
+  if (parts != type.form->parts || !type.form->prefix.empty())
+    fail(where, fmt::format("a {} of {} parts", type.name, parts));
   return e;
 }
 

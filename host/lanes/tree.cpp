@@ -61,6 +61,7 @@ bool is_own_pointer(const Variable* v) { return v->type.is_own_pointer() && !v->
 
 bool is_by_hand(const Type& type) {
   if (type.is(Type::Kind::array)) return is_by_hand(*type.of);
+  if (type.is(Type::Kind::vector)) return !type.form->prefix.empty();
   return type.is(Type::Kind::structure) && type.structure->by_hand;
 }
 

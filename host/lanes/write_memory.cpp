@@ -30,7 +30,7 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
     return fmt::format("real{}({})", e.type.form->parts, all);
   }
   const Type::Kind part = e.type.is(Type::Kind::vector) ? e.type.part : e.type.kind;
-  if (e.type.is(Type::Kind::vector) && e.type.form->parts == 0)
+  if (e.type.is(Type::Kind::vector) && !e.type.form->prefix.empty())
     fail(e.place, fmt::format("a {} is in no table", e.type.name));
   int offset = 4 * extra, stride = 0;
   std::string table, index;

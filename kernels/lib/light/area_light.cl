@@ -4,7 +4,7 @@
 #define SUNDOG_LIB_AREA_LIGHT_CL
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
-#include "lib/light/light_sample.cl"
+#include "plain/light/light_sample.cl"
 
 // A rectangle that is seen under less, in steradians, is sampled by area: the difference of angles has few
 // digits left.

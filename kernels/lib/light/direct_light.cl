@@ -79,7 +79,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
                                      : sample_area_light(light, s->p, u_x, u_y);
     const MASK facing = lanes & MASK_OF(dot3(s->ns, sample.wi) > 0.0f);
     if (!any_lane(facing)) continue;
-    const REAL weight = light_weight(&sample) / (float)way->rays;
+    const REAL weight = light_weight(&sample, facing) / (float)way->rays;
     const REAL3 possible =
         multiply3(scale3(sample.radiance, weight), bsdf_eval(scene, bsdf, wo, sample.wi, facing));
     MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);

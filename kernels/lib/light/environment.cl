@@ -3,8 +3,8 @@
 #define SUNDOG_LIB_ENVIRONMENT_CL
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
-#include "lib/light/light_sample.cl"
 #include "lib/path/camera.cl"
+#include "plain/light/light_sample.cl"
 
 // Where directions lie in the picture: shares of its width and, from the top, of its height.
 static inline void environment_place(__global const Environment* e, REAL3 d, REAL* x, REAL* y) {

@@ -4,8 +4,8 @@
 #include "lib/core/tables.h"
 #include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
-#include "lib/light/light_sample.cl"
 #include "lib/path/scene_ray.cl"
+#include "plain/light/light_sample.cl"
 
 // The way from the points p to a light without extent.
 static inline LightSamples way_to_lamp(__global const Light* light, REAL3 p) {
