@@ -66,7 +66,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   work->at.sample -= begun.lanes;
   work->left += begun.lanes;
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
-  join_rays(rays, &first, begun.lanes);
+  *rays = select_SceneRay(*rays, first, begun.lanes);
   *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);
   return begun.lanes;
 }

@@ -15,9 +15,17 @@ float real_exp(float a);
 float real_log(float a);
 float nonzero(float a);  // to divide by
 
+float real_rsqrt(float a);
+float3 safe_unit3(float3 a);
+
 // Directions about an axis: at a cosine and a sine, or a cosine alone; `turn`: a part of a circle.
 float3 direction_at(float3 axis, float cosine, float sine, float turn);
 float3 direction_about(float3 axis, float cosine, float turn);
+float real_acos(float x);
+void sincos_of_turn(float turn, float* sine, float* cosine);
+void place_in_disk(float u_x, float u_y, float* x, float* y);
+
+CONSTANT int MAX_CROSSINGS;
 
 // Counts a ray of each path that is here. A ray also counts for its path's pixel.
 CALLED(count_lanes) void count(UNIFORM u32* counts, UNIFORM u32 which, HERE);

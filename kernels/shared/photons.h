@@ -47,7 +47,6 @@ typedef struct PhotonMap {
 SUNDOG_SHARED_SIZE(PhotonMap, 32)
 
 #define NO_PHOTON 0xffffffffu  // the cell of a photon that has not landed
-#define NOT_DIMMED (-1)        // no light: see plain/pathtracer/photon.cl
 
 // 32 bytes: what one launch makes: photons [first, last) of the map `map`, which sends out `count`.
 typedef struct PhotonLaunch {

@@ -9,6 +9,7 @@
 #include "lib/pathtracer/numbers.cl"
 #include "lib/pathtracer/photon_cells.cl"
 
+#define NOT_DIMMED (-1)
 #define OFF_LIGHT 0x1p-17f  // how far photons start off a light's surface, of its place's greatest coordinate
 
 // Photons as they start.

@@ -6,5 +6,5 @@
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/photon_search.cl"
 #include "lib/pathtracer/sampled_spectrum.cl"
-#include "lib/shade/wide_lobes.cl"
+#include "lib/shade/bsdf_sample.cl"
 #endif

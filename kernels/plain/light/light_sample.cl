@@ -1,6 +1,8 @@
 // A way to a light, as every kind of light gives it.
 #include "plain/core.h"
 
+CONSTANT float SHORT_OF_LIGHT;
+
 typedef struct LightSample {
   float3 wi;        // unit, from the surface to the light
   float3 radiance;  // before shadowing; of a delta light the irradiance, over pi, on a surface that faces it

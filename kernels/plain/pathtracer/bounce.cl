@@ -59,7 +59,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     path->pdf = sample.specular ? 0.0f : sample.pdf;
     path->from = at->s.p;
     if (HAS_SCATTERING) path->scattered.is = false;
-    note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
+    if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }
   path->straight = path->straight && passes && lobes->split.eta == 1.0f;
   bool going = free;

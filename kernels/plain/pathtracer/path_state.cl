@@ -53,14 +53,13 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
 
 // The path leaves a surface, perhaps one that has gathered photons. `narrow`: the part of its weight by
 // narrow lobes.
+HAVING(HAS_CAUSTICS)
 static inline void note_gathered(PathState* path, bool specular, float3 narrow) {
-  if (HAS_CAUSTICS) {
-    if (!specular) {
-      path->gathered = GATHERED_HERE;
-      path->narrow = narrow;
-    } else if (path->gathered != GATHERED_NOTHING) {
-      path->gathered = GATHERED_BEFORE;
-    }
+  if (!specular) {
+    path->gathered = GATHERED_HERE;
+    path->narrow = narrow;
+  } else if (path->gathered != GATHERED_NOTHING) {
+    path->gathered = GATHERED_BEFORE;
   }
 }
 static inline float3 left_by_photons(const PathState* path, float3 light) {

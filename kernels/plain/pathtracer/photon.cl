@@ -2,11 +2,11 @@
 // mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others.
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
-#include "shared/photons.h"
+
+CONSTANT int NOT_DIMMED;
 
 BsdfSample sample_perfect_lobes(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float u_term, HERE);
 float scattered_share(const LobeSet* lobes);
-LightSample way_to_lamp(UNIFORM __global const Light* light, float3 p);
 
 typedef struct Photon {
   PathState path;  // throughput is the flux; depth 1 + what has sent the photon on
