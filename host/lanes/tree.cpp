@@ -79,16 +79,7 @@ bool joins(const std::string& sign) { return sign == "&&" || sign == "||"; }
 
 ExpressionPtr copy_of(const Expression& e) {
   auto copy = std::make_unique<Expression>();
-  copy->kind = e.kind;
-  copy->type = e.type;
-  copy->text = e.text;
-  copy->digits = e.digits;
-  copy->arrow = e.arrow;
-  copy->postfix = e.postfix;
-  copy->implicit = e.implicit;
-  copy->variable = e.variable;
-  copy->function = e.function;
-  copy->place = e.place;
+  static_cast<Node&>(*copy) = e;
   for (const ExpressionPtr& part : e.of) copy->of.push_back(copy_of(*part));
   return copy;
 }

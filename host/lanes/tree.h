@@ -67,7 +67,7 @@ struct Variable {
 
 struct Function;
 
-struct Expression {
+struct Node {
   enum class Kind {
     number,     // text
     constant,   // text: a name that the device's compiler knows
@@ -91,8 +91,10 @@ struct Expression {
   bool arrow = false, postfix = false, implicit = false;
   const Variable* variable = nullptr;
   const Function* function = nullptr;
-  std::vector<std::unique_ptr<Expression>> of;
   Place place;
+};
+struct Expression : Node {
+  std::vector<std::unique_ptr<Expression>> of;
 };
 using ExpressionPtr = std::unique_ptr<Expression>;
 
