@@ -43,6 +43,17 @@ class Text {
     text += std::string(2 * static_cast<std::size_t>(line.depth), ' ') + line.text + "\n";
     ++number_;
   }
+  void add(std::string text) { add({0, std::move(text), {}}); }
+  /// Lines that a program may have from several plain files.
+  void add_once(const std::string& name, const std::string& feature, const std::vector<Line>& all) {
+    const std::string guard = "MADE_" + name;
+    add("#ifndef " + guard);
+    add("#define " + guard);
+    if (!feature.empty()) add("#if " + feature);
+    for (const Line& line : all) add(line);
+    if (!feature.empty()) add("#endif");
+    add("#endif");
+  }
   std::string text;
 
  private:
@@ -57,16 +68,12 @@ bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
 std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) {
   Made made(path, read);
-  struct Written {
-    std::string feature;
-    std::vector<Line> lines;
-  };
-  std::vector<Written> functions;
+  std::vector<std::vector<Line>> functions;
   Writer::Structures used;
   // Writing may ask for structures alone: what is called is known.
   for (Specialisation* s : std::vector(made.specialisations.done())) {
     Writer writer(made.specialisations, *s);
-    functions.push_back({s->function.feature, writer.function()});
+    functions.push_back(writer.function());
     used.insert(writer.structures().begin(), writer.structures().end());
   }
   Text out(lines);
@@ -77,21 +84,19 @@ std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) 
     used.insert(writer.structures().begin(), writer.structures().end());
     for (const Structure& s : made.program.structures) {
       const bool plain = used.contains({&s, false}), lanes = used.contains({&s, true});
-      std::vector<std::string> lines_of;
-      const auto append = [&](const std::vector<std::string>& more) {
-        lines_of.insert(lines_of.end(), more.begin(), more.end());
+      const auto append = [&](const std::string& name, const std::vector<std::string>& text) {
+        std::vector<Line> all;
+        for (const std::string& line : text) all.push_back({0, line, s.place});
+        out.add_once(name, "", all);
       };
-      if (plain) append(writer.structure(s, false));
-      if (lanes) append(writer.structure(s, true));
-      if (plain && lanes) append(writer.spread_structure(s));
-      for (const std::string& line : lines_of) out.add({0, line, s.place});
+      if (plain) append(s.name, writer.structure(s, false));
+      if (lanes) append(s.lanes, writer.structure(s, true));
+      if (plain && lanes) append("all_" + s.name, writer.spread_structure(s));
     }
   }
-  for (const Written& function : functions) {
-    out.text += "\n";
-    if (!function.feature.empty()) out.add({0, "#if " + function.feature, {}});
-    for (const Line& line : function.lines) out.add(line);
-    if (!function.feature.empty()) out.add({0, "#endif", {}});
+  for (std::size_t i = 0; i < functions.size(); ++i) {
+    const Specialisation& s = *made.specialisations.done()[i];
+    out.add_once(s.name, s.function.feature, functions[i]);
   }
   return out.text;
 }

@@ -8,8 +8,8 @@
 //   T f(..., HERE, ...)       f takes the mask of the lanes that are there, in that place; calls leave it out
 //   CALLED(name) T f(...)     its name there; UNIFORM T f(...): it gives one value for all lanes
 //   typedef struct LANES(Rays, join_rays) {...} Ray;  its lane form, and what joins lanes of two
-//   LANE_VECTOR(Spectrum, Spectra, spectrum)             a vector: spectrum_add, spectrum_scale,
-//   spectrum_select, ...
+//   LANE_VECTOR(Spectrum, Spectra, spectrum, 4)          a vector of x to w: spectrum_add, spectrum_scale,
+//   spectrum_select, ...; the lane form of other structures is made: of a PathState it is PathStates
 #pragma once
 #include "lanes/preprocess.h"
 #include "lanes/tree.h"

@@ -155,6 +155,8 @@ void Parser::vector_definition() {
   form.lanes = name("its lane form");
   want(",");
   form.prefix = name("its functions");
+  want(",");
+  form.parts = std::stoi(number()->digits);
   want(")");
   want(";");
   Type t;
@@ -180,7 +182,7 @@ void Parser::enumeration() {
 const Structure* Parser::made_structure(std::string named, Structure&& s) {
   s.name = named;
   s.shared = !is_plain_(*s.place.file);
-  if (s.lanes.empty()) s.lanes = named + "Lanes";
+  if (s.lanes.empty()) s.lanes = named + "s";
   if (types_.contains(named)) fail(s.place, fmt::format("there is a type '{}' already", named));
   const Structure* kept = &out_.structures.emplace_back(std::move(s));
   Type t;

@@ -34,6 +34,13 @@ ExpressionPtr Parser::made(Kind kind, Type type, const Place& where) const {
   return e;
 }
 
+/// Of a vector's parts.
+const Type& Parser::part_type(const Type& vector) const {
+  return types_.at(vector.part == Type::Kind::real      ? "float"
+                   : vector.part == Type::Kind::integer ? "int"
+                                                        : "uint");
+}
+
 /// `e` as a value of `type`, by the conversions that C makes by itself.
 ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
   const Type& own = e->type;
@@ -53,12 +60,7 @@ ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
       !(own.is(Type::Kind::array) && type.is(Type::Kind::pointer)))
     fail(e->place, fmt::format("wanted {}, found {}", name_of(type), name_of(own)));
   if (own.is(Type::Kind::array)) return e;
-  if (spread) {
-    Type part;
-    part.kind = type.part;
-    part.name = type.part == Type::Kind::real ? "float" : type.part == Type::Kind::integer ? "int" : "uint";
-    e = converted(std::move(e), part);
-  }
+  if (spread) e = converted(std::move(e), part_type(type));
   ExpressionPtr cast = made(Kind::cast, type, e->place);
   cast->implicit = true;
   cast->of.push_back(std::move(e));
@@ -230,16 +232,14 @@ ExpressionPtr Parser::cast_or_brackets() {
 ExpressionPtr Parser::vector_of(Type type, const Place& where) {
   ExpressionPtr e = made(Kind::vector, type, where);
   int parts = 0;
-  Type part = types_.at(type.part == Type::Kind::real      ? "float"
-                        : type.part == Type::Kind::integer ? "int"
-                                                           : "uint");
   for (ExpressionPtr& given : arguments()) {
     parts += given->type.is(Type::Kind::vector) ? given->type.form->parts : 1;
     e->of.push_back(given->type.is(Type::Kind::vector) ? std::move(given)
-                                                       : converted(std::move(given), part));
+                                                       : converted(std::move(given), part_type(type)));
   }
   if (parts == 1) return converted(std::move(e->of[0]), type);
-  if (parts != type.form->parts) fail(where, fmt::format("a {} of {} parts", type.name, parts));
+  if (parts != type.form->parts || !type.form->prefix.empty())
+    fail(where, fmt::format("a {} of {} parts", type.name, parts));
   return e;
 }
 

@@ -57,10 +57,8 @@ ExpressionPtr Parser::part_of(ExpressionPtr of, bool arrow) {
           return part < static_cast<std::size_t>(whole.form->parts);
         });
     if (!known) fail(where, fmt::format("a {} has no '{}'", whole.name, wanted));
-    const std::string part = whole.part == Type::Kind::real      ? "float"
-                             : whole.part == Type::Kind::integer ? "int"
-                                                                 : "uint";
-    const Type type = types_.at(wanted.size() == 1 ? part : part + std::to_string(wanted.size()));
+    const Type& part = part_type(whole);
+    const Type type = wanted.size() == 1 ? part : types_.at(part.name + std::to_string(wanted.size()));
     ExpressionPtr e = made(Kind::component, type, where);
     e->text = wanted;
     e->of.push_back(std::move(of));
@@ -151,9 +149,7 @@ ExpressionPtr Parser::call(const Token& called) {
   if (found == out_.function_of.end()) return built_in(called, std::move(given));
   const Function& f = *found->second;
   if (&f == function_) fail(called.place, fmt::format("'{}' calls itself", f.name));
-  std::vector<const Variable*> wanted;
-  for (const Variable* p : f.parameters)
-    if (!p->here) wanted.push_back(p);
+  const std::vector<const Variable*> wanted = taken(f);
   if (given.size() != wanted.size())
     fail(called.place, fmt::format("'{}' takes {} arguments, found {}", f.name, wanted.size(), given.size()));
   ExpressionPtr e = made(Kind::call, f.result, called.place);

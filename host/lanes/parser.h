@@ -75,7 +75,7 @@ class Parser {
   ExpressionPtr truth(ExpressionPtr e) const;
   std::vector<ExpressionPtr> arguments();
 
-  Type vector_type(const std::string& named) const;
+  const Type& part_type(const Type& vector) const;
 
   const Tokens& tokens_;
   const std::function<bool(const std::string&)>& is_plain_;

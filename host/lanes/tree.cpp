@@ -61,6 +61,7 @@ bool is_own_pointer(const Variable* v) { return v->type.is_own_pointer() && !v->
 
 bool is_by_hand(const Type& type) {
   if (type.is(Type::Kind::array)) return is_by_hand(*type.of);
+  if (type.is(Type::Kind::vector)) return !type.form->prefix.empty();
   return type.is(Type::Kind::structure) && type.structure->by_hand;
 }
 
@@ -78,16 +79,7 @@ bool joins(const std::string& sign) { return sign == "&&" || sign == "||"; }
 
 ExpressionPtr copy_of(const Expression& e) {
   auto copy = std::make_unique<Expression>();
-  copy->kind = e.kind;
-  copy->type = e.type;
-  copy->text = e.text;
-  copy->digits = e.digits;
-  copy->arrow = e.arrow;
-  copy->postfix = e.postfix;
-  copy->implicit = e.implicit;
-  copy->variable = e.variable;
-  copy->function = e.function;
-  copy->place = e.place;
+  static_cast<Node&>(*copy) = e;
   for (const ExpressionPtr& part : e.of) copy->of.push_back(copy_of(*part));
   return copy;
 }

@@ -12,10 +12,11 @@ namespace sundog::spmd {
 struct Structure;
 
 /// A vector of the language, whose lane form has functions for what operators do: float3 is a REAL3, with
-/// add3, scale3, ...; an interface declares others: Spectrum is a SampledSpectrum, with spectrum_add, ...
+/// add3, scale3, ...; an interface declares others, which are of lanes always: Spectrum is a SampledSpectrum,
+/// with spectrum_add, ...
 struct VectorForm {
   std::string name, lanes, prefix;  // an empty prefix: the functions end in the number of parts
-  int parts = 0;                    // 0: none that can be named
+  int parts = 0;
   std::string function(const std::string& operation) const;
 };
 
@@ -66,7 +67,7 @@ struct Variable {
 
 struct Function;
 
-struct Expression {
+struct Node {
   enum class Kind {
     number,     // text
     constant,   // text: a name known to the device's compiler
@@ -90,8 +91,10 @@ struct Expression {
   bool arrow = false, postfix = false, implicit = false;
   const Variable* variable = nullptr;
   const Function* function = nullptr;
-  std::vector<std::unique_ptr<Expression>> of;
   Place place;
+};
+struct Expression : Node {
+  std::vector<std::unique_ptr<Expression>> of;
 };
 using ExpressionPtr = std::unique_ptr<Expression>;
 

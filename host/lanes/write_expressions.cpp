@@ -51,7 +51,7 @@ std::string Writer::type_text(const Type& type, bool varying) {
     return type.structure->lanes;
   }
   if (type.is(T::structure) && !type.structure->shared) structures_.emplace(type.structure, false);
-  if (type.is(T::vector) && (type.form->parts == 0 || varying)) {
+  if (type.is(T::vector) && varying) {
     if (type.form->lanes.empty()) fail(place_, fmt::format("a {} has no lanes", type.name));
     return type.form->lanes;
   }
@@ -72,17 +72,12 @@ bool Writer::varies(const Expression& e) {
 std::string Writer::value(const Expression& e) { return varies(e) ? varying(e) : plain(e); }
 
 std::string Writer::lanes(const Expression& e) {
-  if (varies(e) || e.kind == Kind::list) return varying(e);
-  const Expression* number = spread_number(e);
-  if (number && e.type.form->parts == 0)
-    return fmt::format("{}({})", e.type.form->function("all"), plain(*number));
-  return spread(plain(e), e);
+  return varies(e) || e.kind == Kind::list ? varying(e) : spread(plain(e), e);
 }
 
 std::string Writer::spread(const std::string& text, const Expression& e) {
   switch (e.type.kind) {
     case Type::Kind::vector:
-      if (e.type.form->parts == 0) return text;
       return fmt::format("{}({})", e.type.form->function("all"), text);
     case Type::Kind::boolean:
       if (text == "true") return "ALL_LANES";
@@ -131,8 +126,6 @@ std::string Writer::plain(const Expression& e) {
     case Kind::choose:
       return fmt::format("({} ? {} : {})", part(0), part(1), part(2));
     case Kind::cast: {
-      if (e.type.is(Type::Kind::vector) && e.type.form->parts == 0)
-        return fmt::format("{}({})", e.type.form->function("all"), part(0));
       if (e.implicit && e.of[0]->kind == Kind::number)
         if (const std::string number = number_of(part(0), e.type); !number.empty()) return number;
       if (e.implicit && e.type.is(Type::Kind::boolean)) return part(0);
@@ -255,7 +248,8 @@ std::string Writer::varying_cast(const Expression& e) {
   const Expression& of = *e.of[0];
   const Type &to = e.type, &from = of.type;
   if (to.is(T::vector)) {
-    if (to.form->parts == 0) fail(e.place, fmt::format("a {} of one number that varies", to.name));
+    if (!varies(of)) return fmt::format("{}({})", to.form->function("all"), plain(of));
+    if (!to.form->prefix.empty()) fail(e.place, fmt::format("a {} of one number that varies", to.name));
     const std::string part = simple(of);
     std::string all = part;
     for (int i = 1; i < to.form->parts; ++i) all += ", " + part;

@@ -22,6 +22,11 @@ bool Writer::is_gathered(const Expression& e) {
   }
 }
 
+std::string Writer::index_of(const Expression& e) {
+  const std::string text = lanes(e);
+  return e.type.is(Type::Kind::natural) ? fmt::format("UINTS_TO_MASK({})", text) : text;
+}
+
 /// table[index].member.x: words at a place of each lane. `extra`: words behind it; `whole`: all parts.
 std::string Writer::gather(const Expression& e, int extra, bool whole) {
   if (e.type.is(Type::Kind::vector) && whole) {
@@ -30,7 +35,7 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
     return fmt::format("real{}({})", e.type.form->parts, all);
   }
   const Type::Kind part = e.type.is(Type::Kind::vector) ? e.type.part : e.type.kind;
-  if (e.type.is(Type::Kind::vector) && e.type.form->parts == 0)
+  if (e.type.is(Type::Kind::vector) && !e.type.form->prefix.empty())
     fail(e.place, fmt::format("a {} is in no table", e.type.name));
   int offset = 4 * extra, stride = 0;
   std::string table, index;
@@ -47,8 +52,7 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
       }
     } else if (at->kind == Kind::index && base.type.is_table()) {
       std::tie(table, index) = table_and_index(base);
-      std::string more = lanes(*at->of[1]);
-      if (at->of[1]->type.is(Type::Kind::natural)) more = fmt::format("UINTS_TO_MASK({})", more);
+      const std::string more = index_of(*at->of[1]);
       index = index.empty() ? more : fmt::format("({} + {})", index, more);
       stride = size_of(*base.type.of);
     } else if (at->kind == Kind::index && at->of[1]->kind == Kind::number) {
@@ -76,10 +80,6 @@ std::string Writer::gather(const Expression& e, int extra, bool whole) {
 /// A pointer to a table: what is alike in all lanes, and an index of each lane, which may be empty.
 std::pair<std::string, std::string> Writer::table_and_index(const Expression& e) {
   if (!varies(e)) return {plain(e), ""};
-  const auto index_of = [&](const Expression& i) {
-    const std::string text = lanes(i);
-    return i.type.is(Type::Kind::natural) ? fmt::format("UINTS_TO_MASK({})", text) : text;
-  };
   if (e.kind == Kind::variable)
     if (const auto kept = tables_.find(e.variable); kept != tables_.end()) return {kept->second, e.text};
   if (e.kind == Kind::binary && e.text == "+" && !varies(*e.of[0]))

@@ -70,6 +70,17 @@ double Writer::weight(const Statement& s) {
   return all;
 }
 
+/// Whether it pays to ask if any lane is left before what stands from `from` on.
+bool Writer::is_long(const std::vector<const Statement*>& all, std::size_t from) {
+  double rest = 0;
+  bool loops = false;
+  for (std::size_t i = from; i < all.size(); ++i) {
+    rest += weight(*all[i]);
+    loops |= has_loop(*all[i]);
+  }
+  return rest > long_rest || loops;
+}
+
 std::vector<Line> Writer::function() {
   const Function& f = s_.function;
   const bool gives = !f.result.is(Type::Kind::nothing);
@@ -93,14 +104,7 @@ std::vector<Line> Writer::function() {
   for (std::size_t i = 0; i < body.size(); ++i) {
     statement(*body[i]);
     if (!s_.divergent_return || i + 1 == body.size() || !exits_of(*body[i]).gives) continue;
-    double rest = 0;
-    bool loops = false;
-    for (std::size_t k = i + 1; k < body.size(); ++k) {
-      rest += weight(*body[k]);
-      loops |= has_loop(*body[k]);
-    }
-    if (rest > long_rest || loops)
-      line(fmt::format("if (!any_lane(m_)) return{};", gives ? " " + result : ""));
+    if (is_long(body, i + 1)) line(fmt::format("if (!any_lane(m_)) return{};", gives ? " " + result : ""));
   }
   if (keeps && (body.empty() || body.back()->kind != Statement::Kind::give))
     line(fmt::format("return {};", result));
@@ -146,14 +150,7 @@ void Writer::block(const std::vector<const Statement*>& all, bool in_loop) {
     const bool leaves = in_loop && divergent_loop() && divergent_loop()->node == all_loops_.back().node &&
                         all[i]->kind == Statement::Kind::branch && exits_of(*all[i]).any() &&
                         all[i]->feature.empty() && varies(*all[i]->expressions[0]);
-    if (!leaves) continue;
-    double rest = 0;
-    bool loops = false;
-    for (std::size_t k = i + 1; k < all.size(); ++k) {
-      rest += weight(*all[k]);
-      loops |= has_loop(*all[k]);
-    }
-    if (!(rest > long_rest) && !loops) continue;
+    if (!leaves || !is_long(all, i + 1)) continue;
     const Loop& l = loops_.back();
     line(fmt::format("if (!any_lane({})) {}", l.going, l.going == l.lanes ? "break;" : "continue;"));
     if (i == 0 && l.going == l.lanes) checked_.insert(l.lanes);  // the loop itself need not ask

@@ -32,11 +32,14 @@ std::vector<std::string> Writer::structure(const Structure& s, bool in_lanes) {
   for (const Member& m : s.members) {
     const Type& type = is_array(m) ? *m.type.of : m.type;
     const std::string at = m.name + (is_array(m) ? "[i]" : "");
-    const std::string value = m.uniform ? "b." + at : selected(type, "a." + at, "b." + at, "m", s.place);
-    with_feature(m, out,
-                 fmt::format("  {}r.{} = {};",
-                             is_array(m) ? fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length) : "",
-                             at, value));
+    const bool joins = is_by_hand(type) && type.is(Type::Kind::structure) && !type.structure->join.empty();
+    const std::string each = is_array(m) ? fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length) : "";
+    const std::string value = m.uniform ? "b." + at
+                              : joins   ? "a." + at
+                                        : selected(type, "a." + at, "b." + at, "m", s.place);
+    const std::string joined =
+        joins ? fmt::format(" {}{}(&r.{}, &b.{}, m);", each, type.structure->join, at, at) : "";
+    with_feature(m, out, fmt::format("  {}r.{} = {};{}", each, at, value, joined));
   }
   out.emplace_back("  return r;");
   out.emplace_back("}");

@@ -64,6 +64,7 @@ class Writer {
 
   // Memory and calls (write_memory.cpp).
   bool is_gathered(const Expression& e);
+  std::string index_of(const Expression& e);
   std::string gather(const Expression& e, int extra = 0, bool whole = true);
   std::pair<std::string, std::string> table_and_index(const Expression& e);
   std::string call(const Expression& e);
@@ -89,7 +90,7 @@ class Writer {
   void leave(const Statement& s);
   void give(const Statement& s);
   void each_alike(const Statement& s);
-  void end_early(const std::vector<const Statement*>& rest, const Statement& behind);
+  bool is_long(const std::vector<const Statement*>& all, std::size_t from);
   bool comes_again() const;
   const Loop* divergent_loop() const;
   std::string alive() const;

@@ -9,6 +9,7 @@
 #include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/steps.cl"
+#include "plain/pathtracer/bounce.cl"
 #include "shared/launch.h"
 
 #define NO_PLACE (-1)
@@ -65,9 +66,8 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   work->at.sample -= begun.lanes;
   work->left += begun.lanes;
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
-  const PathStates fresh = start_paths(scene, &begun.at, begun.lanes);
-  join_rays(rays, &first, begun.lanes);
-  join_paths(paths, &fresh, begun.lanes);
+  *rays = select_SceneRay(*rays, first, begun.lanes);
+  *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);
   return begun.lanes;
 }
 
@@ -81,7 +81,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
   LaneWork work = begin_work(scene, first, end);
   const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  PathStates paths = start_paths(scene, &work.at, NO_LANES);
+  PathStates paths = start_path(scene, &work.at, NO_LANES);
   SceneRays rays = scene_rays(&none, around);
   MASK lanes = NO_LANES;
   for (;;) {

@@ -1,6 +1,8 @@
 // One stage: photons from the lights to where they land, before the samples that look for them.
 #include "lib/core/counters.cl"
-#include "lib/pathtracer/photon_steps.cl"
+#include "lib/pathtracer/photon_start.cl"
+#include "lib/pathtracer/steps.cl"
+#include "plain/pathtracer/photon.cl"
 
 // Photon `first` and those after it, one a lane.
 NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict light_media,
@@ -21,7 +23,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
     cells[first - launch->first + lowest_bit(bits)] = NO_PHOTON;
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
-  Photons photons = begun_photons(scene, &starts, &at);
+  Photons photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
   Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
   begun.o = starts.o;
   begun.d = starts.d;
@@ -33,11 +35,11 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     const u32 i = lowest_bit(bits), light = (u32)MASK_LANE(starts.light, i);
     set_media(&rays, i, (MediaStack)light_media[2u * light + 1u] << 32 | light_media[2u * light]);
   }
-  Landings landings;
+  Landings landings = {0};
   for (lanes = starts.lanes; any_lane(lanes);) {
     start_marching(counts);
-    lanes = step_photons(scene, &photons, &rays, lanes, &landings, counts);
-    for (u32 bits = lane_bits(landings.lanes); bits; bits &= bits - 1u) {
+    const MASK going = lanes & step_photon(scene, &photons, &rays, &landings, counts, lanes);
+    for (u32 bits = lane_bits(lanes & landings.is); bits; bits &= bits - 1u) {
       const u32 i = lowest_bit(bits), to = first - launch->first + i;
       const float3 p = get3(&landings.p, i), flux = get3(&landings.flux, i);
       const float2 wi = pack_direction(get3(&landings.wi, i));
@@ -48,6 +50,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
       if (zero.x + zero.y + zero.z == 0.0f)
         cells[to] = photon_cell(photon_cube(p, launch->inverse_edge), slice) & (NO_PHOTON >> 1);
     }
+    lanes = going;
   }
 }
 

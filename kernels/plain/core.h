@@ -1,5 +1,7 @@
 // What plain kernels may call of lib/core. Vectors have operators; +, * and the others are add3, scale3, ...
 #include "lib/core/tables.h"
+#include "shared/sampler.h"
+#include "shared/scene.h"
 
 CALLED(dot3) float dot(float3 a, float3 b);
 CALLED(greatest3) float greatest(float3 a);
@@ -7,7 +9,37 @@ CALLED(length3) float length(float3 a);
 CALLED(along3) float3 along(float3 a, float s, float3 b);  // a + s b
 float real_min(float a, float b);
 float real_max(float a, float b);
+float real_clamp(float a, float low, float high);
+float real_sqrt(float a);
+float real_exp(float a);
+float real_log(float a);
+float nonzero(float a);  // to divide by
+
+float real_rsqrt(float a);
+float3 safe_unit3(float3 a);
+
+// Directions about an axis: at a cosine and a sine, or a cosine alone; `turn`: a part of a circle.
+float3 direction_at(float3 axis, float cosine, float sine, float turn);
+float3 direction_about(float3 axis, float cosine, float turn);
+float real_acos(float x);
+void sincos_of_turn(float turn, float* sine, float* cosine);
+void place_in_disk(float u_x, float u_y, float* x, float* y);
+
+CONSTANT int MAX_CROSSINGS;
 
 // Counts a ray of each path that is here. A ray also counts for its path's pixel.
 CALLED(count_lanes) void count(UNIFORM u32* counts, UNIFORM u32 which, HERE);
 CALLED(note_own_rays) void note_ray(HERE, UNIFORM u32* counts);
+
+// Random numbers of a pixel's sample: four of the dimensions from `dimension` on, or two of them.
+typedef struct LANES(FourNumbers) {
+  float x, y, z, w;
+} Numbers;
+typedef struct LANES(LaneSamples, join_samples) {
+  int x, y, sample;
+} SampleAt;
+CALLED(wanted_lanes)
+Numbers numbers_at(const SampleAt* at, int dimension, UNIFORM bool first, UNIFORM bool later);
+
+// A column of the table of spectra between two rows.
+float spectrum_at(UNIFORM const Scene* scene, UNIFORM u32 first, float row, HERE);

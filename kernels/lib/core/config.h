@@ -93,6 +93,6 @@
   (HAS_AREA_LIGHTS && !HAS_SDF && !HAS_OBJECT_MOTION && !HAS_RELIEF && !HAS_PARALLAX && !HAS_LAYERS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
-#define RAYS_CROSS (HAS_MEDIA || HAS_SHADOW_FILTERS)
+#define HAS_CROSSINGS (HAS_MEDIA || HAS_SHADOW_FILTERS)
 
 #endif

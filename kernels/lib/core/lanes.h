@@ -223,6 +223,22 @@ static inline void set3(REAL3* a, u32 i, float3 value) {
   REAL_LANE(a->z, i) = value.z;
 }
 
+typedef struct REAL4 {
+  REAL x, y, z, w;
+} REAL4;
+
+static inline REAL4 real4(REAL x, REAL y, REAL z, REAL w) {
+  const REAL4 r = {x, y, z, w};
+  return r;
+}
+static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
+  return real4(select(a.x, b.x, m), select(a.y, b.y, m), select(a.z, b.z, m), select(a.w, b.w, m));
+}
+static inline REAL4 all4(float4 a) { return real4((REAL)(a.x), (REAL)(a.y), (REAL)(a.z), (REAL)(a.w)); }
+static inline REAL4 add4(REAL4 a, REAL4 b) { return real4(a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w); }
+static inline REAL4 multiply4(REAL4 a, REAL4 b) { return real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w); }
+static inline REAL4 scale4(REAL4 a, REAL s) { return real4(a.x * s, a.y * s, a.z * s, a.w * s); }
+
 // One instruction each, which fmin and fmax are not: a NaN in a gives b.
 static inline REAL real_min(REAL a, REAL b) { return select(b, a, MASK_OF(a < b)); }
 static inline REAL real_max(REAL a, REAL b) { return select(b, a, MASK_OF(a > b)); }

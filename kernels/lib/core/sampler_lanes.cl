@@ -78,6 +78,12 @@ typedef struct LaneSamples {
   u32 seed;
 } LaneSamples;
 
+static inline void join_samples(LaneSamples* at, const LaneSamples* other, MASK lanes) {
+  at->x = select(at->x, other->x, lanes);
+  at->y = select(at->y, other->y, lanes);
+  at->sample = select(at->sample, other->sample, lanes);
+}
+
 // Two numbers in [0, 1) for each lane, of the dimensions from `own` on, an even number, by the samplers whose
 // dimensions have no more in common.
 static inline void unlinked_pair(const LaneSamples* at, LANE_U32 own, REAL* u, REAL* v) {

@@ -63,6 +63,12 @@ NEVER_INLINE MASK choose_lights(const Scene* scene, REAL3 p, REAL u, MASK lanes,
   }
   return index;
 }
+static inline REAL light_probabilities(const Scene* scene, u32 leaf, REAL3 p, MASK lanes) {
+  REAL probability = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
+    REAL_LANE(probability, lowest_bit(bits)) = light_probability(scene, leaf, get3(&p, lowest_bit(bits)));
+  return probability;
+}
 #endif
 
 #endif

@@ -69,17 +69,17 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
   begin_numbers(tile, paths, way->light, BOUNCE_LIGHT_POINT, lanes, &numbers);
   SphericalRectangles rectangle;
   const bool flat = light->kind == LIGHT_RECTANGLE;
-  if (flat) rectangle = see_rectangle(light, s->p);
+  if (flat) rectangle = see_rectangle(light, s->p, lanes);
   const REAL3 o = along3(s->p, s->offset, s->ng);
   REAL3 sum = all3((float3)(0.0f));
   for (u32 ray = 0; ray < way->rays; ++ray) {
     REAL u_x, u_y;
     next_numbers(tile, ray, way->rays, &numbers, &u_x, &u_y);
-    const LightSamples sample = flat ? sample_seen_rectangle(light, &rectangle, s->p, u_x, u_y)
-                                     : sample_area_light(light, s->p, u_x, u_y);
+    const LightSamples sample = flat ? sample_seen_rectangle(light, &rectangle, s->p, u_x, u_y, lanes)
+                                     : sample_area_light(light, s->p, u_x, u_y, lanes);
     const MASK facing = lanes & MASK_OF(dot3(s->ns, sample.wi) > 0.0f);
     if (!any_lane(facing)) continue;
-    const REAL weight = light_weight(&sample) / (float)way->rays;
+    const REAL weight = light_weight(&sample, facing) / (float)way->rays;
     const REAL3 possible =
         multiply3(scale3(sample.radiance, weight), bsdf_eval(scene, bsdf, wo, sample.wi, facing));
     MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);

@@ -3,8 +3,8 @@
 #define SUNDOG_LIB_ENVIRONMENT_CL
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
-#include "lib/light/light_sample.cl"
 #include "lib/path/camera.cl"
+#include "plain/light/light_sample.cl"
 
 // Where directions lie in the picture: shares of its width and, from the top, of its height.
 static inline void environment_place(__global const Environment* e, REAL3 d, REAL* x, REAL* y) {
@@ -246,19 +246,6 @@ static inline float sun_pdf(__global const Light* sun, float chance) {
 static inline MASK in_sun(__global const Light* sun, REAL3 d) {
   const REAL3 chord = add3(d, all3(sun->direction.xyz));
   return MASK_OF(dot3(chord, chord) <= 2.0f * sun->direction.w);
-}
-
-// Directions to a sun, uniform in its disk in the sky.
-static inline LightSamples sample_sun(__global const Light* light, REAL u_x, REAL u_y) {
-  const float cap = fabs(light->direction.w);
-  const REAL drop = u_x * cap, sine2 = drop * (2.0f - drop);
-  LightSamples sample;
-  sample.wi = direction_at(all3(-light->direction.xyz), 1.0f - drop, real_sqrt(sine2), u_y);
-  sample.distance = (REAL)(INFINITY);
-  sample.pdf = (REAL)(sun_pdf(light, 1.0f));
-  sample.delta = NO_LANES;
-  sample.radiance = all3(light->color.xyz);
-  return sample;
 }
 
 // What lies behind everything: the environment where rays see it, with the density of choosing it, else the

@@ -76,7 +76,7 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
     light.pdf = select(light.pdf, one.pdf * chance, mine);
     if (rays_meet(scene, index)) *met |= mine;
   }
-  light.radiance = scale3(light.radiance, light_weight(&light) / (float)way->rays);
+  light.radiance = scale3(light.radiance, light_weight(&light, lanes) / (float)way->rays);
   return light;
 }
 #else
@@ -102,7 +102,7 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
   if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
   LightSamples light = sample_light(scene, way.light, p, u_x, u_y, lanes);
-  light.radiance = scale3(light.radiance, light_weight(&light) / (float)way.rays);
+  light.radiance = scale3(light.radiance, light_weight(&light, lanes) / (float)way.rays);
   return light;
 }
 

@@ -29,7 +29,7 @@ static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (T
 #else
 #define STACKED_BRANCH(REALS, MASKS)
 #endif
-#if RAYS_CROSS
+#if HAS_CROSSINGS
 #define STACKED_CROSSINGS(REALS, MASKS) MASKS(rays->crossings)
 #else
 #define STACKED_CROSSINGS(REALS, MASKS)
@@ -99,7 +99,7 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Wait
   paths->pixel = NO_LANES;
   rays->media_low = NO_LANES;
   rays->media_high = NO_LANES;
-  forget_glow(rays);
+  forget_glow(rays, ALL_LANES);
 #define READ_REALS(member) member = read_lanes(from), from += stride;
 #define READ_MASKS(member) member = AS_MASK(read_lanes(from)), from += stride;
   STACKED(READ_REALS, READ_MASKS)

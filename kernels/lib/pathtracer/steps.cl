@@ -1,12 +1,10 @@
-// One step of a batch of paths, a path a lane. Nothing waits: a path is its one ray and its PathStates.
+// What plain text of the path tracer uses (plain/pathtracer/interface.h).
 #ifndef SUNDOG_LIB_PATH_STEPS_CL
 #define SUNDOG_LIB_PATH_STEPS_CL
+#include "lib/light/shadow.cl"
+#include "lib/light/shadow_rays.cl"
 #include "lib/path/ray_counts.cl"
-#include "lib/pathtracer/gather_photons.cl"
-#include "lib/pathtracer/guides.cl"
-#include "lib/pathtracer/leave_surfaces.cl"
-#include "lib/pathtracer/met_light.cl"
-#include "lib/pathtracer/next_event.cl"
-#include "lib/pathtracer/scatter_media.cl"
-#include "plain/pathtracer/bounce.cl"
+#include "lib/pathtracer/photon_search.cl"
+#include "lib/pathtracer/sampled_spectrum.cl"
+#include "lib/shade/bsdf_sample.cl"
 #endif

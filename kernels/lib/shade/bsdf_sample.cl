@@ -114,7 +114,6 @@ static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo,
   lobes->layered = sum_of_shares(&lobes->layers);
 }
 static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at + lobes->layered; }
-static inline MASK matte_layers(const Lobes* lobes) { return MASK_OF(lobes->layers.matte > 0.0f); }
 static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                      REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {
   layer_scatter(scene, bsdf, &lobes->layers, wo, wi, lanes, value, chosen);
@@ -128,7 +127,6 @@ static inline void send_by_layers(const Scene* scene, const Bsdfs* bsdf, const L
 #else
 static inline void start_layers(const Scene* scene, const Bsdfs* bsdf, REAL3 wo, MASK lanes, Lobes* lobes) {}
 static inline REAL past_layers_of(const Lobes* lobes, REAL at) { return at; }
-static inline MASK matte_layers(const Lobes* lobes) { return NO_LANES; }
 static inline void add_layer_scatter(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,
                                      REAL3 wi, MASK lanes, REAL3* value, REAL* chosen) {}
 static inline void send_by_layers(const Scene* scene, const Bsdfs* bsdf, const Lobes* lobes, REAL3 wo,

@@ -5,20 +5,9 @@
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
-typedef struct REAL4 {
-  REAL x, y, z, w;
-} REAL4;
-
-static inline REAL4 real4(REAL x, REAL y, REAL z, REAL w) {
-  const REAL4 r = {x, y, z, w};
-  return r;
-}
 static inline REAL4 mix4(REAL4 a, REAL4 b, REAL t) {
   return real4(fma(t, b.x - a.x, a.x), fma(t, b.y - a.y, a.y), fma(t, b.z - a.z, a.z),
                fma(t, b.w - a.w, a.w));
-}
-static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
-  return real4(select(a.x, b.x, m), select(a.y, b.y, m), select(a.z, b.z, m), select(a.w, b.w, m));
 }
 
 #if TEXEL_FORMATS

@@ -113,9 +113,9 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   start_branch(paths, 1u, &state);
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
-  const MASK nothing = cut_away(&facets.bsdf, &split, lanes), free = nothing & may_cross(rays);
+  const MASK nothing = cut_away(&facets.bsdf, &split, lanes), free = nothing & may_cross(rays, lanes);
   const MASK bends = MASK_OF(split.eta != 1.0f);
-  cross_further(rays, free, &child);
+  cross_further(rays, &child, free);
   state.depth = select(paths->depth + 1, (paths->depth + 1) | TURNED, bends) + free;
   spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
   return nothing;

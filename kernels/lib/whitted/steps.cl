@@ -10,7 +10,7 @@
 
 // Light of the fields that glow along the rays.
 static inline REAL3 see_glow(const SceneRays* rays, const WaitingRays* paths) {
-  return HAS_GLOW ? multiply3(paths->throughput, emitted(rays)) : all3((float3)(0.0f));
+  return HAS_GLOW ? multiply3(paths->throughput, emitted(rays, ALL_LANES)) : all3((float3)(0.0f));
 }
 
 // The world's fog, for rays of `ended` that were not inside anything: what it adds, and what it takes from

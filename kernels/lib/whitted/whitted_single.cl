@@ -67,7 +67,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack,
                                  radiance, counts);
   add_to_pixels(seen, paths->pixel, fresh, radiance);
-  forget_glow(rays);
+  forget_glow(rays, ALL_LANES);
   if (!hit) return unseen;
   send_to_lights(scene, tile, rays, paths, &whole, light, hit, &met.hit, &at, stack, radiance, counts);
   return NO_LANES;

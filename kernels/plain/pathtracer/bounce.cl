@@ -1,9 +1,11 @@
 // One bounce of a path: its ray to the next interface, the light that it meets there, the light of one lamp
 // that the surface chooses, and the ray that continues.
-#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/gather_photons.cl"
+#include "plain/pathtracer/guides.cl"
+#include "plain/pathtracer/hero.cl"
+#include "plain/pathtracer/leave_surface.cl"
 #include "plain/pathtracer/met_light.cl"
-
-bool survives(UNIFORM const Scene* scene, PathState* path, int dimension, HERE);
+#include "plain/pathtracer/scatter_media.cl"
 
 // What a lamp that is chosen sends to the surface, times what that makes of it.
 static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
@@ -41,10 +43,10 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   const bool chooses = HAS_GUIDES || any(lobes->matte != lobes->all);  // matte surfaces have one lobe
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
   const float3 wo = -ray->d;
-  const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, u.z, u.x, u.y, &path->spread);
+  const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
   const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.ng, sample.wi) < 0.0f;
   path->throughput *= spectrum_of(&path->wavelengths, sample.weight);
-  if (some) part_wavelengths(scene, at, &lobes->split, path, sample.specular && !below);
+  if (HAS_DISPERSION && some) part_wavelengths(scene, at, &lobes->split, path, sample.specular && !below);
   if (HAS_RELIEF && !below && !sample.specular) path->throughput *= terminator(&at->s, sample.wi);
   if (HAS_MEDIA && below) {  // the radiance is spread, or comes together again
     const float square = lobes->split.eta * lobes->split.eta;
@@ -56,8 +58,8 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   if (!(passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0)) {
     path->pdf = sample.specular ? 0.0f : sample.pdf;
     path->from = at->s.p;
-    leave_stretch(path);
-    note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
+    if (HAS_SCATTERING) path->scattered.is = false;
+    if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }
   path->straight = path->straight && passes && lobes->split.eta == 1.0f;
   bool going = free;
@@ -78,7 +80,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
 ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, UNIFORM bool coherent,
                             UNIFORM u32* counts) {
   Encounter met;
-  const BegunRay begun = begun_rays_of(ray);
+  const BegunRay begun = begun_ray_of(ray);
   bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
   if (HAS_GLOW) path->radiance += path->throughput * spectrum_of(&path->wavelengths, emitted(ray));
@@ -119,15 +121,11 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     if (scene->info->light_count > 0u) {
       const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
       const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
-      SampledSpectrum chosen = light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts);
-      keep_hero(scene, &at, &lobes.split, path, &chosen);
-      light += chosen;
+      light += kept_hero(scene, &at, &lobes.split, path,
+                         light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts));
     }
-    if (HAS_CAUSTICS) {
-      SampledSpectrum brought = gather_photons(scene, path, ray, &at, &lobes);
-      keep_hero(scene, &at, &lobes.split, path, &brought);
-      light += brought;
-    }
+    if (HAS_CAUSTICS)
+      light += kept_hero(scene, &at, &lobes.split, path, gather_photons(scene, path, ray, &at, &lobes));
   }
   path->radiance += light;
   if (deep && !free) return false;

@@ -1,5 +1,5 @@
 // How rays leave surfaces. Photons and features of the denoiser use the same functions.
-#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/path_state.cl"
 
 // The ray that leaves the surface in the direction d, above it or `below`, behind it. `way`: how far its
 // start is from where the relief lets it go.
@@ -20,9 +20,8 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
 }
 
 // The path continues in the direction that the surface sampled. `free`: the surface is not there.
-ENTRY static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met,
-                                       const SurfaceShading* at, const BsdfSample* sample, bool below,
-                                       bool free, SceneRay* ray) {
+static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
+                                 const BsdfSample* sample, bool below, bool free, SceneRay* ray) {
   float way;
   SceneRay child = leaving_ray(scene, ray, met, at, sample->wi, below, &way);
   child.t_max = INFINITY;
@@ -31,9 +30,8 @@ ENTRY static inline void leave_surface(UNIFORM const Scene* scene, const Encount
 }
 
 // The shadow ray to a light that was chosen.
-ENTRY static inline SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray,
-                                          const Encounter* met, const SurfaceShading* at,
-                                          const LightSample* light, bool below) {
+static inline SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                                    const SurfaceShading* at, const LightSample* light, bool below) {
   float way;
   SceneRay to_light = leaving_ray(scene, ray, met, at, light->wi, below, &way);
   to_light.t_max = below ? light->distance : light->distance - way;

@@ -1,5 +1,6 @@
 // Light that the rays of paths meet: what shines on surfaces, the sky, and what lies on the way.
-#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/mis.cl"
+#include "plain/pathtracer/path_state.cl"
 
 // The density with which path->from chooses the light `lamp` at the point p, which the ray met in the
 // direction d.
@@ -11,8 +12,8 @@ static float chosen_pdf(UNIFORM const Scene* scene, const PathState* path, float
     __global const Light* light = scene->lights + index;
     if (light->position.w == 0.0f) {
       pdf = area_light_pdf(light, path->from, d, distance);
-      pdf = pdf_in_tree(scene, path, (u32)index, pdf);
-      pdf = pdf_on_stretch(path, light, pdf);
+      if (HAS_LIGHT_TREE) pdf *= light_probabilities(scene, scene->light_leaves[index], chosen_from(path));
+      pdf = pdf_on_stretch_to(path, light, pdf);
     }
   }
   return pdf / (float)scene->info->light_count;
@@ -58,13 +59,13 @@ static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* pa
   float pdf;
   float3 light = distant_along(scene, d, &pdf);
   if (sees_environment(scene)) {
-    light *= weight_of_met(scene, path, pdf_on_stretch(path, 0, pdf * chance));
+    light *= weight_of_met(scene, path, pdf_on_stretch(path, pdf * chance));
     light = hide_environment(scene, d, left_by_photons(path, light), camera);
   }
   for (u32 index = 0; index < scene->info->table_lights; ++index) {
     __global const Light* sun = scene->lights + index;
     if (sun->kind == LIGHT_SUN) {
-      const float weight = weight_of_met(scene, path, pdf_on_stretch(path, 0, sun_pdf(sun, chance)));
+      const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sun_pdf(sun, chance)));
       const float3 seen = left_by_photons(path, sun->color.xyz);
       if (sees_sun(sun, d, camera)) light = along(light, weight, seen);
     }

@@ -1,6 +1,6 @@
 // How lights chosen at a surface, and lights met by its scattered ray, share what both can find (Veach and
 // Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering"; the power heuristic).
-#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/path_state.cl"
 
 // The weight of a sample of density `own` where another way finds the same light with density `other`.
 static inline float power_heuristic(float own, float other) {
@@ -9,7 +9,7 @@ static inline float power_heuristic(float own, float other) {
 }
 
 // The weight of light that a ray has met, which its surface would have chosen with the density `chosen`.
-ENTRY static inline float weight_of_met(UNIFORM const Scene* scene, const PathState* path, float chosen) {
+static inline float weight_of_met(UNIFORM const Scene* scene, const PathState* path, float chosen) {
   if (scene->info->light_strategy == STRATEGY_SURFACES) return 1.0f;
   const bool found_twice = path->pdf > 0.0f && chosen > 0.0f;
   const float shared =
@@ -19,7 +19,7 @@ ENTRY static inline float weight_of_met(UNIFORM const Scene* scene, const PathSt
 
 // The weight of a light that a surface has chosen with the density `chosen`, which its scattered ray would
 // have met with the density `scattered`; 0: never.
-ENTRY static inline float weight_of_chosen(UNIFORM const Scene* scene, float chosen, float scattered) {
+static inline float weight_of_chosen(UNIFORM const Scene* scene, float chosen, float scattered) {
   if (scene->info->light_strategy == STRATEGY_LIGHTS) return 1.0f;
   const float shared =
       scene->info->light_strategy == STRATEGY_SURFACES ? 0.0f : power_heuristic(chosen, scattered);

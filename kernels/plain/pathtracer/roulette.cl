@@ -1,5 +1,5 @@
 // Russian roulette.
-#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/path_state.cl"
 
 // Paths with at least this part of the light that they began with never end by chance. Others continue with
 // it: those that remain would else bring much light each, seldom, which is more noise than their time is
@@ -8,7 +8,7 @@
 
 // Whether the path continues, by the numbers of `dimension`: then it stands for those that do not. What
 // refraction took from the radiance comes back when the ray leaves the medium, and says nothing of its worth.
-ENTRY static inline bool survives(UNIFORM const Scene* scene, PathState* path, int dimension) {
+static inline bool survives(UNIFORM const Scene* scene, PathState* path, int dimension) {
   const float worth = spectrum_worth(path->throughput) * path->spread;
   if (path->depth < (int)scene->info->roulette_depth || !(worth < LEAST_WORTH)) return true;
   const float chance = worth * (1.0f / LEAST_WORTH);

@@ -60,7 +60,7 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
     place_sum += sent;
     place_squares += sent * sent;
     if (s.radiance.x == 0.0f) continue;
-    const float density = area_light_pdf(&in[i].light, p, s.wi, s.distance);
+    const float density = area_light_pdf(&in[i].light, p, s.wi, s.distance, ALL_LANES);
     error = max(error, fabs(density / s.pdf - 1.0f));
   }
   const float mean = sum / (SIDE * SIDE);

@@ -59,6 +59,10 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
       {"typedef struct LANES(Rays) { float t; } Ray;\nRay ray_of(float t);\n" +
            function("Ray r = ray_of(x); if (x > 0.0f) r = ray_of(2.0f); return r.t;"),
        "a Ray is set where lanes part, and nothing joins two"},
+      {"LANE_VECTOR(Hue, Hues, hue, 4);\n" + function("const Hue h = (Hue)(x); return h.x;"),
+       "a Hue of one number that varies"},
+      {"LANE_VECTOR(Hue, Hues, hue, 4);\n" + function("const Hue h = (Hue)(x, x, x, x); return h.x;"),
+       "3:15: a Hue of 4 parts"},
       {"#include \"shared/lights.h\"\n" +
            function("const Light l = ((__global const Light*)q)[k]; return x;"),
        "a cast of a pointer to float to a pointer to Light"},

@@ -53,6 +53,27 @@ TEST_CASE("a function is made anew for each kind of call") {
   CHECK_THAT(made, Contains("float twice_uu(float a, float b)"));
 }
 
+TEST_CASE("a vector that an interface declares has its own functions, and parts") {
+  const std::string made =
+      in_lanes("LANE_VECTOR(Hue, Hues, hue, 4);\n" +
+               function("Hue a = (Hue)(1.0f);\nif (x > 0.0f) a = a * a * x;\na.w = x;\nreturn a.y;"));
+  CHECK_THAT(made, Contains("Hues a = hue_all(1.0f);"));
+  CHECK_THAT(made, Contains("a = hue_select(a, hue_scale(hue_multiply(a, a), x), is_1);"));
+  CHECK_THAT(made, Contains("a.w = x;"));
+  CHECK_THAT(made, Contains("return a.y;"));
+}
+
+TEST_CASE("what two plain files make is made once a program, and lanes of structures join") {
+  const std::string made = in_lanes(
+      "typedef struct LANES(Rays, join_rays) { float t; } Ray;\n"
+      "typedef struct Walk { Ray ray; float b; } Walk;\n"
+      "static inline Walk further(Walk w, float x) { if (x > 0.0f) w.b = x; return w; }\n"
+      "ENTRY static Walk walk(Walk w, float x) { if (x > 1.0f) w = further(w, x); return w; }");
+  CHECK_THAT(made, Contains("#ifndef MADE_Walks\n#define MADE_Walks\ntypedef struct Walks {"));
+  CHECK_THAT(made, Contains("r.ray = a.ray; join_rays(&r.ray, &b.ray, m);"));
+  CHECK_THAT(made, Contains("#ifndef MADE_further\n#define MADE_further\n"));
+}
+
 TEST_CASE("lines are those of the plain file, and the explanation names them") {
   const std::string text = function("const float y = x * 2.0f;\nreturn y;");
   CHECK_THAT(in_lanes(text, true), Contains("#line 1 \"plain/t.cl\"\nNEVER_INLINE REAL f("));

@@ -1,0 +1,115 @@
+// Photons about the surfaces of paths, within a radius: of each lane one after the other.
+#ifndef SUNDOG_LIB_PHOTON_SEARCH_CL
+#define SUNDOG_LIB_PHOTON_SEARCH_CL
+#include "lib/core/sampler_lanes.cl"
+#include "lib/path/scene_ray.cl"
+#include "lib/pathtracer/photon_cells.cl"
+#include "lib/shade/interaction.cl"
+
+#if HAS_CAUSTICS
+#define PHOTONS_A_CELL 96u  // looked at; of more, every second, third...
+#define PHOTON_FLAT 0.25f   // how far from the surface photons count, of the radius
+#define PHOTON_CELLS 8u     // that a ball meets
+
+// A lane's way through the photons about its surface.
+typedef struct PhotonSearch {
+  float3 p, n;
+  PhotonMap map;
+  int3 low;     // the cube of the lowest corner
+  u32 slice;    // of time
+  int deepest;  // a photon was sent on at most so often
+  u32 turn;     // by which some of many photons are chosen
+  u32 cell;     // the next of PHOTON_CELLS
+  u32 at, end, stride;
+} PhotonSearch;
+
+// The photons of the map that the sample looks at.
+static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* at, u32 depth, float time,
+                                        const SurfaceInteractions* s, u32 i) {
+  PhotonSearch search;
+  const u32 sample = (u32)MASK_LANE(at->sample, i);
+  search.p = get3(&s->p, i);
+  search.n = get3(&s->ng, i);
+  search.map = scene->photon_maps[photon_map_of(sample) - scene->photon_maps[0].number];
+  search.low = photon_cube(search.p - search.map.radius, search.map.inverse_edge);
+  search.slice = photon_slice(time);
+  search.deepest = (int)scene->info->max_depth - (int)depth;
+  search.turn = hash_pixel((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i), sample * 64u + depth);
+  search.cell = search.at = search.end = 0u;
+  search.stride = 1u;
+  return search;
+}
+
+// Goes to the next cube. False: there is none.
+static inline bool enter_next_cube(const Scene* scene, PhotonSearch* search) {
+  if (search->cell == PHOTON_CELLS) return false;
+  const u32 k = search->cell++;
+  const int3 cube = search->low + (int3)((int)(k & 1u), (int)(k >> 1 & 1u), (int)(k >> 2));
+  __global const u32* begins = scene->photon_cells + search->map.first_cell;
+  const u32 cell = photon_cell(cube, search->slice) & search->map.cell_mask, first = begins[cell];
+  search->end = begins[cell + 1u];
+  search->stride = (search->end - first + PHOTONS_A_CELL - 1u) / PHOTONS_A_CELL;
+  search->at = first + (search->stride > 1u ? search->turn % search->stride : 0u);
+  return true;
+}
+
+// The next photon that counts. False: there is none.
+static inline bool find_photon(const Scene* scene, PhotonSearch* search, float3* wi, float3* flux) {
+  const float radius = search->map.radius;
+  for (;;) {
+    while (search->at < search->end) {
+      const u32 at = search->at;
+      search->at += max(search->stride, 1u);
+      const float4 place = scene->photons[2u * at];
+      const float3 to = place.xyz - search->p;
+      if (dot(to, to) > radius * radius || fabs(dot(to, search->n)) > PHOTON_FLAT * radius) continue;
+      // Other cubes and slices share the cell.
+      const u32 k = search->cell - 1u;
+      const int3 cube = photon_cube(place.xyz, search->map.inverse_edge) - search->low;
+      if (cube.x != (int)(k & 1u) || cube.y != (int)(k >> 1 & 1u) || cube.z != (int)(k >> 2)) continue;
+      if (PHOTON_SLICES > 1u && count_of(place.w) != search->slice) continue;
+      const float4 light = scene->photons[2u * at + 1u];
+      if ((int)count_of(light.w) > search->deepest) continue;
+      *wi = unpack_direction((float2)(without_count(place.w), without_count(light.w)));
+      *flux = light.xyz * (float)(search->stride * PHOTON_SLICES);
+      return true;
+    }
+    if (!enter_next_cube(scene, search)) return false;
+  }
+}
+
+typedef struct PhotonSearches {
+  PhotonSearch of[BATCH];
+  REAL area;  // of each surface that photons are found on
+} PhotonSearches;
+
+static inline PhotonSearches search_photons(const Scene* scene, const LaneSamples* at, MASK depth,
+                                            const SceneRays* rays, const SurfaceInteractions* s, MASK lanes) {
+  PhotonSearches searches;
+  const REAL time = time_of_rays(rays);
+  searches.area = (REAL)(1.0f);
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    searches.of[i] = begin_search(scene, at, (u32)MASK_LANE(depth, i), REAL_LANE(time, i), s, i);
+    REAL_LANE(searches.area, i) = M_PI_F * searches.of[i].map.radius * searches.of[i].map.radius;
+  }
+  return searches;
+}
+
+// Returns the lanes that have found another.
+static inline MASK next_photon(const Scene* scene, PhotonSearches* searches, MASK lanes, REAL3* wi,
+                               REAL3* flux) {
+  MASK found = NO_LANES;
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    float3 from, light;
+    if (!find_photon(scene, searches->of + i, &from, &light)) continue;
+    set3(wi, i, from);
+    set3(flux, i, light);
+    MASK_LANE(found, i) = -1;
+  }
+  return found;
+}
+#endif
+
+#endif

@@ -1,0 +1,64 @@
+// What a denoiser takes for a picture's features: the albedo and the normal of the surface that a sample
+// sees, through the same filter, lens and time, behind smooth glass and in mirrors.
+#include "plain/pathtracer/hero.cl"
+#include "plain/pathtracer/leave_surface.cl"
+
+#define FEATURE_DEPTH 16        // surfaces on a way, at most
+#define FEATURE_DENSITY 100.0f  // per steradian: lobes of directions as likely as these are followed, too
+
+void see_surfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, bool camera, UNIFORM bool coherent,
+                  Encounter* met, UNIFORM u32* counts);
+float3 albedo_of(const Bsdf* bsdf);
+
+// A sample on its way.
+typedef struct FeatureWalk {
+  PathState path;
+  float3 tint, first;  // what mirrors and glass have left; the first one's normal
+  float3 albedo, normal;
+} FeatureWalk;
+
+ENTRY static inline FeatureWalk start_feature(UNIFORM const Scene* scene, const SampleAt* at) {
+  const float3 none = (float3)(0.0f);
+  const FeatureWalk f = {start_path(scene, at), (float3)(1.0f), none, none, none};
+  return f;
+}
+
+ENTRY static inline float3 at_most_one(float3 a) {
+  return (float3)(real_min(a.x, 1.0f), real_min(a.y, 1.0f), real_min(a.z, 1.0f));
+}
+
+// Takes the sample to the next surface. Returns whether that sends it on in about one direction. Else it is
+// the sample's feature, or behind mirrors the sky, which has only their tint.
+ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* ray,
+                               UNIFORM bool coherent, UNIFORM u32* counts) {
+  Encounter met;
+  const bool first = f->path.depth == 1;
+  see_surfaces(scene, ray, first, coherent, &met, counts);
+  forget_glow(ray);
+  f->tint *= met.absorbed;
+  if (!hit_anything(&met.hit)) {
+    if (!first) {
+      f->albedo = f->tint;
+      f->normal = f->first;
+    }
+    return false;
+  }
+  SurfaceShading at;
+  shade_hits(scene, ray, &met, &at);
+  follow_hero(&f->path.wavelengths, &at.bsdf);
+  const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
+  const Numbers u = numbers_at(&f->path.at, dimension_here(&f->path, BOUNCE_DIRECTION), true, true);
+  const BsdfSample sample = sample_lobes(scene, &at.bsdf, &lobes, -ray->d, u.z, u.x, u.y);
+  const bool narrow = sample.specular || sample.pdf > FEATURE_DENSITY;
+  if (!(narrow && f->path.depth < FEATURE_DEPTH && greatest(sample.weight) > 0.0f)) {
+    f->albedo = f->tint * albedo_of(&at.bsdf);
+    f->normal = at.s.ns;
+    return false;
+  }
+  if (first) f->first = at.s.ns;
+  f->tint = at_most_one(f->tint * sample.weight);
+  const bool free = cut_away(&at.bsdf, &lobes.split) && may_cross(ray);
+  if (!free) ++f->path.depth;
+  leave_surface(scene, &met, &at, &sample, dot(at.s.ng, sample.wi) < 0.0f, free, ray);
+  return true;
+}

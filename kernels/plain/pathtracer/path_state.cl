@@ -1,0 +1,98 @@
+// What a path carries from surface to surface.
+#include "plain/pathtracer/interface.h"
+#include "plain/pathtracer/media_stretch.cl"
+#include "plain/pathtracer/spectrum.cl"
+
+// Light that photons have brought to a path's last surface, which it must not meet again through what has
+// mirrored or bent it since: the lights that photons leave. Narrow lobes do not get it from photons.
+#define GATHERED_NOTHING 0
+#define GATHERED_HERE 1    // at the surface that the ray leaves, or before interfaces that let it pass
+#define GATHERED_BEFORE 2  // at one before it; the ray was mirrored or bent since
+
+typedef struct PathState {
+  SampledSpectrum throughput;
+  SampledSpectrum radiance;  // gathered so far
+  float3 from;               // the place that chose the ray's direction, with the density `pdf`
+  float pdf;                 // 0: no light that is chosen at surfaces counts twice on this ray
+  // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
+  // the camera (squared index by squared index), and paths drawn to guides.
+  float spread;
+  int depth;      // of the ray: the camera's has 1
+  bool met;       // the camera's ray has hit something
+  bool straight;  // the ray goes straight on from the camera
+  SampleAt at;
+  SampledWavelengths wavelengths;
+  HAVING(HAS_CAUSTICS) int gathered;           // GATHERED_*
+  HAVING(HAS_CAUSTICS) float3 narrow;          // the part of the throughput by narrow lobes of what gathered
+  HAVING(HAS_SCATTERING) Scattered scattered;  // the density is then of the place there and of the direction
+} PathState;
+
+static inline void forget_gathered(PathState* path) {
+  if (HAS_CAUSTICS) {
+    path->gathered = GATHERED_NOTHING;
+    path->narrow = (float3)(0.0f);
+  }
+}
+
+ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const SampleAt* at) {
+  PathState path;
+  path.throughput = (SampledSpectrum)(1.0f);
+  path.radiance = (SampledSpectrum)(0.0f);
+  path.from = (float3)(0.0f);
+  path.pdf = 0.0f;
+  path.spread = 1.0f;
+  path.depth = 1;
+  path.met = false;
+  path.straight = true;
+  path.at = *at;
+  path.wavelengths = choose_wavelengths(scene, at);
+  if (HAS_SCATTERING) path.scattered.is = false;
+  forget_gathered(&path);
+  return path;
+}
+
+// The path leaves a surface, perhaps one that has gathered photons. `narrow`: the part of its weight by
+// narrow lobes.
+HAVING(HAS_CAUSTICS)
+static inline void note_gathered(PathState* path, bool specular, float3 narrow) {
+  if (!specular) {
+    path->gathered = GATHERED_HERE;
+    path->narrow = narrow;
+  } else if (path->gathered != GATHERED_NOTHING) {
+    path->gathered = GATHERED_BEFORE;
+  }
+}
+static inline float3 left_by_photons(const PathState* path, float3 light) {
+  if (HAS_CAUSTICS) return path->gathered == GATHERED_BEFORE ? light * path->narrow : light;
+  return light;
+}
+
+// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that the ray meets.
+static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
+  return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
+}
+
+// What a stretch makes of the density with which its distant light is chosen: in place of a surface a place
+// on it is chosen, too.
+static inline float pdf_on_stretch(const PathState* path, float pdf) {
+  if (HAS_SCATTERING) return path->scattered.is ? pdf * path->scattered.chance : pdf;
+  return pdf;
+}
+// The same of the light `lamp`.
+static inline float pdf_on_stretch_to(const PathState* path, UNIFORM __global const Light* lamp, float pdf) {
+  if (HAS_SCATTERING) {
+    const Scattered* s = &path->scattered;
+    const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->decay, middle_of_light(lamp));
+    return s->is ? pdf * pdf_towards(&seen, s->at, s->chance) : pdf;
+  }
+  return pdf;
+}
+
+// The place for which lights of the tree were chosen.
+static inline float3 chosen_from(const PathState* path) {
+  if (HAS_SCATTERING) {
+    const Scattered* s = &path->scattered;
+    return s->is ? place_for_lights(s->o, s->d, s->length, s->decay) : path->from;
+  }
+  return path->from;
+}

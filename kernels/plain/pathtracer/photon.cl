@@ -1,0 +1,102 @@
+// One step of a photon: it moves to the next interface, where it lands or continues. Photons that were
+// mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others.
+#include "plain/pathtracer/hero.cl"
+#include "plain/pathtracer/leave_surface.cl"
+
+CONSTANT int NOT_DIMMED;
+
+BsdfSample sample_perfect_lobes(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float u_term, HERE);
+float scattered_share(const LobeSet* lobes);
+
+typedef struct Photon {
+  PathState path;  // throughput is the flux; depth 1 + what has sent the photon on
+  bool bent;       // it has been mirrored or bent
+  int dimmed;      // the light whose falling off with distance is still to come, or NOT_DIMMED
+} Photon;
+
+// A photon that has landed, with the light that it brings.
+typedef struct Landing {
+  bool is;
+  float3 p, wi, flux;  // wi points to where it comes from
+  int sent_on;         // how often it was
+} Landing;
+
+ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at, float3 flux,
+                                        int dimmed) {
+  Photon photon = {start_path(scene, at), false, dimmed};
+  photon.path.throughput = spectrum_of(&photon.path.wavelengths, flux);
+  return photon;
+}
+
+// A light without extent falls off by its own rule up to the point p, where its photon is first bent, and
+// beyond it as the rays spread. So glass receives as much as any surface there.
+static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photon* photon) {
+  if (photon->dimmed == NOT_DIMMED) return;
+  EACH_ALIKE(int, index, photon->dimmed) {
+    const LightSample light = way_to_lamp(scene->lights + index, p);
+    const float3 sent = light.radiance * (M_PI_F * light.distance * light.distance);
+    photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sent);
+  }
+  photon->dimmed = NOT_DIMMED;
+}
+
+// What shading normals change of a flux that is sent from wo to wi (Veach 1997, section 5.3.2). 1 where they
+// are those of the geometry.
+static inline float flux_by_normals(const Bsdf* bsdf, float3 wo, float3 wi) {
+  const float shading = fabs(dot(bsdf->ns, wo)) * fabs(dot(bsdf->ng, wi));
+  const float faces = fabs(dot(bsdf->ng, wo)) * fabs(dot(bsdf->ns, wi));
+  return real_min(real_max(shading, 0.01f) / real_max(faces, 0.01f), 8.0f);
+}
+
+// The photon is sent on in the direction of `sample`. Returns whether it continues.
+static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
+                           const LobeSet* lobes, const BsdfSample* sample, Photon* photon, SceneRay* ray) {
+  const bool below = dot(at->s.ng, sample->wi) < 0.0f;
+  const bool turns = !below || (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0;
+  float change = 1.0f;
+  if (turns) {
+    dim_with_distance(scene, at->s.p, photon);
+    change = flux_by_normals(&at->bsdf, -ray->d, sample->wi);
+    photon->bent = true;
+  }
+  photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sample->weight * change);
+  if (HAS_DISPERSION) part_wavelengths(scene, at, &lobes->split, &photon->path, !below);
+  const bool free = cut_away(&at->bsdf, &lobes->split) && may_cross(ray);
+  if (!free) ++photon->path.depth;
+  if (!free && photon->path.depth > (int)scene->info->max_depth) return false;
+  leave_surface(scene, met, at, sample, below, free, ray);
+  return true;
+}
+
+// Moves the photon by one step. Returns whether it continues; `landed`: it ends on a surface that scatters
+// light.
+ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneRay* ray, Landing* landed,
+                              UNIFORM u32* counts) {
+  Encounter met;
+  landed->is = false;
+  const bool unseen = meet_interfaces(scene, ray, false, &met, counts);
+  forget_glow(ray);
+  photon->path.throughput *= spectrum_kept(&photon->path.wavelengths, met.absorbed);
+  if (unseen || !hit_anything(&met.hit)) return unseen;
+  if (HAS_FOG) photon->path.throughput *= clear_of_fog(scene, &met);
+  SurfaceShading at;
+  shade_hits(scene, ray, &met, &at);
+  follow_hero(&photon->path.wavelengths, &at.bsdf);
+  const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
+  const Numbers u =
+      numbers_at(&photon->path.at, dimension_here(&photon->path, BOUNCE_DIRECTION), false, true);
+  const BsdfSample sample = sample_perfect_lobes(&at.bsdf, &lobes, -ray->d, u.z);
+  if (!sample.specular) {
+    // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
+    const float rest = scattered_share(&lobes);
+    if (photon->bent && rest > 0.0f && spectrum_greatest(photon->path.throughput) > 0.0f) {
+      const SampledSpectrum flux = photon->path.throughput * (lobes.all / rest);
+      const Landing here = {true, at.s.p, -ray->d, spectrum_seen(scene, &photon->path.wavelengths, &flux),
+                            photon->path.depth - 1};
+      *landed = here;
+    }
+    return false;
+  }
+  if (!(greatest(sample.weight) > 0.0f)) return false;
+  return send_on(scene, &met, &at, &lobes, &sample, photon, ray);
+}

@@ -1,0 +1,196 @@
+// Media that scatter, on the way of a path to its next interface: each stretch of a ray gets light from one
+// lamp, at a place that is chosen for it, and may end the ray at another, from where the path continues.
+#include "plain/pathtracer/next_event.cl"
+#include "plain/pathtracer/path_state.cl"
+#include "plain/pathtracer/roulette.cl"
+
+// What a ray is before it goes to its next interface.
+typedef struct BegunRay {
+  float t_min;
+  HAVING(HAS_SCATTERING) float since;
+  HAVING(HAS_SCATTERING) int media_low, media_high, crossings;
+} BegunRay;
+
+static inline BegunRay begun_ray_of(const SceneRay* ray) {
+  BegunRay begun;
+  begun.t_min = ray->t_min;
+  if (HAS_SCATTERING) {
+    begun.since = ray->since;
+    begun.media_low = ray->media_low;
+    begun.media_high = ray->media_high;
+    begun.crossings = ray->crossings;
+  }
+  return begun;
+}
+
+// A stretch of a ray in a medium.
+typedef struct Stretch {
+  bool scatters;
+  float3 o, d;                 // where it begins
+  float length;                // to the next interface
+  float begin;                 // length in the medium before it, for absorption
+  SampledSpectrum decay;       // light lost per unit of length
+  SampledSpectrum scattering;  // light scattered
+  float g;                     // mean cosine of turns
+  float mean;                  // of the decay's colours
+  SampledSpectrum shares;      // of the colours, in the choice of the place where the path is scattered
+  SampledSpectrum drawn;       // and of the one that gets light
+} Stretch;
+
+HAVING(HAS_SCATTERING)
+static inline Stretch find_stretch(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
+                                   const Encounter* met, const PathState* path) {
+  Stretch s;
+  s.scatters = false;
+  s.o = along(ray->o, begun->t_min, ray->d);
+  s.d = ray->d;
+  s.length = real_max(met->hit.t - begun->t_min, 0.0f);
+  s.begin = begun->t_min - begun->since;
+  s.g = 0.0f;
+  float3 decay = (float3)(0.0f), scattering = decay;
+  EACH_ALIKE(int, index, met->before) {
+    const float4 some = scene->media[index].scattering;
+    if (some.x + some.y + some.z > 0.0f) {
+      s.scatters = true;
+      decay = scene->media[index].absorption.xyz;
+      scattering = some.xyz;
+      s.g = some.w;
+    }
+  }
+  s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
+  s.decay = spectrum_of(&path->wavelengths, decay);
+  s.scattering = spectrum_of(&path->wavelengths, scattering);
+  s.shares = shares_of(path->throughput);
+  s.drawn = shares_of(where_positive(path->throughput, s.scattering));
+  return s;
+}
+
+// What arrives at the distance `at` of light that comes from the stretch's end, and is scattered there.
+static inline SampledSpectrum scattered_at(const PathState* path, const Stretch* s, float at) {
+  return path->throughput * spectrum_over(s->decay, s->begin + at) * s->scattering;
+}
+
+// The density of the distance `at` as the place where a path is scattered, and the chance that none is.
+static inline float free_pdf(const Stretch* s, float at) {
+  return spectrum_sum(s->shares * s->decay * spectrum_over(s->decay, at));
+}
+static inline float chance_to_pass(const Stretch* s) {
+  return spectrum_sum(s->shares * spectrum_over(s->decay, s->length));
+}
+
+// A ray that begins at the distance `at` of the stretch.
+HAVING(HAS_SCATTERING)
+static inline SceneRay ray_from_stretch(UNIFORM const Scene* scene, const BegunRay* begun,
+                                        const SceneRay* ray, const Stretch* s, float at, float3 d,
+                                        float t_max) {
+  SceneRay made = *ray;
+  const SurfaceHit nothing = hit_nothing(begun->t_min + at);
+  start_on_surfaces(scene->info, &made, &nothing, false);
+  made.o = along(s->o, at, s->d);
+  made.d = d;
+  made.t_min = 0.0f;
+  made.t_max = t_max;
+  made.media_low = begun->media_low;
+  made.media_high = begun->media_high;
+  return made;
+}
+
+// A distance on the stretch that suits its light, with its density.
+static inline float distance_for_light(UNIFORM const Scene* scene, const Stretch* s, int chosen, float u_way,
+                                       float u, float u_color, float* pdf) {
+  float at = next_distance(s->decay, s->drawn, s->length, u, u_color);
+  float chance = next_pdf(s->decay, s->drawn, s->length, at);
+  EACH_ALIKE(int, index, chosen) {
+    __global const Light* lamp = scene->lights + index;
+    if (has_place(lamp)) {
+      const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
+      if (u_way < seen.part) at = distance_by_angle(&seen, s->length, u);
+      chance = pdf_towards(&seen, at, next_pdf(s->decay, s->drawn, s->length, at));
+    }
+  }
+  *pdf = chance;
+  return at;
+}
+
+// Light of one lamp that the stretch scatters towards its beginning.
+HAVING(HAS_SCATTERING)
+static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, const PathState* path,
+                                        const BegunRay* begun, const SceneRay* ray, const Stretch* s,
+                                        int dimension, UNIFORM u32* counts) {
+  const Numbers u = numbers_at(&path->at, dimension, true, true),
+                v = numbers_at(&path->at, dimension + 4, true, true);
+  float chance, pdf;
+  bool seen;
+  const float3 place = place_for_lights(s->o, s->d, s->length, s->mean);
+  const int chosen = choose_index(scene, place, u.z, &chance);
+  const float at = distance_for_light(scene, s, chosen, u.w, v.z, v.w, &pdf);
+  const LightSample light = sample_chosen(scene, along(s->o, at, s->d), u.x, u.y, chosen, &seen);
+  const float turned = phase_pdf(s->g, dot(s->d, light.wi));
+  pdf *= light.pdf * chance;
+  const float weight = weight_of_chosen(scene, pdf, seen ? free_pdf(s, at) * turned : 0.0f);
+  const float over = (light.delta ? M_PI_F : 1.0f) * turned * weight / pdf;
+  const SampledSpectrum possible =
+      scattered_at(path, s, at) * spectrum_of(&path->wavelengths, light.radiance) * over;
+  if (!(spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f)) return (SampledSpectrum)(0.0f);
+  count(counts, COUNT_SHADOW);
+  note_ray(counts);
+  SceneRay to_light = ray_from_stretch(scene, begun, ray, s, at, light.wi, light.distance);
+  return arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+}
+
+// The path is scattered at the distance `at` of its stretch. Returns whether it continues.
+HAVING(HAS_SCATTERING)
+static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                                   SceneRay* ray, const Stretch* s, float at, UNIFORM u32* counts) {
+  const int dimension = dimension_here(path, BOUNCE_DIRECTION);
+  const Numbers u = numbers_at(&path->at, dimension, true, false);
+  const float pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
+  path->throughput = scattered_at(path, s, at) * (1.0f / real_max(pdf, 1e-30f));
+  const Scattered here = {
+      true, s->o, s->d, s->length, at, s->mean, next_pdf(s->decay, s->drawn, s->length, at)};
+  path->scattered = here;
+  forget_gathered(path);
+  path->pdf = pdf * phase_pdf(s->g, cosine);
+  path->from = along(s->o, at, s->d);
+  path->straight = false;
+  bool going = spectrum_greatest(path->throughput) > 0.0f;
+  if (going && path->depth > (int)scene->info->max_depth) {
+    count(counts, COUNT_DEPTH_LIMIT);
+    going = false;
+  }
+  if (going) going = survives(scene, path, dimension);
+  ++path->depth;
+  if (going) {
+    count(counts, COUNT_REFLECTION);
+    note_ray(counts);
+  }
+  *ray = ray_from_stretch(scene, begun, ray, s, at, direction_about(s->d, cosine, u.y), INFINITY);
+  return going;
+}
+
+HAVING(HAS_SCATTERING)
+static bool scatter_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                               SceneRay* ray, const Encounter* met, bool* going, UNIFORM u32* counts) {
+  const Stretch s = find_stretch(scene, begun, ray, met, path);
+  *going = false;
+  if (!any(s.scatters)) return false;
+  const int dimension = (int)DIMENSION_STRETCH + (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
+                        begun->crossings * (int)DIMENSIONS_A_CROSSING;
+  if (scene->info->light_count > 0u && s.scatters && path->depth <= (int)scene->info->max_depth)
+    path->radiance += light_on_stretch(scene, path, begun, ray, &s, dimension, counts);
+  const Numbers v = numbers_at(&path->at, dimension + 4, true, true);
+  const float chosen = by_share(s.decay, s.shares, v.y);
+  const float at = chosen > 0.0f ? depth_of_lost(v.x) / nonzero(chosen) : INFINITY;
+  const bool turns = s.scatters && at < s.length;
+  if (s.scatters && !turns) path->throughput *= 1.0f / real_max(chance_to_pass(&s), 1e-30f);
+  if (turns) *going = turn_on_stretch(scene, path, begun, ray, &s, at, counts);
+  return turns;
+}
+
+// The path on its way to what it has met. Returns whether it does not get there, and in `going` whether it
+// continues then.
+static inline bool scatter_in_media(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                                    SceneRay* ray, const Encounter* met, bool* going, UNIFORM u32* counts) {
+  if (HAS_SCATTERING) return scatter_on_stretch(scene, path, begun, ray, met, going, counts);
+  return false;
+}
