@@ -14,7 +14,7 @@ static inline PathStates start_paths(const Scene* scene, const LaneSamples* at, 
   paths.pdf = (REAL)(0.0f);
   paths.spread = (REAL)(1.0f);
   paths.depth = (MASK)(1);
-  paths.met = NO_LANES;
+  paths.covered = ALL_LANES;
   paths.straight = ALL_LANES;
   paths.at = *at;
   paths.wavelengths = choose_wavelengths(scene, at, lanes);
@@ -31,7 +31,7 @@ static inline void join_paths(PathStates* paths, const PathStates* other, MASK l
   paths->pdf = select(paths->pdf, other->pdf, lanes);
   paths->spread = select(paths->spread, other->spread, lanes);
   paths->depth = select(paths->depth, other->depth, lanes);
-  paths->met = select(paths->met, other->met, lanes);
+  paths->covered = select(paths->covered, other->covered, lanes);
   paths->straight |= other->straight & lanes;
   paths->at.x = select(paths->at.x, other->at.x, lanes);
   paths->at.y = select(paths->at.y, other->at.y, lanes);

@@ -17,7 +17,7 @@ typedef struct PathStates {
   // the camera (squared index by squared index), and paths drawn to guides.
   REAL spread;
   MASK depth;     // of the ray: the camera's has 1
-  MASK met;       // the camera's ray has hit something
+  MASK covered;   // the path has not left the scene straight on from the camera
   MASK straight;  // the ray goes straight on from the camera
   LaneSamples at;
   SampledWavelengths wavelengths;

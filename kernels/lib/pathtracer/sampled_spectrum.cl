@@ -92,6 +92,7 @@ static inline REAL spectrum_greatest(SampledSpectrum a) {
 static inline REAL spectrum_worth(SampledSpectrum a) {
   return (1.0f / (float)WAVELENGTHS) * ((a.of[0] + a.of[1]) + (a.of[2] + a.of[3]));
 }
+static inline REAL spectrum_mean(SampledSpectrum a) { return spectrum_worth(a); }
 
 // The spectrum of a colour.
 static inline SampledSpectrum spectrum_of(const SampledWavelengths* w, REAL3 color) {
@@ -159,6 +160,7 @@ static inline SampledSpectrum spectrum_multiply(SampledSpectrum a, SampledSpectr
 static inline SampledSpectrum spectrum_scale(SampledSpectrum a, REAL s) { return scale3(a, s); }
 static inline REAL spectrum_greatest(SampledSpectrum a) { return greatest3(a); }
 static inline REAL spectrum_worth(SampledSpectrum a) { return greatest3(a); }
+static inline REAL spectrum_mean(SampledSpectrum a) { return (a.x + a.y + a.z) * (1.0f / 3.0f); }
 static inline SampledSpectrum spectrum_of(const SampledWavelengths* w, REAL3 color) { return color; }
 static inline SampledSpectrum spectrum_kept(const SampledWavelengths* w, REAL3 kept) { return kept; }
 static inline void terminate_secondary(SampledWavelengths* w, SampledSpectrum* carried, MASK lanes) {}

@@ -68,7 +68,7 @@ typedef struct LANES(PathStates, join_paths) {
   float3 from;
   float pdf, spread;
   int depth;
-  bool met, straight;
+  bool covered, straight;
   SampleAt at;
   SampledWavelengths wavelengths;
 } PathState;
