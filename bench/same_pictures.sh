@@ -127,9 +127,9 @@ difference() {
   if ! cmp -s "$a.exr" "$b.exr"; then
     shown=$("$new" compare --tolerance 0 --json "$a.exr" "$b.exr" 2>"$work/compare.log")
     case $? in
-      0) text+=("AOVs differ") ;;
-      6) text+=("pictures differ: $(awk '/"differing":/ { d = $2 + 0 } /"max":/ { m = $2 + 0 } /"pixels":/ { p = $2 + 0 }
-           END { printf "%d of %d pixels, at most %g", d, p, m }' <<<"$shown")") ;;
+      0) ;;  # the headers differ
+      6) text+=("$(awk '/"differing":/ && !n++ { d = $2 + 0 } /"max":/ { m = $2 + 0 } /"pixels":/ { p = $2 + 0 }
+           END { if (d) printf "pictures differ: %d of %d pixels, at most %g", d, p, m; else print "AOVs differ" }' <<<"$shown")") ;;
       *) text+=("pictures cannot be compared: $(tail -n 1 "$work/compare.log")") ;;
     esac
   fi

@@ -57,6 +57,7 @@ bool is_forked() noexcept;
 struct SUNDOG_LOCAL Film::Impl {
   core::RenderResult result;  // the image and AOVs are moved to the members below
   core::ToneMap tone_map;
+  bool transparent = false;  // a PNG keeps alpha
   Image image;
   std::map<std::string, Image> aovs;
   sundog::ImageTexts texts;  // for an EXR's header

@@ -127,6 +127,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   film->result = core::render(flat, devices.infos, wanted);
   wait_for_threads_at_exit();
   film->tone_map = description->image.tone_map;
+  film->transparent = description->image.transparent;
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
   std::vector<std::string> objects, materials;
@@ -196,14 +197,10 @@ void Film::save(const std::filesystem::path& file) const {
     if (all)
       for (const auto& [name, image] : impl_->aovs) aovs.emplace(name, *image.impl()->image);
     const core::Image& image = *impl_->image.impl()->image;
-    if (all)
-      return sundog::write_file(file,
-                                core::encode_image(image, file, aovs, sundog::ExrColor::half, impl_->texts));
-    core::Image colors = without_coverage(image);
-    if (sundog::has_eight_bits(file)) {
-      core::apply(impl_->tone_map, colors);
-      sundog::dither_to_8_bits(colors);
-    }
+    if (all) return sundog::write_file(file, core::encode_image(image, file, aovs, {.texts = impl_->texts}));
+    core::Image colors =
+        impl_->transparent && sundog::is_png(file) ? core::Image(image) : without_coverage(image);
+    if (sundog::is_for_screens(file)) sundog::prepare_for_screen(colors, impl_->tone_map, true);
     core::write_image(colors, file);
   });
 }

@@ -75,6 +75,7 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.adaptive.empty())
     all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
   if (typed.subsample) all.push_back("/render/subsample/on=true");
+  if (typed.command.transparent) all.push_back("/image/transparent=true");
   // What may end early begins with a sample of each pixel.
   if (typed.adaptive.empty() && !typed.subsample && (!typed.time_limit.empty() || !typed.noise.empty()))
     all.push_back("/render/progressive=true");
@@ -92,12 +93,17 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "--format", "NAME", picture.format,
         fmt::format("of the image that -o - writes: {} (default: png)", fmt::join(image_formats(), ", ")));
   app->add_flag("--float", picture.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
+  value(app, "--color-space", "NAME", picture.color_space, "of an .exr's colours: srgb (default) or acescg")
+      ->one_of({"srgb", "acescg"});
+  value(app, "--bits", "N", picture.bits, "of a .png's channels: 8 (default) or 16")->range(8, 16);
   value(app, "--tone-map", "CURVE", picture.tone_curve,
         fmt::format("how .png and .jpg show colours brighter than white: {}",
                     fmt::join(tone_curve_names, ", ")));
   value(app, "--exposure", "STOPS", picture.exposure, "brighten .png and .jpg by so many stops");
   value(app, "--white-balance", "KELVIN", picture.white_balance,
         "the temperature of the light that is white in .png and .jpg");
+  value(app, "--dpi", "N", picture.dpi, "pixels an inch that .png, .jpg and .exr state (default 72)")
+      ->range(1, 65535);
   app->add_flag("--no-dither", picture.no_dither, "round colours of .png and .jpg to the nearest of 8 bits");
 }
 
@@ -191,6 +197,8 @@ void add_render(Arguments& root, Command& chosen) {
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,
          fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));
+  app->add_flag("--transparent", command.transparent,
+                "leave what is behind the scene out of .png and .exr: their alpha says what covers it");
   app->add_flag("--denoise", command.denoise,
                 "take the noise out of the picture by Open Image Denoise, a library that is loaded for it");
   app->add_flag("--metadata", command.metadata,
@@ -246,6 +254,8 @@ void add_merge(Arguments& root, Command& chosen) {
       ->required()
       ->type_name("FILE");
   add_picture(app, *command);
+  app->add_flag("--transparent", command->transparent,
+                "keep alpha in a .png, of parts that were so rendered");
   app->callback([command, &chosen] {
     check_format(*command);
     chosen = *command;

@@ -9,14 +9,16 @@
 
 namespace sundog {
 
-/// 8 bits a channel, colours as sRGB, alpha as it is.
-std::string encode_png(const Image& image);
+/// 8 or 16 bits a channel, colours as sRGB and tagged so, alpha as it is.
+std::string encode_png(const Image& image, const FileOptions& options = {});
 /// The PNG with texts ahead of its pixels, each an iTXt chunk.
 std::string with_png_texts(std::string png, const ImageTexts& texts);
 /// Texts of a PNG; empty for other files.
 ImageTexts decode_png_texts(std::string_view bytes);
-/// Likewise, without alpha; colours in full resolution.
-std::string encode_jpeg(const Image& image);
+/// Likewise with 8 bits, without alpha; colours in full resolution.
+std::string encode_jpeg(const Image& image, int dpi = 72);
+/// The JPEG of stb_image_write with Exif tags that say sRGB, and its density.
+std::string with_jpeg_tags(std::string jpeg, int dpi);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
 std::optional<float> png_decoding_exponent(std::string_view bytes);
 
@@ -37,9 +39,10 @@ Image decode_pfm(std::string_view bytes);
 /// length can use. Call before decoding, which allocates that memory.
 void check_exr_header(std::string_view bytes);
 /// Throws IoError only: there is nothing it refuses.
-std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color,
-                       const ImageTexts& texts = {});
-Image decode_exr(std::string_view bytes);
+std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options = {});
+/// `colors`: red, green and blue become those of sRGB, by the file's chromaticities; what is outside is cut
+/// off.
+Image decode_exr(std::string_view bytes, bool colors = true);
 AovImages decode_exr_aovs(std::string_view bytes);
 /// The header's text attributes.
 ImageTexts decode_exr_texts(std::string_view bytes);

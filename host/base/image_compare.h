@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// Linear absolute differences of red, green and blue, and of alpha where that is asked for.
+/// Linear absolute differences of the first channels: red, green and blue, or as many as are asked for.
 /// The difference of a pixel is that of its worst channel. A value that is not finite differs by infinity
 /// from everything but itself (NaN equals NaN).
 struct ImageDifference {
@@ -20,8 +20,7 @@ struct ImageDifference {
   std::uint64_t non_finite = 0;      // pixels where either image has a value that is not finite
 };
 
-/// Both images have the same size and 3 or 4 channels (std::invalid_argument otherwise). `channels`: 3, or 4
-/// to compare alpha too.
+/// Both images have the same size and `channels` or more (std::invalid_argument otherwise); 4: alpha too.
 ImageDifference compare_images(const Image& a, const Image& b, double tolerance, int channels = 3);
 
 /// Returns `a` dimmed to grey, with differing pixels coloured by a logarithmic scale: blue (1e-5 and less),

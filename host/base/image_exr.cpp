@@ -1,21 +1,26 @@
 // OpenEXR: colour as R, G, B(, A), each AOV as a layer of 32-bit float channels ("depth.Z", "normal.X").
 #include <fmt/format.h>
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
 
+#include "base/colors/color_space.h"
 #include "base/image_codecs.h"
 #include "base/limits.h"
 
@@ -82,12 +87,44 @@ void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* 
 }
 
 /// A half overflows to infinity above 65504.
-float clamped_to_half(float value) { return value > 65504 ? 65504 : value < -65504 ? -65504 : value; }
+float clamped_to_half(float value) {
+  return value > greatest_half ? greatest_half : value < -greatest_half ? -greatest_half : value;
+}
 
-std::vector<half> halves_of(const Image& image) {
-  std::vector<half> halves(image.data.size());
-  std::ranges::transform(image.data, halves.begin(), [](float v) { return half(clamped_to_half(v)); });
-  return halves;
+Imf::Chromaticities chromaticities(const Primaries& p) {
+  const auto v = [](glm::dvec2 c) { return Imath::V2f(static_cast<float>(c.x), static_cast<float>(c.y)); };
+  return {v(p.red), v(p.green), v(p.blue), v(p.white)};
+}
+
+Primaries primaries(const Imf::Chromaticities& c) {
+  const auto v = [](const Imath::V2f& p) { return glm::dvec2(p.x, p.y); };
+  return {v(c.red), v(c.green), v(c.blue), v(c.white)};
+}
+
+/// Of the first three channels.
+void convert(Image& image, const glm::dmat3& matrix) {
+  for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
+    float* c = &image.data[i];
+    const glm::dvec3 made = matrix * glm::dvec3(c[0], c[1], c[2]);
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(made[k]);
+  }
+}
+
+/// Colours of another space become those of sRGB.
+void convert_to_srgb(Image& image, const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return;
+  const Imf::Chromaticities found = Imf::chromaticities(header), srgb = chromaticities(srgb_primaries);
+  const auto near = [](const Imath::V2f& a, const Imath::V2f& b) { return (a - b).length() < 1e-4f; };
+  if (near(found.red, srgb.red) && near(found.green, srgb.green) && near(found.blue, srgb.blue) &&
+      near(found.white, srgb.white))
+    return;
+  const glm::dmat3 matrix = conversion(primaries(found), srgb_primaries);
+  for (int i = 0; i < 9; ++i)
+    if (!std::isfinite(matrix[i / 3][i % 3]))
+      throw std::runtime_error("the EXR file's chromaticities span no space of colours");
+  convert(image, matrix);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    if (i % 4 < 3) image.data[i] = std::max(image.data[i], 0.0f);
 }
 
 std::int64_t width_of(const Imath::Box2i& window) { return std::int64_t{window.max.x} - window.min.x + 1; }
@@ -117,8 +154,15 @@ class Reader {
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
+  /// Those of the picture itself; others are further layers.
+  Suffixes color_channels() const {
+    if (has("R") || has("G") || has("B")) return {"R", "G", "B", "A"};
+    return {"Y", "A"};
+  }
+
   /// Reads the named channels into one image, in that order; absent ones are `fill` everywhere.
-  Image read(const Suffixes& names, const std::array<float, 4>& fill = {}) {
+  Image read(const Suffixes& names, std::vector<float> fill = {}) {
+    fill.resize(names.size());
     Image image(width_, height_, static_cast<int>(names.size()));
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < names.size(); ++c) {
@@ -178,32 +222,65 @@ std::size_t greatest_size(const Imf::Header& header) {
   return width * height * pixel + 16 * height + (std::size_t{1} << 16);
 }
 
+/// The colours of an image on their way into a file, a row at a time.
+class ColorRows {
+ public:
+  ColorRows(const Image& image, ExrColor color, const std::optional<glm::dmat3>& matrix)
+      : image_(image), matrix_(matrix), row_(image.width, 1, image.channels) {
+    if (color == ExrColor::half) halves_.resize(row_.data.size());
+  }
+
+  void add_to(Imf::Header& header, Imf::FrameBuffer& buffer, const Suffixes& names) {
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      header.channels().insert(names[c], Imf::Channel(halves_.empty() ? Imf::FLOAT : Imf::HALF));
+      if (halves_.empty())
+        add_slice(buffer, names[c], row_.data.data() + c, row_);
+      else
+        add_slice(buffer, names[c], halves_.data() + c, row_);
+      buffer.findSlice(names[c])->yStride = 0;
+    }
+  }
+
+  void take(int y) {
+    std::copy_n(image_.pixel(0, y), row_.data.size(), row_.data.begin());
+    if (matrix_) convert(row_, *matrix_);
+    if (!halves_.empty())
+      std::ranges::transform(row_.data, halves_.begin(), [](float v) { return half(clamped_to_half(v)); });
+  }
+
+ private:
+  const Image& image_;
+  std::optional<glm::dmat3> matrix_;
+  Image row_;
+  std::vector<half> halves_;
+};
+
 }  // namespace
 
-std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color, const ImageTexts& texts) {
+std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options) {
+  const bool acescg = options.space == ExrSpace::acescg;
+  const Primaries& space = acescg ? ap1_primaries : srgb_primaries;
+  const auto matrix = acescg ? std::optional(conversion(srgb_primaries, space)) : std::nullopt;
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   std::size_t text_bytes = 0;
-  for (const auto& [name, text] : texts) {
+  Imf::addChromaticities(header, chromaticities(space));
+  Imf::addXDensity(header, static_cast<float>(options.dpi));
+  for (const auto& [name, text] : options.texts) {
+    if (name == "capDate") Imf::addUtcOffset(header, 0);  // it is universal time
     header.insert(name, Imf::StringAttribute(text));
     text_bytes += name.size() + text.size() + 32;
   }
   Imf::FrameBuffer buffer;
-  const std::vector<half> halves = color == ExrColor::half ? halves_of(image) : std::vector<half>();
+  std::vector<ColorRows> rows = {{image, options.color, matrix}};
+  rows.reserve(1 + aovs.size());
   const Suffixes names = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c) {
-    header.channels().insert(names[c], Imf::Channel(halves.empty() ? Imf::FLOAT : Imf::HALF));
-    if (halves.empty())
-      add_slice(buffer, names[c], image.data.data() + c, image);
-    else
-      add_slice(buffer, names[c], halves.data() + c, image);
-  }
+  rows[0].add_to(header, buffer, {names.begin(), names.begin() + image.channels});
   for (const auto& [aov, layer] : aovs) {
-    const Suffixes suffixes = channel_suffixes(aov, layer.channels);
-    for (std::size_t c = 0; c < suffixes.size(); ++c) {
-      header.channels().insert(aov + "." + suffixes[c], Imf::Channel(Imf::FLOAT));
-      add_slice(buffer, aov + "." + suffixes[c], layer.data.data() + c, layer);
-    }
+    Suffixes suffixes = channel_suffixes(aov, layer.channels);
+    for (std::string& suffix : suffixes) suffix.insert(0, aov + ".");
+    const bool colors = aov == "albedo" || aov == "denoise_albedo";
+    rows.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt).add_to(header, buffer, suffixes);
   }
   std::string bytes;
   bytes.reserve(greatest_size(header) + text_bytes);  // a growing string would need twice the memory
@@ -211,18 +288,25 @@ std::string encode_exr(const Image& image, const AovImages& aovs, ExrColor color
   {
     Imf::OutputFile file(out, header);
     file.setFrameBuffer(buffer);
-    file.writePixels(image.height);
+    for (int y = 0; y < image.height; ++y) {
+      for (ColorRows& row : rows) row.take(y);
+      file.writePixels(1);
+    }
   }
   return bytes;
 }
 
-Image decode_exr(std::string_view bytes) {
+Image decode_exr(std::string_view bytes, bool colors) {
   check_exr_header(bytes);
   Reader reader(bytes);
-  if (reader.has("R") || reader.has("G") || reader.has("B"))
-    return reader.read({"R", "G", "B", "A"}, {0, 0, 0, 1});
+  const Suffixes names = reader.color_channels();
+  if (names.size() == 4) {
+    Image image = reader.read(names, {0, 0, 0, 1});
+    if (colors) convert_to_srgb(image, reader.header());
+    return image;
+  }
   if (!reader.has("Y")) throw std::runtime_error("the EXR file has no channels R, G, B or Y");
-  const Image grey = reader.read({"Y", "A"}, {0, 1});
+  const Image grey = reader.read(names, {0, 1});
   Image image(grey.width, grey.height, 4);
   for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = grey.data[i / 4 * 2 + (i % 4 == 3)];
   return image;
@@ -234,14 +318,15 @@ AovImages decode_exr_aovs(std::string_view bytes) {
   std::map<std::string, Suffixes> layers;
   for (auto channel = reader.channels().begin(); channel != reader.channels().end(); ++channel) {
     const std::string name = channel.name();
-    if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0)
-      layers[name.substr(0, dot)].push_back(name);
+    const bool whole = channel.channel().xSampling == 1 && channel.channel().ySampling == 1;
+    if (whole && std::ranges::count(reader.color_channels(), name) == 0)
+      layers[name.substr(0, std::max<std::size_t>(name.rfind('.'), 1))].push_back(name);
   }
   constexpr std::string_view order = "RGBAXYZUV";
   AovImages aovs;
   for (auto& [name, channels] : layers) {
-    std::ranges::sort(channels, {}, [&](const std::string& channel) { return order.find(channel.back()); });
-    channels.resize(std::min<std::size_t>(channels.size(), 4));
+    std::ranges::stable_sort(channels, {},
+                             [&](const std::string& channel) { return order.find(channel.back()); });
     aovs[name] = reader.read(channels);
   }
   return aovs;

@@ -80,9 +80,11 @@ const std::vector<std::string>& image_formats() {
 
 bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
 
-bool has_eight_bits(const fs::path& path) {
+bool is_png(const fs::path& path) { return lower_extension(path) == ".png"; }
+
+bool is_for_screens(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+  return is_png(path) || extension == ".jpg" || extension == ".jpeg";
 }
 
 bool keeps_texts(const fs::path& path) {
@@ -90,16 +92,29 @@ bool keeps_texts(const fs::path& path) {
   return extension == ".png" || extension == ".exr";
 }
 
-std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color,
-                         const ImageTexts& texts) {
+void check_image_size(const fs::path& path, int width, int height) {
+  const std::string extension = lower_extension(path);
+  const bool jpeg = extension == ".jpg" || extension == ".jpeg";
+  constexpr int most_side = 65535;          // of a JPEG's header
+  constexpr int most_samples = 0x7fffffff;  // that stb_image_write counts
+  const bool too_many = 3 * std::int64_t{width} * height > most_samples;
+  if ((jpeg && (too_many || std::max(width, height) > most_side)) || (extension == ".hdr" && too_many))
+    throw UsageError(fmt::format(
+        "{}: {}x{} pixels are too many for a {} file (at most {}{} in all): use .png or .exr", path.string(),
+        width, height, extension.substr(1), jpeg ? "65535 each way, " : "", most_samples / 3));
+}
+
+std::string encode_image(const Image& image, const fs::path& path, const AovImages& aovs,
+                         const FileOptions& options) {
   check_image_path(path, !aovs.empty());
+  check_image_size(path, image.width, image.height);
   const std::string extension = lower_extension(path);
   const auto encode = [&] {
-    if (extension == ".exr") return encode_exr(image, aovs, color, texts);
+    if (extension == ".exr") return encode_exr(image, aovs, options);
     if (extension == ".hdr") return encode_hdr(image);
     if (extension == ".pfm") return encode_pfm(image);
-    if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image);
-    return with_png_texts(encode_png(image), texts);
+    if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image, options.dpi);
+    return with_png_texts(encode_png(image, options), options.texts);
   };
   try {
     return encode();
@@ -110,8 +125,9 @@ std::string encode_image(const Image& image, const fs::path& path, const AovImag
   }
 }
 
-void write_image(const Image& image, const fs::path& path, const AovImages& aovs, ExrColor color) {
-  write_file(path, encode_image(image, path, aovs, color));
+void write_image(const Image& image, const fs::path& path, const AovImages& aovs,
+                 const FileOptions& options) {
+  write_file(path, encode_image(image, path, aovs, options));
 }
 
 Image read_image(const fs::path& path) { return read_named(path, decode); }

@@ -16,15 +16,27 @@ enum class ExrColor { half, full };
 /// Named texts about an image, such as the program and scene that made it. Kept by PNG and EXR.
 using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 
+/// The space of an EXR's colours.
+enum class ExrSpace { srgb, acescg };
+
+/// What a file is to hold besides its pixels, and how it holds them. Formats ignore what they do not know.
+struct FileOptions {
+  ExrColor color = ExrColor::half;
+  ExrSpace space = ExrSpace::srgb;
+  int bits = 8;           // of a PNG's channels: 8 or 16
+  int dpi = 72;           // pixels an inch, for printers: in PNG, JPEG and EXR
+  ImageTexts texts = {};  // in PNG and EXR
+};
+
 /// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at
 /// all (temporary and rename). `aovs` become further channels of an EXR ("depth.Z", "normal.X"...); other
 /// formats refuse them. Throws UsageError for an unknown extension, IoError when the file cannot be written.
 void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
-                 ExrColor color = ExrColor::half);
+                 const FileOptions& options = {});
 
-/// The bytes that `write_image` writes; `texts` go into a PNG or an EXR.
+/// The bytes that `write_image` writes.
 std::string encode_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
-                         ExrColor color = ExrColor::half, const ImageTexts& texts = {});
+                         const FileOptions& options = {});
 
 /// Extensions that can be written, without the dot.
 const std::vector<std::string>& image_formats();
@@ -32,8 +44,14 @@ const std::vector<std::string>& image_formats();
 /// Whether the alpha channel is omitted because programs would show coverage as holes.
 bool drops_alpha(const std::filesystem::path& path);
 
-/// Whether a file of this name has 8 bits a channel: .png, .jpg, .jpeg.
-bool has_eight_bits(const std::filesystem::path& path);
+/// Whether a file of this name is a PNG.
+bool is_png(const std::filesystem::path& path);
+
+/// Whether a file of this name shows colours as a screen does, sRGB from 0 to 1: .png, .jpg, .jpeg.
+bool is_for_screens(const std::filesystem::path& path);
+
+/// The greatest value of a half float. An EXR of halves cuts colours off there.
+constexpr float greatest_half = 65504;
 
 /// Whether a file of this name keeps ImageTexts: .png, .exr.
 bool keeps_texts(const std::filesystem::path& path);
@@ -41,8 +59,11 @@ bool keeps_texts(const std::filesystem::path& path);
 /// Throws UsageError for an extension that `write_image` refuses. Call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 
+/// The same for more pixels than the format of that file can hold.
+void check_image_size(const std::filesystem::path& path, int width, int height);
+
 /// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB, unless a PNG states
-/// another gamma). Throws SceneError on a bad file.
+/// another gamma; an EXR's colours become sRGB's, by its chromaticities). Throws SceneError on a bad file.
 Image read_image(const std::filesystem::path& path);
 
 /// An image, and whether the file has alpha; if not, the image's alpha is 1.
@@ -55,7 +76,8 @@ ImageInFile read_image_in_file(const std::filesystem::path& path);
 /// Texts of a PNG or EXR; empty for other formats. Throws SceneError for a bad file.
 ImageTexts read_texts(const std::filesystem::path& path);
 
-/// The extra images of an EXR, by name; empty for other formats. Throws SceneError on a bad file.
+/// The channels of an EXR besides those of its picture, as images by the names of their layers ("depth" of
+/// "depth.Z"; a channel without a dot is a layer); empty for other formats. Throws SceneError on a bad file.
 AovImages read_aovs(const std::filesystem::path& path);
 
 float srgb_from_linear(float linear);

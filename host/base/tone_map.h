@@ -11,9 +11,9 @@ namespace sundog {
 /// none: clips colours above 1.
 /// reinhard: L / (1 + L) on the luminance (Reinhard and others 2002, "Photographic Tone Reproduction for
 /// Digital Images", equation 3). Never reaches white.
-/// aces: the fit of Narkowicz 2016 to the ACES output transform, each channel by itself; saturates.
-/// agx: a fit of Sobotka's AgX (the polynomial and matrices that Wrensch published in 2023): 16.5 stops,
-/// whose bright colours go to white.
+/// aces: the output transform of ACES 1.3 for standard range (aces.h).
+/// agx: Sobotka's AgX, with the matrices that Wrensch published in 2023: 16.5 stops, whose bright colours go
+/// to white.
 enum class ToneCurve { none, reinhard, aces, agx };
 
 inline constexpr std::array tone_curves = {
@@ -31,5 +31,9 @@ inline constexpr double least_white = 1667, greatest_white = 25000;
 
 /// Applies `map` to the first three channels; alpha and non-finite values are unchanged.
 void apply(const ToneMap& map, Image& image);
+
+/// Makes of a picture what a file for screens holds: colours by `map`, if wanted dithered to 8 bits; beside
+/// alpha they become straight, not those of a pixel that is covered in part.
+void prepare_for_screen(Image& image, const ToneMap& map, bool dither);
 
 }  // namespace sundog

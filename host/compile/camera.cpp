@@ -86,6 +86,7 @@ void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& i
   if (camera.lens.radius > 0) set_lens(camera, frame, info);
   if (camera.moves_to) set_motion(camera, frame, frame_of(scene, *camera.moves_to, "/camera/moves_to"), info);
   info.background_top = pack(image.background_top);
+  info.transparent = image.transparent;
   info.up = pack(frame.up);
   const SplitPoint place = split_point(origin);
   info.origin = place.high;

@@ -38,7 +38,7 @@ void merge_images(SceneDescription& scene) {
 void decode(ImageDescription& image) {
   if (image.encoded.empty() && image.pixels.width > 0) return;  // generated, not read
   try {
-    image.pixels = decode_stored(image.encoded);
+    image.pixels = decode_stored(image.encoded, image.srgb && !image.plain);
     if (image.plain) image.pixels.exponent.reset();
     settle_samples(image.pixels, image.srgb);
   } catch (const std::bad_alloc&) {

@@ -56,7 +56,8 @@ struct Camera {
 struct ImageSettings {
   int width = 640, height = 480;
   dvec3 background_bottom{0, 0, 0}, background_top{0, 0, 0};  // equal: one colour
-  ToneMap tone_map;  // for files of 8 bits a channel; no part of the compiled scene
+  bool transparent = false;  // what is behind the scene is left out of the colours
+  ToneMap tone_map;          // for files of 8 bits a channel; no part of the compiled scene
 };
 
 enum class Tracer { automatic, wide, compact };

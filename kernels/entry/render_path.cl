@@ -96,9 +96,10 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
     const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);
+    const REAL alpha = select(1.0f - spectrum_mean(paths.throughput), (REAL)(1.0f), paths.covered);
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
-      const float4 radiance = (float4)(get3(&seen, lane), MASK_LANE(paths.met, lane) ? 1.0f : 0.0f);
+      const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane));
       store_sample((u32)MASK_LANE(work.place, lane), radiance, work.sign[lane], film, weights, counts);
     }
   }

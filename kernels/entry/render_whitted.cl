@@ -32,7 +32,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   RayStack stack;
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
-    for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f);
+    for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     start_marching(counts);
     SceneRays rays;
     float signs[BATCH];

@@ -1,7 +1,9 @@
 // `sundog compare A B`: the figures, a picture of the differences, and a status for scripts.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/options/commands.h"
@@ -18,27 +20,62 @@ using nlohmann::json;
 /// JSON has no infinity.
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-json to_json(const CompareCommand& command, const Image& a, int channels, const ImageDifference& d) {
-  return {{"schema", 1},
-          {"a", command.a},
-          {"b", command.b},
-          {"width", a.width},
-          {"height", a.height},
-          {"alpha", channels == 4},
-          {"pixels", d.pixels},
-          {"mean", d.mean},
+json to_json(const ImageDifference& d) {
+  return {{"mean", d.mean},
           {"rms", d.rms},
           {"max", number_or_null(d.max)},
           {"percentile_99", number_or_null(d.percentile_99)},
           {"psnr", number_or_null(d.psnr)},
           {"differing", d.differing},
-          {"tolerance", command.tolerance},
           {"over_tolerance", d.over_tolerance},
-          {"non_finite", d.non_finite},
-          {"equal", d.differing == 0}};
+          {"non_finite", d.non_finite}};
 }
 
-void print_text(const CompareCommand& command, const ImageDifference& d) {
+/// Further layers of two EXR files.
+struct ComparedLayers {
+  std::map<std::string, ImageDifference> both;
+  std::vector<std::string> other;  // that one file lacks, or has with other channels
+};
+
+ComparedLayers compare_layers(const CompareCommand& command) {
+  const AovImages a = read_aovs(command.a), b = read_aovs(command.b);
+  ComparedLayers layers;
+  for (const auto& [name, image] : a) {
+    const auto found = b.find(name);
+    if (found != b.end() && found->second.channels == image.channels)
+      layers.both[name] = compare_images(image, found->second, command.tolerance, image.channels);
+    else
+      layers.other.push_back(name);
+  }
+  for (const auto& [name, image] : b)
+    if (!a.contains(name)) layers.other.push_back(name);
+  return layers;
+}
+
+void print_json(const CompareCommand& command, const Image& a, int channels, const ImageDifference& d,
+                const ComparedLayers& layers) {
+  json figures = to_json(d);
+  bool equal = d.differing == 0;
+  json others = json::object();
+  for (const auto& [name, difference] : layers.both) {
+    others[name] = to_json(difference);
+    equal = equal && difference.differing == 0;
+  }
+  figures.update({{"schema", 1},
+                  {"a", command.a},
+                  {"b", command.b},
+                  {"width", a.width},
+                  {"height", a.height},
+                  {"alpha", channels == 4},
+                  {"pixels", d.pixels},
+                  {"tolerance", command.tolerance},
+                  {"layers", others},
+                  {"layers_not_compared", layers.other},
+                  {"equal", equal}});
+  fmt::print("{}\n", figures.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+void print_text(const CompareCommand& command, const ImageDifference& d, const ComparedLayers& layers) {
   const auto percent = [&](std::uint64_t count) {
     return fmt::format("{} of {} ({:.3g} %)", count, d.pixels,
                        100 * static_cast<double>(count) / static_cast<double>(d.pixels));
@@ -51,6 +88,10 @@ void print_text(const CompareCommand& command, const ImageDifference& d) {
   fmt::print("pixels differing  {}\n", percent(d.differing));
   fmt::print("pixels over {:<5.3g} {}\n", command.tolerance, percent(d.over_tolerance));
   if (d.non_finite > 0) fmt::print("pixels not finite {}\n", percent(d.non_finite));
+  for (const auto& [name, layer] : layers.both)
+    fmt::print("layer {}: max {:.6g}, pixels differing {}, over {:.3g} {}\n", name, layer.max,
+               percent(layer.differing), command.tolerance, percent(layer.over_tolerance));
+  for (const std::string& name : layers.other) fmt::print("layer {}: not in both files alike\n", name);
 }
 
 int report_sizes(const CompareCommand& command, const Image& a, const Image& b) {
@@ -81,12 +122,14 @@ int compare_command(const CompareCommand& command) {
   const int channels = a_has_alpha && b_has_alpha ? 4 : 3;
   const ImageDifference difference = compare_images(a, b, command.tolerance, channels);
   if (!command.diff.empty()) write_image(difference_image(a, b, channels), command.diff);
+  const ComparedLayers layers = compare_layers(command);
   if (command.json)
-    fmt::print("{}\n",
-               to_json(command, a, channels, difference).dump(2, ' ', false, json::error_handler_t::replace));
+    print_json(command, a, channels, difference, layers);
   else
-    print_text(command, difference);
-  return difference.over_tolerance > 0 ? exit_difference : exit_done;
+    print_text(command, difference, layers);
+  const bool layers_pass =
+      std::ranges::all_of(layers.both, [](const auto& layer) { return layer.second.over_tolerance == 0; });
+  return difference.over_tolerance > 0 || !layers_pass ? exit_difference : exit_done;
 }
 
 }  // namespace sundog

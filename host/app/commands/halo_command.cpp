@@ -159,10 +159,10 @@ int make_picture(const HaloOptions& options) {
   const std::vector<DeviceInfo> devices =
       pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
   const TracedHalo traced = trace_halo_map(e, devices, options.quiet || options.json);
-  const Image image = picture_of(options, e, traced.map, rows);
-  const auto color = options.picture.full_floats ? ExrColor::full : ExrColor::half;
-  write_image(shown_in(options.picture.out, image, tone_map, !options.picture.no_dither), options.picture.out,
-              {}, color);
+  const Image image = shown_in(options.picture.out, picture_of(options, e, traced.map, rows), tone_map,
+                               dithers(options.picture));
+  write_image(image, options.picture.out, {}, file_options(options.picture));
+  warn_of_halves(options.picture.out, image, file_options(options.picture));
   report(options, e, traced, image);
   return exit_done;
 }

@@ -18,6 +18,10 @@ struct PictureOptions {
   bool full_floats = false;                         // an EXR's colours as 32-bit floats
   std::string tone_curve, exposure, white_balance;  // as typed; empty: the scene's
   bool no_dither = false;
+  int dpi = 72;                      // pixels an inch, for printers
+  std::string color_space = "srgb";  // of an EXR: srgb or acescg
+  int bits = 8;                      // of a PNG's channels: 8 or 16
+  bool transparent = false;          // a PNG keeps alpha
 };
 
 struct RenderCommand : PictureOptions {

@@ -46,6 +46,14 @@ std::string format_name(const PictureOptions& picture) {
   return is_standard_stream(picture.out) ? "picture." + picture.format : picture.out;
 }
 
+FileOptions file_options(const PictureOptions& picture) {
+  return {picture.full_floats ? ExrColor::full : ExrColor::half,
+          picture.color_space == "acescg" ? ExrSpace::acescg : ExrSpace::srgb,
+          picture.bits,
+          picture.dpi,
+          {}};
+}
+
 std::vector<std::string> made_aovs(const RenderCommand& command) {
   std::vector<std::string> aovs = command.aovs;
   if (command.denoise)
@@ -59,6 +67,10 @@ void check_picture(const PictureOptions& picture, bool with_aovs) {
   check_image_path(name, with_aovs);
   if (picture.full_floats && drops_alpha(name))
     throw UsageError(fmt::format("{}: --float is for .exr files", picture.out));
+  if (picture.color_space != "srgb" && drops_alpha(name))
+    throw UsageError(fmt::format("{}: --color-space is for .exr files", picture.out));
+  if (picture.bits != 8 && !is_png(name))
+    throw UsageError(fmt::format("{}: --bits is for .png files", picture.out));
   if (!is_standard_stream(picture.out)) return check_writable(picture.out);
   if (::isatty(STDOUT_FILENO))
     throw UsageError("-o -: the standard output is a terminal: send it to a file or a pipe");

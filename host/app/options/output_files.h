@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/options/options.h"
+#include "base/image_io.h"
 #include "base/input.h"
 
 namespace sundog {
@@ -11,6 +12,12 @@ namespace sundog {
 /// The name that the picture's format is read from: that of the file, or "picture.png" for the standard
 /// output.
 std::string format_name(const PictureOptions& picture);
+
+/// Whether its colours are rounded to 8 bits by chance.
+inline bool dithers(const PictureOptions& picture) { return !picture.no_dither && picture.bits == 8; }
+
+/// How that file is written.
+FileOptions file_options(const PictureOptions& picture);
 
 /// The AOVs that a frame makes: those asked for, and those that the denoiser wants.
 std::vector<std::string> made_aovs(const RenderCommand& command);

@@ -1,14 +1,18 @@
 #include "app/process/save_image.h"
 
 #include <fmt/format.h>
+
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
+#include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/pixels/dither.h"
 
 namespace sundog {
 namespace {
@@ -21,10 +25,7 @@ fs::path named(const Picture& picture, const fs::path& path) {
 }
 
 void write(const Picture& picture, const fs::path& path) {
-  const Image shown = shown_in(named(picture, path), picture.image, picture.tone_map, picture.dither);
-  write_output(path,
-               encode_image(shown, named(picture, path), picture.aovs,
-                            picture.full_floats ? ExrColor::full : ExrColor::half, picture.texts),
+  write_output(path, encode_image(picture.image, named(picture, path), picture.aovs, picture.file),
                program_environment()->faults);
 }
 
@@ -68,15 +69,29 @@ void save(const Picture& picture, const fs::path& path, const char* what, const 
 
 }  // namespace
 
+void warn_of_halves(const fs::path& path, const Image& image, const FileOptions& file) {
+  if (drops_alpha(path) || file.color == ExrColor::full) return;
+  const auto channels = static_cast<std::size_t>(image.channels);
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < image.data.size(); i += channels)
+    cut +=
+        std::any_of(&image.data[i], &image.data[i] + 3, [](float v) { return std::abs(v) > greatest_half; });
+  if (cut > 0)
+    print_warnings(
+        {{fmt::format("{}: {} pixels are brighter than {}, the most that half floats hold, and are "
+                      "cut off there: write 32-bit floats with --float",
+                      path.string(), cut, greatest_half)}});
+}
+
 Image shown_in(const fs::path& path, Image image, const ToneMap& map, bool dither) {
-  if (!has_eight_bits(path)) return image;
-  apply(map, image);
-  if (dither) dither_to_8_bits(image);
+  if (!is_for_screens(path)) return image;
+  prepare_for_screen(image, map, dither);
   return image;
 }
 
 void save_image(const Picture& picture, const fs::path& path) {
   save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
+  warn_of_halves(named(picture, path), picture.image, picture.file);
 }
 
 void save_part(const Picture& picture, const PartHeader& header, const fs::path& path) {

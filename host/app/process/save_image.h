@@ -11,28 +11,31 @@
 
 namespace sundog {
 
-/// What is to be saved: a developed frame and what it was developed from.
+/// What is to be saved: a frame as its file shows it and what it was developed from.
 struct Picture {
-  const Image& image;  // linear, of image_channels() of the file
+  const Image& image;  // by shown_in(), of image_channels() of the file
   const AovImages& aovs;
   const Film& film;
   std::uint64_t key = 0;             // of the scene, for a checkpoint
   std::filesystem::path checkpoint;  // may be used in need; empty: none was asked for
-  bool full_floats = false;
-  std::string format = "png";  // of image_formats(), where the path is "-"
-  ToneMap tone_map = {};       // for formats of 8 bits
-  bool dither = true;          // for these, too
-  ImageTexts texts = {};       // for formats that keep them
+  std::string format = "png";        // of image_formats(), where the path is "-"
+  FileOptions file = {};
 };
 
-/// The channels that a file of this name keeps: 3, or 4 with coverage.
-inline int image_channels(const std::filesystem::path& path) { return drops_alpha(path) ? 3 : 4; }
+/// The channels that a file of this name keeps of a frame: 3, or 4 with coverage.
+inline int image_channels(const std::filesystem::path& path, bool transparent) {
+  return drops_alpha(path) && !(transparent && is_png(path)) ? 3 : 4;
+}
 
-/// The image as a file of this name shows it: 8 bits by the tone map and, if wanted, dithered.
+/// The image as a file of this name shows it: for screens by the tone map and, if wanted, dithered to 8 bits.
 Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map, bool dither = true);
 
-/// Writes `path`; "-" is the standard output. When that fails the frame is kept as a checkpoint, or as an
-/// image in the folder for temporary files: IoError says what happened and where it is.
+/// Warns of colours that an EXR of halves cuts off.
+void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
+
+/// Writes `path`; "-" is the standard output. Warns of colours that the file cuts off. When that fails the
+/// frame is kept as a checkpoint, or as an image in the folder for temporary files: IoError says what
+/// happened and where it is.
 void save_image(const Picture& picture, const std::filesystem::path& path);
 
 /// The same for a part of a frame.

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -105,7 +106,7 @@ Denoiser::Denoiser() {
   calls_ = std::move(calls);
 }
 
-void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
+Image Denoiser::clean(const Image& image, const Image& albedo, const Image& normal) const {
   const Calls& call = *calls_;
   const std::shared_ptr<void> device(call.new_device(cpu_device), call.release_device);
   if (!device) call.check(nullptr);
@@ -113,7 +114,6 @@ void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) c
   call.check(device.get());
   const std::shared_ptr<void> filter(call.new_filter(device.get(), "RT"), call.release_filter);
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  const auto channels = static_cast<std::size_t>(image.channels);
   Image clean(image.width, image.height, 3);
   const auto give = [&](const char* name, const Image& from) {  // only "output" is written to
     call.set_image(filter.get(), name, const_cast<float*>(from.data.data()), three_floats, width, height, 0,
@@ -128,8 +128,21 @@ void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) c
   call.commit_filter(filter.get());
   call.execute_filter(filter.get());
   call.check(device.get());
-  for (std::size_t pixel = 0; pixel < width * height; ++pixel)
-    for (std::size_t c = 0; c < 3; ++c) image.data[channels * pixel + c] = clean.data[3 * pixel + c];
+  return clean;
+}
+
+void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
+  const auto channels = static_cast<std::size_t>(image.channels);
+  const Image colors = clean(image, albedo, normal);
+  if (channels == 4) {
+    Image alpha(image.width, image.height, 3);
+    for (std::size_t i = 0; i < alpha.data.size(); ++i) alpha.data[i] = image.data[i / 3 * 4 + 3];
+    if (std::ranges::any_of(alpha.data, [&](float a) { return a != alpha.data[0]; }))
+      alpha = clean(alpha, albedo, normal);
+    for (std::size_t pixel = 0; pixel < alpha.data.size() / 3; ++pixel)
+      image.data[4 * pixel + 3] = std::clamp(alpha.data[3 * pixel], 0.0f, 1.0f);
+  }
+  for (std::size_t i = 0; i < colors.data.size(); ++i) image.data[i / 3 * channels + i % 3] = colors.data[i];
 }
 
 }  // namespace sundog

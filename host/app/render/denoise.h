@@ -13,12 +13,14 @@ class Denoiser {
   /// UsageError that says where to get it.
   Denoiser();
 
-  /// Takes the noise from the colours of `image` (3 or 4 channels, linear), by the first surfaces' albedo and
-  /// normal (3 channels, of the same size). Alpha stays. Throws std::runtime_error with the library's words.
+  /// Takes the noise from colours and alpha of `image` (3 or 4 channels, linear), by the first surfaces'
+  /// albedo and normal (3 channels, of the same size). Throws std::runtime_error with the library's words.
   void denoise(Image& image, const Image& albedo, const Image& normal) const;
 
  private:
   struct Calls;
+  /// The same for three channels, as a picture of its own.
+  Image clean(const Image& color, const Image& albedo, const Image& normal) const;
   std::shared_ptr<const Calls> calls_;
 };
 

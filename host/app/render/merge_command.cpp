@@ -21,20 +21,13 @@ int merge_command(const MergeCommand& command) {
   if (is_standard_stream(command.out)) claim_standard_output();
   remove_left_over(command.out);
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
-  check_image_path(format_name(command), !whole.aovs.empty());
-  const Image image = whole.film.develop(image_channels(format_name(command)));
+  const std::string name = format_name(command);
+  check_image_path(name, !whole.aovs.empty());
+  const Image image = shown_in(name, whole.film.develop(image_channels(name, command.transparent)), tone_map,
+                               dithers(command));
   AovImages aovs;
   for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
-  save_image({image,
-              aovs,
-              whole.film,
-              whole.key,
-              {},
-              command.full_floats,
-              command.format,
-              tone_map,
-              !command.no_dither},
-             command.out);
+  save_image({image, aovs, whole.film, whole.key, {}, command.format, file_options(command)}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
 }

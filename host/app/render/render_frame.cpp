@@ -37,14 +37,14 @@ auto timed(double& seconds, const Step& step) {
   return result;
 }
 
-RenderOptions render_options(const RenderCommand& command) {
+RenderOptions render_options(const RenderCommand& command, const ImageSettings& image) {
   RenderOptions options;
   options.work_group = command.work_group;
   options.split = command.split;
   if (command.part) options.part = *command.part;
   options.tile = command.tile;
   options.aovs = made_aovs(command);
-  options.channels = command.part ? 0 : image_channels(format_name(command));
+  options.channels = command.part ? 0 : image_channels(format_name(command), image.transparent);
   options.resume = command.resume;
   options.renews_checkpoint = !command.frames.empty();
   if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
@@ -120,8 +120,11 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
     return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)
                                                                : compile(*scene.description));
   });
-  check_frame_memory(static_cast<int>(scene.flat->info.width), static_cast<int>(scene.flat->info.height),
-                     frame_output(command, in_passes(scene.flat->sampling)));
+  const int width = static_cast<int>(scene.flat->info.width),
+            height = static_cast<int>(scene.flat->info.height);
+  if (!command.part) check_image_size(format_name(command), width, height);
+  check_frame_memory(width, height,
+                     frame_output(command, scene.description->image, in_passes(scene.flat->sampling)));
   return scene;
 }
 
@@ -132,7 +135,7 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
     if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet, setup.run);
-  RenderOptions options = render_options(command);
+  RenderOptions options = render_options(command, scene.description->image);
   const std::string checkpoint = checkpoint_file(command, setup);
   RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
   options.stop = &setup.stop.flag();
@@ -142,14 +145,11 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
   if (command.write_every > 0) {
     options.picture_seconds = command.write_every;
-    options.on_picture = [&](const Film& film) {
-      write_so_far(command, scene.description->image.tone_map, film);
-    };
+    options.on_picture = [&](const Film& film) { write_so_far(command, scene.description->image, film); };
   }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
-  const RenderResult result = setup.session
-                                  ? setup.session->render(scene.flat, options)
-                                  : render(scene.flat, plan_servers(command, scene, setup), options);
+  RenderResult result = setup.session ? setup.session->render(scene.flat, options)
+                                      : render(scene.flat, plan_servers(command, scene, setup), options);
   bar.erase();
   const bool told = setup.job && result.checkpoint_kept && !result.failure;
   if (told) tell_kept(result, checkpoint);

@@ -25,10 +25,10 @@ constexpr auto look_again = std::chrono::milliseconds(200);
 /// All that shapes the frame's file.
 std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   const ToneMap& tone = scene.description->image.tone_map;
-  std::string text =
-      fmt::format("{} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
-                  static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither,
-                  command.full_floats, command.denoise, command.metadata, command.noise);
+  std::string text = fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
+      static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither, command.full_floats,
+      command.denoise, command.metadata, command.noise, command.dpi, command.color_space, command.bits);
   text += std::filesystem::path(command.out).extension().string();
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);
   for (const std::string& name : command.aovs) text += " " + name;

@@ -81,12 +81,13 @@ double seconds_of(const RenderTimes& times) {
   return times.build_kernels + times.upload + times.render + times.readback;
 }
 
-/// The frame's picture, without its noise where that is asked for and the frame was not interrupted.
-Image shown_image(const RenderCommand& command, const RenderResult& result) {
-  Image image = result.image;
+/// Takes the frame's picture as its file shows it, without its noise where that is asked for and the frame
+/// was not interrupted.
+Image take_image(const RenderCommand& command, const ToneMap& tone_map, RenderResult& result) {
+  Image image = std::move(result.image);
   if (command.denoise && (result.complete || result.time_limited))
     Denoiser().denoise(image, result.aovs.at(feature_albedo), result.aovs.at(feature_normal));
-  return image;
+  return shown_in(format_name(command), std::move(image), tone_map, dithers(command));
 }
 
 template <class Named>
@@ -96,12 +97,11 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
   return names;
 }
 
-/// Without those that only the denoiser wanted; of a part none are developed.
-AovImages asked_aovs(const RenderCommand& command, const RenderResult& result) {
-  AovImages aovs;
-  for (const std::string& name : command.aovs)
-    if (const auto found = result.aovs.find(name); found != result.aovs.end()) aovs.insert(*found);
-  return aovs;
+/// Takes the AOVs, without those that only the denoiser wanted; of a part none are developed.
+AovImages take_aovs(const RenderCommand& command, RenderResult& result) {
+  std::erase_if(result.aovs,
+                [&](const auto& aov) { return std::ranges::count(command.aovs, aov.first) == 0; });
+  return std::move(result.aovs);
 }
 
 }  // namespace
@@ -111,32 +111,26 @@ std::string samples_file(const RenderCommand& command) {
   return path.replace_extension(".samples.png").string();
 }
 
-FrameOutput frame_output(const RenderCommand& command, bool passes) {
+FrameOutput frame_output(const RenderCommand& command, const ImageSettings& image, bool passes) {
   return {format_name(command),
           made_aovs(command),
           !command.resume.empty() || job_rank() >= 0,
           command.tile,
           passes,
-          command.denoise};
+          command.denoise,
+          image_channels(format_name(command), image.transparent),
+          command.bits};
 }
 
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
-                 const RenderResult& result, const std::string& checkpoint) {
-  const Image image = shown_image(command, result);
-  AovImages aovs = asked_aovs(command, result);
-  ImageTexts texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
+                 RenderResult& result, const std::string& checkpoint) {
+  const Image image = take_image(command, scene.image.tone_map, result);
+  AovImages aovs = take_aovs(command, result);
+  FileOptions file = file_options(command);
+  file.texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
   if (command.metadata)
-    for (auto& text : metadata(command, scene, result)) texts.push_back(std::move(text));
-  Picture picture{image,
-                  aovs,
-                  result.film,
-                  result.key,
-                  checkpoint,
-                  command.full_floats,
-                  command.format,
-                  scene.image.tone_map,
-                  !command.no_dither,
-                  texts};
+    for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
+  Picture picture{image, aovs, result.film, result.key, checkpoint, command.format, file};
   if (command.part && picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part && !is_empty(result))
     save_image(picture, command.out);
@@ -148,11 +142,11 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint, stays);
 }
 
-void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film) {
+void write_so_far(const RenderCommand& command, const ImageSettings& settings, const Film& film) {
   try {
-    const Image image = film.develop(image_channels(command.out));
-    write_image(shown_in(command.out, image, tone_map, !command.no_dither), command.out, {},
-                command.full_floats ? ExrColor::full : ExrColor::half);
+    Image image = film.develop(image_channels(command.out, settings.transparent));
+    write_image(shown_in(command.out, std::move(image), settings.tone_map, dithers(command)), command.out, {},
+                file_options(command));
   } catch (const IoError&) {
     // The disk may have room again when the whole picture is there.
   }
@@ -181,7 +175,7 @@ void tell_result(const RenderCommand& command, const SceneDescription& scene, co
   tell_samples(command, result, static_cast<u32>(scene.render.samples));
   if (!command.verbose) return;
   const double pixels = static_cast<double>(result.film.done.size());
-  const std::uint64_t each = bytes_a_pixel(frame_output(command, !result.taken.empty()));
+  const std::uint64_t each = bytes_a_pixel(frame_output(command, scene.image, !result.taken.empty()));
   fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
              "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }

@@ -14,14 +14,15 @@ namespace sundog {
 std::string samples_file(const RenderCommand& command);
 
 /// What the command's frame takes memory for.
-FrameOutput frame_output(const RenderCommand& command, bool passes);
+FrameOutput frame_output(const RenderCommand& command, const ImageSettings& image, bool passes);
 
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
+/// Image and AOVs of the result are gone afterwards.
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
-                 const RenderResult& result, const std::string& checkpoint);
+                 RenderResult& result, const std::string& checkpoint);
 
 /// Writes the picture as far as it is made; what fails is reported when the whole one is written.
-void write_so_far(const RenderCommand& command, const ToneMap& tone_map, const Film& film);
+void write_so_far(const RenderCommand& command, const ImageSettings& settings, const Film& film);
 
 /// Tells of an interrupted frame that its checkpoint has it. Before the picture is written, for which mpirun
 /// may leave no time.

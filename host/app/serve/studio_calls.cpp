@@ -103,7 +103,7 @@ WebAnswer Studio::picture(const std::string& format) {
     return plain(409, "the picture is not finished yet");
   const std::string name = "picture." + format;
   Image image = for_format(*now.picture, format);
-  if (has_eight_bits(name)) dither_to_8_bits(image);
+  if (is_for_screens(name)) dither_to_8_bits(image);
   return {200, format == "png" ? "image/png" : "image/x-exr", encode_image(image, name), name};
 }
 

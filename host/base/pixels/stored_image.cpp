@@ -58,11 +58,11 @@ void check_image_size(std::int64_t width, std::int64_t height, std::size_t pixel
                     width, height, pixels * pixel_bytes >> 20));
 }
 
-StoredImage decode_stored(std::string_view bytes) {
+StoredImage decode_stored(std::string_view bytes, bool colors) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(bytes);
   if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes);
   if (bytes.starts_with("RIFF")) return decode_webp(bytes);
-  if (bytes.starts_with("\x76\x2f\x31\x01")) return stored_halves(decode_exr(bytes));
+  if (bytes.starts_with("\x76\x2f\x31\x01")) return stored_halves(decode_exr(bytes, colors));
   if (bytes.starts_with("#?")) return stored_halves(decode_hdr(bytes));
   if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return stored_halves(decode_pfm(bytes));
   throw std::runtime_error("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found another file");

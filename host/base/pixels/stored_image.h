@@ -29,8 +29,9 @@ struct StoredImage {
 };
 
 /// PNG, JPEG, WebP, Radiance HDR, EXR and PFM, by the content; samples of the latter three become halves.
-/// Throws std::runtime_error with the reason alone.
-StoredImage decode_stored(std::string_view bytes);
+/// An EXR's primaries are those of sRGB then, unless its numbers are no `colors`. Throws std::runtime_error
+/// with the reason alone.
+StoredImage decode_stored(std::string_view bytes, bool colors = true);
 
 /// Encodes as grey or RGB PNG of 8 or 16 bits, without alpha. Throws std::runtime_error.
 std::string encode_png(const StoredImage& image);

@@ -86,7 +86,8 @@ SceneDescription self_check_scene() {
   SceneDescription scene;
   scene.camera.position = {0.4, 1.6, 5.5};
   scene.camera.target = {0, -0.2, 0};
-  scene.image = {64, 48, {0.5, 0.6, 0.7}, {0.1, 0.2, 0.5}, {}};
+  scene.image.width = 64, scene.image.height = 48;
+  scene.image.background_bottom = {0.5, 0.6, 0.7}, scene.image.background_top = {0.1, 0.2, 0.5};
   scene.render.samples = 2;
   scene.media.push_back({"world", 1, dvec3(0), world_priority});
   LightDescription ambient, point;

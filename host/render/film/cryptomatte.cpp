@@ -22,22 +22,24 @@ std::uint32_t block_of(std::string_view bytes) {
   return block;
 }
 
-std::string name_at(const std::vector<std::string>& names, float index) {
-  const auto i = static_cast<std::size_t>(index);
-  return i < names.size() && !names[i].empty() ? names[i] : "default";
+/// What has no name is called by its place, so that it has an id of its own; the last is for what has none.
+std::vector<std::string> completed(std::vector<std::string> names, std::string_view kind) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i].empty()) names[i] = fmt::format("{} {}", kind, i);
+  names.emplace_back("default");
+  return names;
 }
 
-/// Two of the four pairs as a layer; without a name neither id nor share.
+/// Two of the four pairs as a layer; what covers nothing has neither id nor share.
 Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::string>& names) {
   std::vector<float> ids;
-  for (std::size_t i = 0; i <= names.size(); ++i)
-    ids.push_back(std::bit_cast<float>(id_bits(name_at(names, static_cast<float>(i)))));
+  for (const std::string& name : names) ids.push_back(std::bit_cast<float>(id_bits(name)));
   Image layer(pairs.width, pairs.height, 4);
   for (std::size_t pixel = 0; pixel < layer.data.size() / 4; ++pixel)
     for (std::size_t pair = 0; pair < 2; ++pair) {
       const float* from = &pairs.data[8 * pixel + 2 * (first + pair)];
       if (!(from[0] >= 0) || !(from[1] > 0)) continue;
-      layer.data[4 * pixel + 2 * pair] = ids[std::min(static_cast<std::size_t>(from[0]), names.size())];
+      layer.data[4 * pixel + 2 * pair] = ids[std::min(static_cast<std::size_t>(from[0]), ids.size() - 1)];
       layer.data[4 * pixel + 2 * pair + 1] = from[1];
     }
   return layer;
@@ -45,17 +47,16 @@ Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::str
 
 std::string manifest_of(const std::vector<std::string>& names) {
   nlohmann::json manifest = nlohmann::json::object();
-  for (std::size_t i = 0; i <= names.size(); ++i) {
-    const std::string name = name_at(names, static_cast<float>(i));
-    manifest[name] = fmt::format("{:08x}", id_bits(name));
-  }
+  for (const std::string& name : names) manifest[name] = fmt::format("{:08x}", id_bits(name));
   return manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-void split(AovImages& aovs, const std::string& name, const std::vector<std::string>& names,
+void split(AovImages& aovs, const std::string& kind, const std::vector<std::string>& known,
            ImageTexts& texts) {
+  const std::string name = "crypto_" + kind;
   const auto found = aovs.find(name);
   if (found == aovs.end()) return;
+  const std::vector<std::string> names = completed(known, kind);
   const Image pairs = std::move(found->second);
   aovs.erase(found);
   aovs[name + "00"] = layer_of(pairs, 0, names);
@@ -90,8 +91,8 @@ std::uint32_t id_bits(std::string_view name) {
 ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,
                              const std::vector<std::string>& materials) {
   ImageTexts texts;
-  split(aovs, "crypto_object", objects, texts);
-  split(aovs, "crypto_material", materials, texts);
+  split(aovs, "object", objects, texts);
+  split(aovs, "material", materials, texts);
   return texts;
 }
 

@@ -30,15 +30,15 @@ std::uint64_t aov_floats(const std::string& name) {
              : 1;
 }
 
-/// What an encoder has at once beside the image: rows as they are written, packed, and the file's bytes,
-/// where the picture is noise that no compression makes smaller.
-std::uint64_t encoder_bytes(const std::string& file, std::uint64_t aovs) {
-  const fs::path extension = fs::path(file).extension();
-  if (file.empty()) return 0;
-  if (!drops_alpha(file)) return 16 + aovs;  // half floats, two copies; AOVs stay floats
-  if (extension == ".png" || extension == ".PNG") return 12;
-  if (extension == ".hdr" || extension == ".HDR") return 14;
-  return extension == ".pfm" || extension == ".PFM" ? 12 : 6;
+/// What an encoder has at once beside the image: samples as it takes them, and the file's bytes, where the
+/// picture is noise that no compression makes smaller; twice, where they grow.
+std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
+  const fs::path extension = fs::path(output.file).extension();
+  if (output.file.empty()) return 0;
+  if (!drops_alpha(output.file)) return 16 + aovs;
+  if (is_png(output.file)) return static_cast<std::uint64_t>(output.channels * output.bits / 8 + 1);
+  if (extension == ".hdr" || extension == ".HDR") return 12 + 2 * 4;
+  return extension == ".pfm" || extension == ".PFM" ? 12 : 3 + 2 * 3;
 }
 
 // What a frame in passes holds besides: the film of all passes, with surfaces, what has become of pixels,
@@ -47,10 +47,10 @@ constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 +
 
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
 // frames are drawn so fast that tiles are large.
-constexpr std::uint64_t tile_bytes = 4;
+constexpr std::uint64_t tile_bytes = 10;
 
-// A second picture, and what the denoiser makes of it.
-constexpr std::uint64_t denoised_bytes = 16 + 12;
+// What the denoiser makes of the colours; and alpha as a picture of its own, and what it makes of that.
+constexpr std::uint64_t denoised_bytes = 12, denoised_alpha_bytes = 24;
 
 // What Open Image Denoise 2.5 takes a pixel of a small picture: its network's layers.
 constexpr std::uint64_t denoiser_bytes = 600;
@@ -61,11 +61,13 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   const std::uint64_t film = own_bytes + film_aovs(output);
   std::uint64_t aovs = 0;
   for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
-  const std::uint64_t image = drops_alpha(output.file) ? 12 : 16;
+  const auto channels = static_cast<std::uint64_t>(output.channels), image = 4 * channels;
   const bool part = output.file.ends_with(".part");
-  const std::uint64_t encoder = encoder_bytes(output.file, aovs);
+  const std::uint64_t encoder = encoder_bytes(output, aovs);
   const std::uint64_t at_end =
-      film + (part ? film : image + aovs + encoder + (output.denoise ? denoised_bytes : 0));
+      film + (part ? film
+                   : image + aovs + encoder +
+                         (output.denoise ? denoised_bytes + (channels == 4 ? denoised_alpha_bytes : 0) : 0));
   return tile_bytes + (output.passes ? passes_bytes + film_aovs(output) : 0) +
          (output.checkpoints ? std::max(3 * film, at_end) : at_end);
 }

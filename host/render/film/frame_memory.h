@@ -14,6 +14,8 @@ struct FrameOutput {
   int tile = 0;              // edge of the tiles; 0: they are small beside the frame
   bool passes = false;       // made in passes (render/plan/passes.h)
   bool denoise = false;      // with a denoiser that takes most_denoiser_bytes at most
+  int channels = 3;          // of the image
+  int bits = 8;              // of a PNG
 };
 
 /// What a denoiser may take for its own, beside the pictures that it is given and makes.

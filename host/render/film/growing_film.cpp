@@ -12,7 +12,17 @@
 namespace sundog {
 namespace {
 
-/// The square of pixel_errors() of a pixel whose colour was `then` before its last samples.
+/// The mean of a pixel's samples, to which alpha adds without a change of their light: what looks alike and
+/// covers less differs.
+Color watched(const float4& sum, float weight) {
+  Color color = mean_of(sum, weight);
+  const float clear = weight > 0 ? 1 - sum.w / weight : 0;
+  color.r += clear;
+  color.g -= clear;
+  return color;
+}
+
+/// The square of pixel_errors() of a pixel whose watched() was `then` before its last samples.
 float squared_error(const Color& now, const Color& then) {
   const float moved = std::abs(now.r - then.r) + std::abs(now.g - then.g) + std::abs(now.b - then.b);
   return moved * moved / std::sqrt(seen_light(now));
@@ -37,7 +47,7 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
   const float4 sum = made.sums[i], before = whole.sums[p];
   const float weight = made.weights[i], weight_before = whole.weights[p];
   const u32 taken = pass.first_sample + pass.sample_count;
-  const Color color = mean_of(sum, weight);
+  const Color color = watched(sum, weight);
   if (weight > 0 && weight_before > 0) {
     // One doubling may move it little by chance, so earlier ones count too.
     const Seen& then = film.seen[p];
@@ -111,7 +121,7 @@ void begin(GrowingFilm& film, const Pass& pass, Film made) {
   film.taken.assign(film.taken.size(), taken);
   film.states.assign(film.states.size(), PixelState::sampled);
   for (std::size_t p = 0; p < film.seen.size(); ++p)
-    film.seen[p] = seen_of(mean_of(whole.sums[p], whole.weights[p]));
+    film.seen[p] = seen_of(watched(whole.sums[p], whole.weights[p]));
   std::ranges::transform(film.moved, film.moved_by_one.begin(),
                          [&](float moved) { return moved_by_one(moved, taken); });
   ++film.stage;
@@ -183,7 +193,7 @@ float share_of_squares(u32 samples) {
 }
 
 void see(GrowingFilm& film, std::size_t pixel) {
-  film.seen[pixel] = seen_of(mean_of(film.film.sums[pixel], film.film.weights[pixel]));
+  film.seen[pixel] = seen_of(watched(film.film.sums[pixel], film.film.weights[pixel]));
   film.moved_by_one[pixel] = moved_by_one(film.moved[pixel], film.taken[pixel]);
 }
 

@@ -37,8 +37,9 @@ bool is_list_size(int width, int height);
 /// The pixels of a pass in that order.
 std::vector<u32> pixels_of(const Pass& pass);
 
-/// What a pixel shows, for its neighbours' expected errors: red, green, blue and the sum of their squares.
-/// They are added up at once.
+/// What a pixel shows, for its neighbours' expected errors: red, green and blue, to which what is missing of
+/// alpha is added (red) and from which it is taken (green), and the sum of their squares. They are added up
+/// at once.
 using Seen [[gnu::vector_size(16)]] = float;
 
 /// The edge of the blocks of pixels whose rays a pass with `costs` counts: no device takes pixels of two of

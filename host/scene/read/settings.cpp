@@ -184,6 +184,7 @@ ImageSettings read_image(const JsonValue& value) {
     ImageSettings image;
     image.width = object.integer("width", image.width, 1, most_edge);
     image.height = object.integer("height", image.height, 1, most_edge);
+    image.transparent = object.boolean("transparent", image.transparent);
     if (const auto tone_map = object.find("tone_map")) image.tone_map = read_tone_map(*tone_map);
     const auto background = object.find("background");
     if (!background) return image;

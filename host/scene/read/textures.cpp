@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/image_io.h"
 #include "base/input.h"
 #include "base/limits.h"
 #include "scene/formula/lower.h"
@@ -295,8 +296,9 @@ int TextureLibrary::use(const std::string& name, TextureUse use) {
     if (!entry.of[i].empty()) texture.of[i] = this->use(entry.of[i], use);
   if (texture.kind == TEXTURE_IMAGE) {
     if (use == TextureUse::number && texture.channel < 0) texture.channel = 0;
-    const bool srgb = entry.encoding == Entry::Encoding::srgb ||
-                      (entry.encoding == Entry::Encoding::by_use && use == TextureUse::color);
+    // An encoding is one of bytes; an EXR's colours have primaries in any case.
+    const bool by_use = entry.encoding == Entry::Encoding::by_use || !drops_alpha(entry.file);
+    const bool srgb = by_use ? use == TextureUse::color : entry.encoding == Entry::Encoding::srgb;
     texture.image = use_image(entry, srgb);
   }
   const auto index = static_cast<int>(scene_.textures.size());

@@ -23,9 +23,25 @@ static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ende
   return light;
 }
 
+// Of `lanes`, the pixels that show what is behind the scene, straight on, are covered by so much less: w is
+// what covers the pixel of its background. Returns these lanes.
+static inline MASK uncover(const WaitingRays* paths, MASK lanes, float4* radiance) {
+  const MASK straight = lanes & MASK_OF((paths->depth & TURNED) == 0);
+  const REAL3 t = paths->throughput;
+  const REAL passed = (t.x + t.y + t.z) * (1.0f / 3.0f);
+  for (u32 bits = lane_bits(straight); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits);
+    radiance[MASK_LANE(paths->pixel, i)].w -= REAL_LANE(passed, i);
+  }
+  return straight;
+}
+
 static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, const WaitingRays* paths,
-                                   MASK lanes) {
-  return multiply3(paths->throughput, sky_along(scene, rays->d, MASK_OF(paths->depth == 1), lanes));
+                                   MASK lanes, float4* radiance) {
+  const MASK straight = uncover(paths, lanes, radiance);
+  const REAL3 light =
+      multiply3(paths->throughput, sky_along(scene, rays->d, MASK_OF(paths->depth == 1), lanes));
+  return scene->info->transparent ? select3(light, all3((float3)(0.0f)), straight) : light;
 }
 
 // Ambient light on surfaces, less in the crevices of fields.
@@ -49,14 +65,6 @@ static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, c
   return mapped_emission(bsdf, multiply3(paths->throughput, light));
 }
 
-// Marks the pixels whose camera rays have hit something that is there.
-static inline void note_first_hits(const WaitingRays* paths, MASK lanes, float4* radiance, u32* counts) {
-  const MASK first = lanes & MASK_OF(paths->depth == 1);
-  counts[COUNT_PRIMARY_HIT] += lane_count(first);
-  for (u32 bits = lane_bits(first); bits; bits &= bits - 1u)
-    radiance[MASK_LANE(paths->pixel, lowest_bit(bits))].w = 1.0f;
-}
-
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
 // what the `fresh` ones see and spawn there. The rays of `unseen` saw only what lay before.
 static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
@@ -68,14 +76,14 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
   const MASK ended = lanes & ~unseen, hit = ended & hit_anything(&met->hit);
   if (HAS_FOG) seen = add3(seen, see_fog(scene, met, ended, paths));
-  seen = select3(seen, add3(seen, see_background(scene, rays, paths, ended & ~hit)), ended & ~hit);
+  seen = select3(seen, add3(seen, see_background(scene, rays, paths, ended & ~hit, radiance)), ended & ~hit);
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
     if (HAS_EMISSION) seen = add3(seen, see_emission(scene, paths, &at->s, &at->bsdf, hit));
     const MASK nothing =
         spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
-    note_first_hits(paths, hit & fresh & ~nothing, radiance, counts);
+    counts[COUNT_PRIMARY_HIT] += lane_count(hit & fresh & ~nothing & MASK_OF(paths->depth == 1));
   }
   *light = seen;
   return hit;

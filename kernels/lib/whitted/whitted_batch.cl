@@ -90,7 +90,7 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
 }
 
 // The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them. radiance[i].xyz
-// receives the light of pixel i of the tile, w whether its camera ray hit anything.
+// receives the light of pixel i of the tile, from w is taken what of its background is seen straight on.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
   WaitingRays paths;

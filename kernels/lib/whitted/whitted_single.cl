@@ -73,8 +73,8 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   return NO_LANES;
 }
 
-// The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, w
-// whether the ray hit anything.
+// The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, from
+// w is taken what of the background is seen straight on.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
   WaitingRays paths;

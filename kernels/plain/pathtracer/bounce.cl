@@ -95,8 +95,10 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   SampledSpectrum light = (SampledSpectrum)(0.0f);
   if (HAS_FOG) light = met_fog(scene, &met, path);
   if (!hit_anything(&met.hit)) {
-    path->radiance +=
-        light + path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
+    SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
+    if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
+    path->radiance += light + sky;
+    path->covered = !path->straight;
     return false;
   }
 
@@ -109,10 +111,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
   const bool free = nothing && may_cross(ray);
-  if (!nothing && path->depth == 1) {
-    count(counts, COUNT_PRIMARY_HIT);
-    path->met = true;
-  }
+  if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
   if (deep && !free && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);

@@ -18,7 +18,7 @@ typedef struct PathState {
   // the camera (squared index by squared index), and paths drawn to guides.
   float spread;
   int depth;      // of the ray: the camera's has 1
-  bool met;       // the camera's ray has hit something
+  bool covered;   // the path has not left the scene straight on from the camera
   bool straight;  // the ray goes straight on from the camera
   SampleAt at;
   SampledWavelengths wavelengths;
@@ -42,7 +42,7 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   path.pdf = 0.0f;
   path.spread = 1.0f;
   path.depth = 1;
-  path.met = false;
+  path.covered = true;
   path.straight = true;
   path.at = *at;
   path.wavelengths = choose_wavelengths(scene, at);

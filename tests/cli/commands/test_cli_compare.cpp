@@ -2,6 +2,7 @@
 #include <base/file.h>
 #include <base/image_io.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
@@ -72,6 +73,37 @@ TEST_CASE("alpha is compared where both pictures have it") {
   CHECK(compare("half.exr", "half.png")["alpha"] == true);
   for (const char* none : {"none.pfm", "none.jpg"}) CHECK(compare("holes.exr", none)["alpha"] == false);
   CHECK(compare("holes.exr", "none.pfm")["differing"] == 0);
+}
+
+TEST_CASE("every layer that both EXR files have is compared, and the others are named") {
+  const TemporaryFolder folder;
+  Image image(6, 4, 4), near(6, 4, 1), far(6, 4, 1), normal(6, 4, 3);
+  far.pixel(2, 1)[0] = std::numeric_limits<float>::infinity();
+  far.pixel(3, 1)[0] = 0.5f;
+  write_image(image, folder / "a.exr", {{"depth", near}, {"normal", normal}, {"uv", Image(6, 4, 2)}});
+  normal.pixel(0, 0)[2] = 0.25f;
+  write_image(image, folder / "b.exr", {{"depth", far}, {"normal", normal}, {"object", near}});
+  const auto compare = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"compare", (folder / "a.exr").string(), (folder / "b.exr").string()});
+    return run_sundog(more);
+  };
+  const CommandResult result = compare({"--json"});
+  CHECK(result.status == 6);
+  const json figures = json::parse(result.out);
+  CHECK(figures["differing"] == 0);
+  CHECK(figures["equal"] == false);
+  CHECK(figures["layers"]["depth"]["differing"] == 2);
+  CHECK(figures["layers"]["depth"]["max"].is_null());
+  CHECK(figures["layers"]["normal"]["max"] == 0.25);
+  CHECK(figures["layers_not_compared"] == json({"uv", "object"}));
+  const std::string text = compare({}).out;
+  CHECK(text.find("layer depth: max inf, pixels differing 2 of 24") != std::string::npos);
+  CHECK(text.find("layer uv: not in both files alike") != std::string::npos);
+  write_image(image, folder / "a.exr", {{"normal", normal}, {"depth", near}});
+  near.pixel(0, 0)[0] = 0.125f;
+  write_image(image, folder / "b.exr", {{"normal", normal}, {"depth", near}});
+  CHECK(compare({"--tolerance", "0.125"}).status == 0);
+  CHECK(compare({"--tolerance", "0.12"}).status == 6);
 }
 
 TEST_CASE("images of different sizes differ, and stderr says how") {

@@ -1,5 +1,6 @@
 // Options that cannot be honoured are refused, not ignored, and never crash the driver.
 #include <base/file.h>
+#include <base/image_io.h>
 
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,42 @@ TEST_CASE("--float is refused for a format that cannot keep it") {
     CHECK(result.status == 2);
     CHECK(result.err.find(".exr") != std::string::npos);
   }
+}
+
+TEST_CASE("a picture that is too large for its format is refused before the render") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"render", folder.scene, "-o", folder.file("a.jpg"), "--size", "65536x4"});
+  CHECK(result.status == 2);
+  CHECK(is_one_error_line(result.err));
+  CHECK(result.err.find("a.jpg: 65536x4 pixels are too many") != std::string::npos);
+  CHECK(result.err.find("use .png or .exr") != std::string::npos);
+  const auto render = [&](const char* name) {
+    return run_sundog({"render", folder.scene, "-o", folder.file(name), "--size", "65536x2", "-q"});
+  };
+  for (const char* name : {"a.png", "a.exr", "a.hdr"}) {
+    CHECK(render(name).status == 0);
+    CHECK(read_image(folder / name).width == 65536);
+  }
+}
+
+TEST_CASE("what half floats cut off is said, with the mend") {
+  const CliFolder folder;
+  std::vector<std::string> command = {"render",
+                                      folder.scene,
+                                      "-o",
+                                      folder.file("a.exr"),
+                                      "--quiet",
+                                      "--set",
+                                      "/image/background=[1e5, 2e4, 3e5]"};
+  const CommandResult halves = run_sundog(command);
+  CHECK(halves.status == 0);
+  CHECK(is_one_error_line(halves.err));
+  CHECK(halves.err.find("are brighter than 65504") != std::string::npos);
+  CHECK(halves.err.find("--float") != std::string::npos);
+  command.emplace_back("--float");
+  CHECK(run_sundog(command).err.empty());
+  CHECK(read_image(folder / "a.exr").pixel(0, 0)[2] == 3e5f);
 }
 
 TEST_CASE("a work-group of two dimensions is launched as one") {

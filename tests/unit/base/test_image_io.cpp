@@ -2,6 +2,7 @@
 #include <base/error.h>
 #include <base/file.h>
 #include <base/image_io.h>
+#include <base/pixels/stored_image.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +78,68 @@ TEST_CASE("a PNG holds every pixel to half a step of its 8 bits") {
       }
 }
 
+TEST_CASE("a PNG of 16 bits holds every pixel to half a step of them") {
+  const TemporaryFolder folder;
+  const Image image = ramp(37, 23, 4);
+  write_image(image, folder / "a.png", {}, {.bits = 16});
+  const Image read = read_image(folder / "a.png");
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const bool alpha = i % 4 == 3;
+    const auto shown = [&](float v) { return alpha ? v : srgb_from_linear(v); };
+    REQUIRE(std::abs(shown(read.data[i]) - shown(std::min(image.data[i], 1.0f))) <= 0.51f / 65535);
+  }
+}
+
+TEST_CASE("PNG, JPEG and EXR state their colours and their density") {
+  const TemporaryFolder folder;
+  const auto written = [&](const char* name, const FileOptions& options) {
+    write_image(ramp(5, 4, 3), folder / name, {}, options);
+    return read_file(folder / name);
+  };
+  const std::string png = written("a.png", {.dpi = 300});
+  const auto chunk = [&](const char* name, std::size_t length) {
+    return png.substr(std::min(png.find(name), png.find("IDAT")) + 4, length);
+  };
+  CHECK(chunk("sRGB", 1) == std::string(1, '\0'));
+  CHECK(chunk("gAMA", 4) == std::string("\0\0\xb1\x8f", 4));
+  CHECK(chunk("cHRM", 4) == std::string("\0\0\x7a\x26", 4));  // 0.3127, x of white
+  CHECK(chunk("pHYs", 9) == std::string("\0\0\x2e\x23\0\0\x2e\x23\1", 9));
+  const std::string jpeg = written("a.jpg", {.dpi = 300});
+  CHECK(jpeg.substr(6, 12) == std::string("JFIF\0\1\1\1\1\x2c\1\x2c", 12));
+  CHECK(jpeg.find("Exif") == 24);
+  CHECK(jpeg.find(std::string("\1\xa0\3\0\1\0\0\0\1\0", 10)) != std::string::npos);  // colour space 1
+  const std::string exr = written("a.exr", {.dpi = 300, .texts = {{"capDate", "2026:11:26 12:00:00"}}});
+  CHECK(exr.find(std::string("xDensity\0float\0\4\0\0\0\0\0\x96\x43", 23)) != std::string::npos);
+  CHECK(exr.find(std::string("utcOffset\0float\0\4\0\0\0\0\0\0\0", 24)) != std::string::npos);
+  CHECK(exr.find("chromaticities") != std::string::npos);
+}
+
+TEST_CASE("an EXR in ACEScg says so, and is read as what was written") {
+  const TemporaryFolder folder;
+  Image image = ramp(9, 7, 4);
+  image.data[0] = 1, image.data[1] = image.data[2] = 0;
+  write_image(image, folder / "srgb.exr", {{"albedo", image}}, {.color = ExrColor::full});
+  write_image(image, folder / "aces.exr", {{"albedo", image}},
+              {.color = ExrColor::full, .space = ExrSpace::acescg});
+  const Image read = read_image(folder / "aces.exr");
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    REQUIRE(read.data[i] == Approx(image.data[i]).margin(1e-5));
+  // Linear sRGB's red in ACEScg, by OpenColorIO.
+  const Image albedo = read_aovs(folder / "aces.exr").at("albedo");
+  CHECK(albedo.data[0] == Approx(0.613097).margin(2e-4));
+  CHECK(albedo.data[1] == Approx(0.070194).margin(2e-4));
+  CHECK(albedo.data[2] == Approx(0.020616).margin(2e-4));
+  // What says ACEScg and is sRGB's numbers: its red is outside of sRGB, and cut off.
+  std::string exr = read_file(folder / "srgb.exr");
+  const std::string aces = read_file(folder / "aces.exr"), name = "chromaticities";
+  const std::size_t at = exr.find(name), length = name.size() + 1 + name.size() + 1 + 4 + 32;
+  exr.replace(at, length, aces.substr(aces.find(name), length));
+  const Image wide = read_image(folder.write("wide.exr", exr));
+  CHECK(wide.data[0] == Approx(1.70505).margin(2e-3));
+  CHECK(wide.data[1] == 0);
+  CHECK(decode_stored(exr, false).data[0] == decode_stored(read_file(folder / "srgb.exr"), false).data[0]);
+}
+
 TEST_CASE("row 0 is the top of every format") {
   const TemporaryFolder folder;
   const std::string name = GENERATE("a.png", "a.exr", "a.hdr", "a.pfm");
@@ -98,7 +161,7 @@ TEST_CASE("PFM and 32-bit EXR keep every bit, infinities and NaN too") {
   image.data[1] = -3e38f;
   image.data[2] = std::numeric_limits<float>::quiet_NaN();
   image.data[3] = 1e-40f;
-  write_image(image, folder / name, {}, ExrColor::full);
+  write_image(image, folder / name, {}, {.color = ExrColor::full});
   const Image read = read_image(folder / name);
   for (int y = 0; y < 17; ++y)
     for (int x = 0; x < 31; ++x) {
@@ -136,7 +199,7 @@ TEST_CASE("AOVs come back from an EXR to the bit, beside the colour") {
   aovs["object"] = ramp(13, 11, 1);
   aovs["depth"].data[0] = std::numeric_limits<float>::infinity();
   const Image image = ramp(13, 11, 4);
-  write_image(image, folder / "a.exr", aovs, ExrColor::full);
+  write_image(image, folder / "a.exr", aovs, {.color = ExrColor::full});
   CHECK(read_image(folder / "a.exr").data == image.data);
   const AovImages read = read_aovs(folder / "a.exr");
   REQUIRE(read.size() == 4);
@@ -157,6 +220,14 @@ TEST_CASE("only EXR takes AOVs, and only known extensions are written") {
   CHECK_THROWS_WITH(
       check_image_path("a.gif", false),
       "a.gif: wanted an image file name that ends in .png, .jpg, .exr, .hdr or .pfm, found .gif");
+}
+
+TEST_CASE("JPEG and HDR hold so many pixels, others what a frame has") {
+  for (const char* name : {"a.jpg", "a.JPEG"}) CHECK_THROWS_AS(check_image_size(name, 65536, 1), UsageError);
+  for (const char* name : {"a.jpg", "a.hdr"})
+    CHECK_THROWS_AS(check_image_size(name, 30000, 30000), UsageError);
+  for (const char* name : {"a.png", "a.exr", "a.pfm"}) CHECK_NOTHROW(check_image_size(name, 65536, 65536));
+  for (const char* name : {"a.jpg", "a.hdr"}) CHECK_NOTHROW(check_image_size(name, 16384, 16384));
 }
 
 TEST_CASE("an image is recognised by its content, not its name") {
@@ -209,7 +280,7 @@ TEST_CASE("a file that says it has far more pixels than bytes is refused at once
 TEST_CASE("an EXR is its display window: 0 beyond its data, and data beyond it cut off") {
   const TemporaryFolder folder;
   const Image data = ramp(4, 4, 3);
-  write_image(data, folder / "a.exr", {}, ExrColor::full);
+  write_image(data, folder / "a.exr", {}, {.color = ExrColor::full});
   std::string exr = read_file(folder / "a.exr");
   const std::int32_t shown[] = {-1, -2, 2, 5};  // x0 y0 x1 y1 behind the name, 0, "box2i", 0, size
   const std::string window = "displayWindow";
@@ -258,7 +329,8 @@ TEST_CASE("a PNG's gAMA chunk says how it is decoded, unless an sRGB chunk does"
   Image image(1, 1, 3);
   image.data = {linear_from_srgb(100.0f / 255), 0, 0};
   write_image(image, folder / "a.png");
-  const std::string png = read_file(folder / "a.png");
+  std::string png = read_file(folder / "a.png");
+  png.erase(33, png.find("IDAT") - 4 - 33);
   const auto with_chunk =
       [&](const std::string& chunk) {  // after the 8-byte signature and the 25-byte header chunk
         folder.write("b.png", png.substr(0, 33) + chunk + "CRC?" + png.substr(33));

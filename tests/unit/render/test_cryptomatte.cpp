@@ -27,12 +27,12 @@ TEST_CASE("four pairs of index and share become two layers of ids, and a header 
   Image pairs(2, 1, 8);
   pairs.data = {1, 0.5f, 0, 0.25f, 2, 0.125f, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
   aovs["crypto_object"] = pairs;
-  const ImageTexts texts = name_cryptomattes(aovs, {"red", "blue \"one\""}, {});
+  const ImageTexts texts = name_cryptomattes(aovs, {"red", "blue \"one\"", ""}, {});
   REQUIRE(aovs.size() == 3);
   const Image &first = aovs.at("crypto_object00"), &second = aovs.at("crypto_object01");
   const auto id = [](const char* name) { return std::bit_cast<float>(id_bits(name)); };
   CHECK(first.data == std::vector<float>{id("blue \"one\""), 0.5f, id("red"), 0.25f, 0, 0, 0, 0});
-  CHECK(second.data == std::vector<float>{id("default"), 0.125f, 0, 0, 0, 0, 0, 0});
+  CHECK(second.data == std::vector<float>{id("object 2"), 0.125f, 0, 0, 0, 0, 0, 0});
   REQUIRE(texts.size() == 4);
   CHECK(texts[0].first.starts_with("cryptomatte/"));
   CHECK(texts[0].first.ends_with("/name"));

@@ -296,6 +296,7 @@ TEST_CASE("a PNG's gamma counts in a scene's own textures, not in a glTF's") {
   Image grey(1, 1, 3);
   grey.data = {linear_from_srgb(128.f / 255), linear_from_srgb(128.f / 255), linear_from_srgb(128.f / 255)};
   std::string png = encode_image(grey, "grey.png");
+  png.erase(8 + 25, png.find("IDAT") - 4 - 8 - 25);                                 // what says sRGB
   png.insert(8 + 25, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16));  // linear; behind IHDR
   const SceneDescription model =
       quad_with(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})", png);

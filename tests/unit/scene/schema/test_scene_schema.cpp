@@ -29,7 +29,7 @@ namespace {
 const std::string everything = R"({
   "$schema": "scene.schema.json",
   "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "lens": {}, "moves_to": {"position": [1, 0, 5]}},
-  "environment": {"type": "sky", "sun": {}}, "image": {"tone_map": {"white_balance": 5000}, "background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {"samples": 16, "path": {"guides": [{"center": [0, 0, 0], "radius": 1}]}, "adaptive": {}, "subsample": {"on": false}}, "world": {"medium": "a", "fog": {"density": 1, "anisotropy": 0.5}},
+  "environment": {"type": "sky", "sun": {}}, "image": {"transparent": true, "tone_map": {"white_balance": 5000}, "background": {"bottom": [0, 0, 0], "top": [1, 1, 1]}}, "render": {"samples": 16, "path": {"guides": [{"center": [0, 0, 0], "radius": 1}]}, "adaptive": {}, "subsample": {"on": false}}, "world": {"medium": "a", "fog": {"density": 1, "anisotropy": 0.5}},
   "media": {"a": {"absorption": {"color": [1, 1, 1], "distance": 1}}, "b": {"absorption": [0, 1, 2]}},
   "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
     {"type": "point", "position": [0, 0, 0], "falloff": {}},
