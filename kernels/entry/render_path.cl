@@ -96,7 +96,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
     const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);
-    const REAL alpha = select(1.0f - spectrum_mean(paths.throughput), (REAL)(1.0f), paths.covered);
+    const REAL alpha = coverage_of(&paths, over);
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
       const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane));

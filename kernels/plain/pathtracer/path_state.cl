@@ -51,6 +51,11 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   return path;
 }
 
+// The alpha of the path's sample: 1, or the part of the background that it has lost on a straight way there.
+ENTRY static inline float coverage_of(const PathState* path) {
+  return path->covered ? 1.0f : 1.0f - spectrum_mean(path->throughput);
+}
+
 // The path leaves a surface, perhaps one that has gathered photons. `narrow`: the part of its weight by
 // narrow lobes.
 HAVING(HAS_CAUSTICS)

@@ -60,6 +60,10 @@ static inline float spectrum_worth(SampledSpectrum a) {
   if (HAS_DISPERSION) return (1.0f / (float)WAVELENGTHS) * ((a.x + a.y) + (a.z + a.w));
   return real_max(a.x, real_max(a.y, a.z));
 }
+static inline float spectrum_mean(SampledSpectrum a) {
+  if (HAS_DISPERSION) return spectrum_worth(a);
+  return (a.x + a.y + a.z) * (1.0f / 3.0f);
+}
 
 // What a wavelength has of a colour by its parts of red and blue.
 static inline float part_of_color(float red, float blue, float3 color) {
