@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
-#include <mutex>
 #include <set>
 #include <sstream>
 
@@ -67,7 +65,7 @@ class Expander {
       : generated_(generated), folder_(folder) {}
 
   void expand(const std::string& path) {
-    const std::string text = spmd::is_plain(path) ? made_in_lanes(path) : file_text(path);
+    const std::string text = spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
     const bool guarded = has_include_guard(text);
     open_.push_back(path);
     if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
@@ -81,17 +79,8 @@ class Expander {
   std::string out;
 
  private:
-  /// Translates a plain file; an embedded one once a process.
-  std::string made_in_lanes(const std::string& path) const {
-    const auto make = [&] {
-      return spmd::in_lanes(path, [this](const std::string& file) { return file_text(file); }, true);
-    };
-    if (!folder_.empty()) return make();
-    static std::mutex mutex;
-    static std::map<std::string, std::string> made;
-    const std::scoped_lock lock(mutex);
-    const auto found = made.find(path);
-    return found != made.end() ? found->second : made[path] = make();
+  spmd::ReadFile read() const {
+    return [this](const std::string& path) { return file_text(path); };
   }
   std::string file_text(const std::string& path) const {
     if (const auto found = generated_.find(path); found != generated_.end()) return found->second;
