@@ -10,10 +10,10 @@ TEST_CASE("kernels lists the plain files, and prints one in lanes or what varies
   const CommandResult list = run_sundog({"kernels"});
   CHECK(list.status == 0);
   CHECK_THAT(list.out, Contains("plain/pathtracer/roulette.cl\n"));
-  const CommandResult made = run_sundog({"kernels", "plain/pathtracer/roulette.cl", "--lanes", "16"});
+  const CommandResult made = run_sundog({"kernels", "plain/pathtracer/bounce.cl", "--lanes", "16"});
   CHECK(made.status == 0);
   CHECK_THAT(made.out, Catch::StartsWith("#define LANES 16\n") && Contains("MASK survives("));
-  const CommandResult told = run_sundog({"kernels", "plain/pathtracer/roulette.cl", "--explain"});
+  const CommandResult told = run_sundog({"kernels", "plain/pathtracer/bounce.cl", "--explain"});
   CHECK_THAT(told.out, Contains("worth varies: line "));
 }
 
