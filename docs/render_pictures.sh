@@ -8,7 +8,7 @@ for scene in "$root"/scenes/*.json; do
   case "$name" in scene.schema | fractal_light_*) continue ;; esac
   "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
 done
-"$root/run.sh" render "$root/docs/presets.json" -o "$root/docs/pictures/presets.png" "$@"
+"$root/run.sh" render "$root/docs/presets.json" -o "$root/docs/pictures/presets.jpg" "$@"
 "$root/run.sh" halo "$root/scenes/sundog.json" -o "$root/docs/pictures/halo_fisheye.png" --view fisheye --sky --size 600
 if [ -x "$root/build/release/bench/formula_sheet" ]; then
   "$root/build/release/bench/formula_sheet" --size 180 -o "$root/docs/pictures/formulas.png"
