@@ -43,7 +43,7 @@ class Text {
     text += std::string(2 * static_cast<std::size_t>(line.depth), ' ') + line.text + "\n";
     ++number_;
   }
-  void add(std::string text) { add({0, std::move(text), {}}); }
+  void add(std::string line) { add({0, std::move(line), {}}); }
   /// Lines that a program may have from several plain files.
   void add_once(const std::string& name, const std::string& feature, const std::vector<Line>& all) {
     const std::string guard = "MADE_" + name;

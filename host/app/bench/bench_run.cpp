@@ -11,6 +11,7 @@
 
 #include "app/bench/known_report.h"
 #include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
@@ -21,6 +22,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/report/machine.h"
+#include "device/driver_folder.h"
 #include "render/film/hash.h"
 #include "scene/json/override.h"
 

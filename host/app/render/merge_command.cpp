@@ -26,7 +26,7 @@ int merge_command(const MergeCommand& command) {
   const Image image = shown_in(name, whole.film.develop(image_channels(name, command.transparent)), tone_map,
                                dithers(command));
   AovImages aovs;
-  for (const std::string& name : whole.aovs) aovs[name] = whole.film.develop_aov(name);
+  for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
   save_image({image, aovs, whole.film, whole.key, {}, command.format, file_options(command)}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
