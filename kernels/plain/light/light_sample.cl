@@ -1,4 +1,4 @@
-// A way to a light, as every kind of light gives it.
+// A sampled direction to a light of any kind.
 #include "plain/core.h"
 
 CONSTANT float SHORT_OF_LIGHT;
