@@ -67,8 +67,9 @@ TEST_CASE("a render of a held mesh has its tables in memory, and no copy of it")
   const double rest = 1e6 / double(grid->triangles.size()), tables = 196 + rest;
   constexpr double copy = 18;
   double held = 0, most = 0;
-  for (int tries = 0; tries < 3 && (tries == 0 || held > tables || most > tables + copy);
-       ++tries) {  // drivers allocate too
+  const auto as_counted = [&] { return held > tables / 2 && held < tables && most < tables + copy; };
+  // Drivers allocate too, and may free what the render before has held while this one runs.
+  for (int tries = 0; tries < 5 && !as_counted(); ++tries) {
     const AllocatedBytes allocated;
     std::atomic<std::size_t> drawing{0};
     options.on_progress = [&](const sundog::Progress& now) {
