@@ -101,6 +101,7 @@ void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& i
   info.samples = static_cast<u32>(scene.render.samples);
   info.seed = scene.render.seed ? hash_u32(static_cast<u32>(scene.render.seed)) & ~3u : 0;
   info.cutoff = static_cast<float>(scene.render.cutoff);
+  info.max_component = static_cast<float>(scene.render.max_component);
 }
 
 }  // namespace sundog

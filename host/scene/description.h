@@ -87,6 +87,7 @@ struct RenderSettings {
   int samples = 1;        // per pixel, 1..65536; 1 = the pixel's centre
   int light_samples = 0;  // shadow rays from each surface to random area lights, 0..1024; 0: to each light
   double cutoff = 1e-3;   // throughput below which a ray ends, [0, 1]
+  double max_component = std::numeric_limits<double>::infinity();  // of a sample's light, above 0
   std::string integrator = "whitted";
   int roulette = 2;                   // path: depth at which Russian roulette starts, 1..65; 65: never
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant

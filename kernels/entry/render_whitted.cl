@@ -41,7 +41,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
-    store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);
+    store_lanes(scene, launch, item, lanes, radiance, signs, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

@@ -129,7 +129,8 @@ typedef struct SceneInfo {
                     // (lib/light/direct_light.cl)
   u32 seed;         // added to the dimensions of samples, a multiple of four; 0: the default
   u32 transparent;  // 1: what is behind the scene is not seen straight on; alpha says how much
-  u32 pad0, pad1;
+  float max_component;  // of a sample's light: brighter ones are scaled down to it; infinite: none are
+  u32 pad0;
 } SceneInfo;
 SUNDOG_SHARED_SIZE(SceneInfo, 400)
 

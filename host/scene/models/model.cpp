@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -65,21 +66,36 @@ Model load(const models::Source& source, const std::string& extension, const Mod
 /// Beyond this, the camera's position cannot be written, and squares overflow.
 constexpr double farthest = 1e17;
 
+bool is_near(const dmat4& world_from_object, const glm::vec3& point) {
+  const dvec3 at(world_from_object * glm::dvec4(point, 1));
+  return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= farthest;  // false for no number
+}
+
+/// Whether the box around all vertices, used or not, is near.
+bool has_near_box(const dmat4& world_from_object, const Mesh& mesh) {
+  constexpr float most = std::numeric_limits<float>::max();
+  glm::vec3 box[2] = {glm::vec3(most), glm::vec3(-most)};
+  for (const glm::vec3& p : mesh.positions) box[0] = glm::min(box[0], p), box[1] = glm::max(box[1], p);
+  for (int i = 0; i < 8; ++i)
+    if (!is_near(world_from_object, {box[i & 1].x, box[i >> 1 & 1].y, box[i >> 2].z})) return false;
+  return true;
+}
+
 void check_extent(const models::Source& source, const Model& model) {
   for (const Object& object : model.objects) {
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape) continue;
     const Mesh& mesh = model.meshes[static_cast<std::size_t>(shape->mesh)];
+    if (has_near_box(object.world_from_object, mesh)) continue;
     for (const glm::uvec3& triangle : mesh.triangles)
       for (int corner = 0; corner < 3; ++corner) {
-        const dvec3 at(object.world_from_object * glm::dvec4(mesh.positions[triangle[corner]], 1));
-        const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-        if (!(most <= farthest))
-          models::fail(
-              source, "",
-              fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
-                          mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x, at.y,
-                          at.z, farthest));
+        const glm::vec3& point = mesh.positions[triangle[corner]];
+        if (is_near(object.world_from_object, point)) continue;
+        const dvec3 at(object.world_from_object * glm::dvec4(point, 1));
+        models::fail(source, "",
+                     fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
+                                 mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x,
+                                 at.y, at.z, farthest));
       }
   }
 }

@@ -128,18 +128,38 @@ class PointFans {
 
   // join_across_edges() for few corners, where comparing pairs beats sorting.
   void join_pairs(std::span<const uint32_t> corners) {
-    std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends;
+    for (uint32_t i = 0; i < corners.size(); ++i)
+      for (const uint32_t step : {1u, 2u})
+        ends_[i][step - 1] = shared_.point(shared_.neighbour(corners[i], step));
+    if (is_smooth_ring(corners)) {
+      std::fill(fan_.begin(), fan_.end(), 0u);
+      return;
+    }
     for (uint32_t i = 0; i < corners.size(); ++i) {
       if (!shared_.has_area(corners[i])) continue;
-      for (const uint32_t step : {1u, 2u})
-        ends[i][step - 1] = shared_.point(shared_.neighbour(corners[i], step));
-      const auto [a, b] = ends[i];
+      const auto [a, b] = ends_[i];
       for (uint32_t j = 0; j < i; ++j) {
-        const auto [c, d] = ends[j];
+        const auto [c, d] = ends_[j];
         if ((a == c || a == d || b == c || b == d) && shared_.has_area(corners[j]))
           join_if_smooth(j, i, corners);
       }
     }
+  }
+
+  // The common case: each corner's second edge is the next one's first, all around, and the surface
+  // is smooth there.
+  bool is_smooth_ring(std::span<const uint32_t> corners) const {
+    const auto count = static_cast<uint32_t>(corners.size());
+    uint32_t at = 0, met = 0;
+    for (; met < count; ++met) {
+      if (!shared_.has_area(corners[at])) return false;
+      uint32_t next = 0;
+      while (next < count && ends_[next][0] != ends_[at][1]) ++next;
+      if (next == count || !shared_.is_smooth(corners[at] / 3, corners[next] / 3)) return false;
+      at = next;
+      if (at == 0) break;
+    }
+    return met + 1 == count;
   }
 
   void join_across_edges(std::span<const uint32_t> corners) {
@@ -214,7 +234,8 @@ class PointFans {
   };
 
   const Surroundings& shared_;
-  std::vector<uint32_t> fan_;  // union-find over the current corners
+  std::vector<uint32_t> fan_;                                     // union-find over the current corners
+  std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends_;  // the other points of few corners' edges
   std::vector<Spoke> spokes_;
   std::vector<dvec3> sums_;
   std::vector<Claim> claims_;

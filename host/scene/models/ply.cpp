@@ -2,6 +2,10 @@
 // faces, with optional colours, or triangle strips.
 #include <fmt/format.h>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -179,6 +183,8 @@ class DataReader {
         content_.unread.emplace_back("texture coordinates of faces");
     if (list == element.properties.size() || !element.properties[list].count_type)
       cursor_.fail(fmt::format("'{}' needs a list vertex_indices", element.name));
+    if (!strips && !layout.colors() && content_.mesh.triangles.empty() && read_triangles(element, list))
+      return;
     content_.mesh.triangles.reserve(element.count);
     Values values{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -197,6 +203,35 @@ class DataReader {
       strips ? add_strips() : add_polygon();
       if (layout.colors()) content_.face_colors.resize(content_.mesh.triangles.size(), color_of(values));
     }
+  }
+
+  // Reads faces in parallel if all are triangles. False, with nothing read, if one is none or has a corner
+  // that read_faces() would refuse.
+  bool read_triangles(const PlyElement& element, std::size_t list) {
+    const std::size_t bytes = Cursor::bytes_of_triangles(element);
+    if (bytes == 0 || cursor_.bytes_left() / bytes < element.count) return false;
+    if (is_real(element.properties[list].type) || !content_.lost.empty()) return false;
+    const auto vertices = static_cast<double>(vertex_count());
+    std::vector<glm::uvec3> triangles(element.count);
+    std::atomic<bool> plain = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+      Cursor cursor = cursor_;
+      cursor.skip(range.begin() * bytes);
+      for (std::size_t i = range.begin(); i != range.end() && plain; ++i)
+        for (const PlyProperty& property : element.properties) {
+          if (property.count_type && cursor.value(property, *property.count_type) != 3) plain = false;
+          for (int k = 0; k < (property.count_type ? 3 : 1) && plain; ++k) {
+            const double value = cursor.value(property, property.type);
+            if (&property != &element.properties[list]) continue;
+            if (!(value >= 0 && value < vertices)) plain = false;
+            if (plain) triangles[i][k] = static_cast<std::uint32_t>(value);
+          }
+        }
+    });
+    if (!plain) return false;
+    cursor_.skip(element.count * bytes);
+    content_.mesh.triangles = std::move(triangles);
+    return true;
   }
 
   void add_polygon() {

@@ -37,6 +37,9 @@ class AsciiPlyCursor {
   void end_element(std::string_view element) { text_.expect_line_end(element); }
   /// Minimum bytes of a value: a digit and a blank.
   static std::size_t least_bytes(PlyType) { return 2; }
+  /// Bytes of an element whose lists have three values each; 0 where elements differ.
+  static std::size_t bytes_of_triangles(const PlyElement&) { return 0; }
+  void skip(std::size_t) {}
   std::size_t bytes_left() const { return text_.bytes_left() + 1; }  // the last line may lack its newline
   [[noreturn]] void fail(const std::string& what) const { text_.fail(what); }
 
@@ -73,6 +76,13 @@ class BinaryPlyCursor {
   }
   void end_element(std::string_view) {}
   static std::size_t least_bytes(PlyType type) { return size_of(type); }
+  static std::size_t bytes_of_triangles(const PlyElement& element) {
+    std::size_t bytes = 0;
+    for (const PlyProperty& p : element.properties)
+      bytes += p.count_type ? size_of(*p.count_type) + 3 * size_of(p.type) : size_of(p.type);
+    return bytes;
+  }
+  void skip(std::size_t bytes) { at_ += bytes; }
   std::size_t bytes_left() const { return source_.bytes.size() - at_; }
   [[noreturn]] void fail(const std::string& what) const { fail_at_byte(source_, at_, what); }
 

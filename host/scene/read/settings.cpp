@@ -211,6 +211,7 @@ RenderSettings read_render(const JsonValue& value) {
     render.samples = object.integer("samples", render.samples, 1, 65536);
     render.light_samples = object.integer("light_samples", render.light_samples, 0, 1024);
     render.cutoff = object.number("cutoff", render.cutoff, zero_to_one);
+    render.max_component = object.number("max_component", render.max_component, above_0);
     render.integrator = object.choice("integrator", render.integrator, integrator_names);
     const Integrator& integrator = *find_integrator(render.integrator);
     render.max_depth = object.integer("max_depth", integrator.depth, 1, integrator.most_depth);

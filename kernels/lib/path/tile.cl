@@ -98,20 +98,28 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
   }
 }
 
+// The radiance of a sample, its greatest component at most `most`.
+static inline float4 limit_components(float4 radiance, float most) {
+  const float greatest = fmax(fmax(radiance.x, radiance.y), radiance.z);
+  return greatest > most ? (float4)(radiance.xyz * (most / greatest), radiance.w) : radiance;
+}
+
 // Adds a sample's light to film and weights of the rectangle's pixel `place`, with the weight `sign`.
-static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
-                                __global float* restrict weights, u32* counts) {
+static inline void store_sample(const Scene* scene, u32 place, float4 radiance, float sign,
+                                __global float4* restrict film, __global float* restrict weights,
+                                u32* counts) {
   const float3 zero = radiance.xyz * 0.0f;  // NaN if one is not finite
   if (zero.x + zero.y + zero.z != 0.0f) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
   }
-  film[place] += HAS_FILTER ? sign * radiance : radiance;
+  const float4 limited = limit_components(radiance, scene->info->max_component);
+  film[place] += HAS_FILTER ? sign * limited : limited;
   weights[place] += HAS_FILTER ? sign : 1.0f;
 }
 
 // store_sample() for the pixels of all lanes of `lanes`; arrays by lane.
-static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
+static inline void store_lanes(const Scene* scene, const Launch* launch, u32 item, MASK lanes, const float4* radiance,
                                const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {
   float4 zero = (float4)(0.0f);  // NaN where one is not finite
@@ -122,7 +130,7 @@ static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const
     for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
       const uint2 at = lane_pixel(launch, item, lane);
-      store_sample(at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
+      store_sample(scene, at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
     }
     return;
   }
@@ -130,7 +138,7 @@ static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const
 #pragma unroll
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const u32 pixel = pixel_of_tile(launch, corner, lane);
-    film[pixel] += radiance[lane];
+    film[pixel] += limit_components(radiance[lane], scene->info->max_component);
     weights[pixel] += REAL_LANE(share, lane);
   }
 }

@@ -1,4 +1,4 @@
-// How deep paths go, and the seed of their numbers.
+// How deep paths go, the seed of their numbers, and the limit of samples.
 #include "path_testing.h"
 #include "same_bits.h"
 #include "scene/integrators.h"
@@ -53,6 +53,21 @@ TEST_CASE("without max_depth paths may have 1024 surfaces, with it as many as it
   CHECK(depth(R"({"integrator": "path"})") == 1024);
   CHECK(depth(R"({"integrator": "path", "max_depth": 4000})") == 4000);
   CHECK(depth(R"({"integrator": "path", "max_depth": 3})") == 3);
+}
+
+TEST_CASE("samples brighter than max_component keep their hue") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const char* integrator : {"whitted", "path"}) {
+      SceneDescription scene = shining_room(0, 4);
+      scene.render.integrator = integrator;
+      scene.materials.back().emission = {6, 3, 1.5};
+      CHECK(mean_on(device, scene).value == dvec3(6, 3, 1.5));
+      scene.render.max_component = 8;
+      CHECK(mean_on(device, scene).value == dvec3(6, 3, 1.5));
+      scene.render.max_component = 2;
+      CHECK(mean_on(device, scene).value == dvec3(2, 1, 0.5));
+    }
+  });
 }
 
 TEST_CASE("seeds have noise of their own, whose mean is that of more samples") {
