@@ -131,33 +131,34 @@ Device::~Device() {
   if (info_.sub_units > 0 && queue_()) await_release(device_, queue_);
 }
 
-std::string Device::expanded(const std::string& entry, const KernelDefines& defines,
-                             const GeneratedFiles& generated) const {
-  KernelDefines all = defines;
-  if (fma_) all.emplace("DEVICE_HAS_FMA", "1");
-  return expand_kernel(entry, all, generated, value_of(info_.environment).kernels);
+ProgramSource Device::source_of(const std::string& entry, const KernelDefines& defines,
+                                const GeneratedFiles& generated) const {
+  KernelText text{entry, defines, generated, value_of(info_.environment).kernels};
+  if (fma_) text.defines.emplace("DEVICE_HAS_FMA", "1");
+  std::string identity = text.identity();
+  return {std::move(text), std::move(identity)};
 }
 
-const std::shared_ptr<ProgramRecord>* Device::find_built(const std::string& entry,
-                                                         const std::string& source) const {
+const std::shared_ptr<ProgramRecord>* Device::find_built(const ProgramSource& source) const {
   const auto built = std::ranges::find_if(
       programs_, [&, options = all_build_options(value_of(info_.environment), wish_)](const auto& program) {
-        return program->entry == entry && program->source == source && program->options == options;
+        return program->source.text.entry == source.text.entry &&
+               program->source.identity == source.identity && program->options == options;
       });
   return built == programs_.end() ? nullptr : &*built;
 }
 
 bool Device::has(const std::string& entry, const KernelDefines& defines,
                  const GeneratedFiles& generated) const {
-  const std::string source = expanded(entry, defines, generated);
-  return find_built(entry, source) || is_program_cached(info_, source, wish_, *prepared_);
+  const ProgramSource source = source_of(entry, defines, generated);
+  return find_built(source) || is_program_cached(info_, source, wish_, *prepared_);
 }
 
 bool Device::build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
                          const GeneratedFiles& generated) noexcept {
   try {
-    const std::string source = expanded(entry, defines, generated);
-    return !find_built(entry, source) && begin_program(info_, source, wish_, launch, *prepared_);
+    const ProgramSource source = source_of(entry, defines, generated);
+    return !find_built(source) && begin_program(info_, source, wish_, launch, *prepared_);
   } catch (const std::exception&) {
     return false;  // build() will report the error
   }
@@ -169,12 +170,12 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
   BuildReport own;
   BuildReport& result = report ? *report : own;
   result = {};
-  const std::string source = expanded(entry, defines, generated);
-  if (const auto* built = find_built(entry, source)) {
+  ProgramSource source = source_of(entry, defines, generated);
+  if (const auto* built = find_built(source)) {
     result.cached = true;
     return Program(*built);
   }
-  programs_.push_back(build_program(context_, device_, info_, entry, source, wish_, *prepared_, result));
+  programs_.push_back(build_program(context_, device_, info_, std::move(source), wish_, *prepared_, result));
   result.seconds = milliseconds(Clock::now() - start) * 1e-3;
   return Program(programs_.back());
 }

@@ -55,6 +55,7 @@ struct ArgumentType<Buffer<T>> {
 };
 
 struct ProgramRecord;   // what the binary cache needs of a built program (program.h)
+struct ProgramSource;   // its text (program.h)
 struct PreparedBuilds;  // prepared for the next build() (program.h)
 
 /// A kernel with arguments of types Args: Buffer<T> for a __global T*, or a value: scalar, vector or struct.
@@ -218,9 +219,9 @@ class Device {
                   "kernel values are scalars, vectors and plain structs");
     check_argument(kernel.setArg(index, sizeof(T), &value), name, index);
   }
-  std::string expanded(const std::string& entry, const KernelDefines& defines,
-                       const GeneratedFiles& generated) const;
-  const std::shared_ptr<ProgramRecord>* find_built(const std::string& entry, const std::string& source) const;
+  ProgramSource source_of(const std::string& entry, const KernelDefines& defines,
+                          const GeneratedFiles& generated) const;
+  const std::shared_ptr<ProgramRecord>* find_built(const ProgramSource& source) const;
   KernelLimits limits_of(const cl::Kernel& kernel) const;
   void check_argument(cl_int status, const std::string& name, cl_uint index) const;
   cl::Buffer allocate(std::size_t bytes, const void* data, std::shared_ptr<const void> owner = nullptr);

@@ -50,7 +50,7 @@ std::string kernel_type_name(const std::type_info& type) {
 }
 
 cl::Kernel Program::make_kernel(const std::string& name, const std::vector<std::string>& host_types) const {
-  const std::string entry = record_ ? record_->entry : "an empty program";
+  const std::string entry = record_ ? record_->entry() : "an empty program";
   cl_int status = CL_INVALID_PROGRAM;
   cl::Kernel kernel;
   if (record_) kernel = cl::Kernel(record_->program, name.c_str(), &status);

@@ -61,11 +61,19 @@ std::string guard_name(const std::string& path) {
 
 class Expander {
  public:
-  Expander(const GeneratedFiles& generated, const std::filesystem::path& folder)
-      : generated_(generated), folder_(folder) {}
+  Expander(const KernelText& kernel, bool in_lanes)
+      : generated_(kernel.generated), folder_(kernel.folder), in_lanes_(in_lanes) {
+    out = "#line 1 \"defines\"\n";
+    for (const auto& [name, value] : kernel.defines) out += fmt::format("#define {} {}\n", name, value);
+    expand(kernel.entry);
+  }
 
+  std::string out;
+
+ private:
   void expand(const std::string& path) {
-    const std::string text = spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
+    const std::string text =
+        in_lanes_ && spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
     const bool guarded = has_include_guard(text);
     open_.push_back(path);
     if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
@@ -76,9 +84,6 @@ class Expander {
     seen_.back().insert(path);
   }
 
-  std::string out;
-
- private:
   spmd::ReadFile read() const {
     return [this](const std::string& path) { return file_text(path); };
   }
@@ -132,19 +137,17 @@ class Expander {
 
   const GeneratedFiles& generated_;
   const std::filesystem::path& folder_;
+  bool in_lanes_;                               // plain files become lanes
   std::vector<std::string> open_;               // files being expanded, outermost first
   std::vector<std::set<std::string>> seen_{1};  // files seen in each open #if branch
 };
 
 }  // namespace
 
-std::string expand_kernel(const std::string& entry, const KernelDefines& defines,
-                          const GeneratedFiles& generated, const std::filesystem::path& folder) {
-  Expander expander(generated, folder);
-  expander.out = "#line 1 \"defines\"\n";
-  for (const auto& [name, value] : defines) expander.out += fmt::format("#define {} {}\n", name, value);
-  expander.expand(entry);
-  return expander.out;
+std::string KernelText::expanded() const { return Expander(*this, true).out; }
+
+std::string KernelText::identity() const {
+  return fmt::format("// lanes by {}\n", spmd::revision()) + Expander(*this, false).out;
 }
 
 }  // namespace sundog

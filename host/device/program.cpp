@@ -39,9 +39,9 @@ std::filesystem::path made_folder(const char* variable, const std::string& folde
 }
 
 /// Writes a program's final source to HostEnvironment::dump_folder.
-void dump_source(const std::string& folder, const std::string& entry, const std::string& source) {
+void dump_source(const std::string& folder, const KernelText& text) {
   if (folder.empty()) return;
-  const std::string stem = std::filesystem::path(entry).stem().string();
+  const std::string stem = std::filesystem::path(text.entry).stem().string(), source = text.expanded();
   write_file(
       made_folder("the folder of kernel texts", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
       source);
@@ -53,15 +53,15 @@ void keep_log(const ProgramRecord& record, const std::string& options, const std
               cl_int status) {
   const std::string& folder = value_of(record.device.environment).build_log;
   if (folder.empty()) return;
-  const std::string stem = std::filesystem::path(record.entry).stem().string();
+  const std::string stem = std::filesystem::path(record.entry()).stem().string();
   const DeviceInfo& info = record.device;
   write_file(made_folder("the folder of build logs", folder) /
                  fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device,
                              hash128(options + "\n" + record.key)),
              fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
                          "== log ==\n{}\n\n== source ==\n{}",
-                         record.entry, info.label(), info.driver, info.version, options,
-                         cl_status_name(status), log, record.source));
+                         record.entry(), info.label(), info.driver, info.version, options,
+                         cl_status_name(status), log, record.source.text.expanded()));
 }
 
 std::string build_log(const cl::Program& program, const cl::Device& device) {
@@ -171,7 +171,7 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
              const std::string& source, const std::string& options, BuildReport& report) {
   cl_int status = CL_SUCCESS;
   record.program = cl::Program(context, source, false, &status);
-  check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry));
+  check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry()));
   status = record.program.build({device}, options.c_str());
   report.log = build_log(record.program, device);
   keep_log(record, options, report.log, status);
@@ -182,10 +182,10 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
                                  cl_status_name(status), first_error(report.log)),
                      report.log);
   if (status != CL_BUILD_PROGRAM_FAILURE && report.log.empty())
-    check_cl(status, record.device, fmt::format("{}: clBuildProgram", record.entry));
-  throw BuildError(
-      fmt::format("{} did not build on {}: {}", record.entry, record.device.label(), first_error(report.log)),
-      report.log);
+    check_cl(status, record.device, fmt::format("{}: clBuildProgram", record.entry()));
+  throw BuildError(fmt::format("{} did not build on {}: {}", record.entry(), record.device.label(),
+                               first_error(report.log)),
+                   report.log);
 }
 
 /// The device's name in faults: "P:D".
@@ -203,24 +203,25 @@ void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const
   };
   if (makes_kernels(record.options)) return;
   if (!makes_kernels(record.options + " -cl-opt-disable"))
-    throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry,
+    throw BuildError(fmt::format("{} on {}: the driver built it but makes no kernels of it", record.entry(),
                                  record.device.label()),
                      report.log);
   record.cache_file.clear();
   report.note = fmt::format(
       "{}: the driver makes no kernels of the optimised program; built without optimisation, slow, and not "
       "cached",
-      record.entry);
+      record.entry());
 }
 
 }  // namespace
 
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
-                                             const DeviceInfo& info, const std::string& entry,
-                                             const std::string& source, const BuildWish& wish,
-                                             PreparedBuilds& prepared, BuildReport& report) {
+                                             const DeviceInfo& info, ProgramSource source,
+                                             const BuildWish& wish, PreparedBuilds& prepared,
+                                             BuildReport& report) {
   const HostEnvironment& environment = value_of(info.environment);
-  dump_source(environment.dump_folder, entry, source);
+  const std::string& entry = source.text.entry;
+  dump_source(environment.dump_folder, source.text);
   if (fault(environment.faults, "build", place_of(info)))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
   if (is_pocl(info))
@@ -228,10 +229,9 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
-  record->entry = entry;
-  record->source = source;
   record->options = all_build_options(environment, wish);
-  record->key = program_key(info, record->options, source);
+  record->key = program_key(info, record->options, source.identity);
+  record->source = std::move(source);
   record->cache_file = program_cache_file(environment, record->key);
   const bool from_source = wants_log(environment, wish);
   const auto cached = from_source ? std::nullopt : cached_program(record->cache_file, record->key, prepared);
@@ -252,33 +252,35 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
     }
   if (!from_source) record->program = program_begun(prepared, *record, context, device);
   if (record->program()) return record;
-  if (from_source || !compile_beside(*record, context, device, source))
-    compile_to_kernels(*record, context, device, source, report);
+  const std::string expanded = record->source.text.expanded();
+  if (from_source || !compile_beside(*record, context, device, expanded))
+    compile_to_kernels(*record, context, device, expanded, report);
   return record;
 }
 
-bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                        PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
   if (wants_log(environment, wish)) return false;
-  std::string key = program_key(info, all_build_options(environment, wish), source);
+  std::string key = program_key(info, all_build_options(environment, wish), source.identity);
   std::optional<CachedProgram> program = cached_program(program_cache_file(environment, key), key, prepared);
   if (program) prepared.found = {std::move(key), std::move(*program)};
   return prepared.found.has_value();
 }
 
-bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
   const std::string options = all_build_options(environment, wish);
-  std::string key = program_key(info, options, source);
+  std::string key = program_key(info, options, source.identity);
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();
   if (is_pocl(info) && !driver_folder(environment).problem(environment).empty()) return false;
   // A sub-device's build has no processors to spare.
   if (wants_log(environment, wish) || info.sub_units > 0 || is_program_cached(info, source, wish, prepared))
     return false;
-  std::optional<CompileProcess> process = CompileProcess::start(info, source, options, &launch);
+  std::optional<CompileProcess> process =
+      CompileProcess::start(info, source.text.expanded(), options, &launch);
   if (process) prepared.begun.emplace(PreparedBuilds::Begun{std::move(key), std::move(*process)});
   return prepared.begun.has_value();
 }
@@ -289,7 +291,7 @@ void save_program(ProgramRecord& record) {
   if (record.cache_file.empty() || record.launched_variants.empty() || (record.stored && complete)) return;
   cl_int status = CL_SUCCESS;
   const auto binaries = record.program.getInfo<CL_PROGRAM_BINARIES>(&status);
-  check_cl(status, record.device, fmt::format("{}: CL_PROGRAM_BINARIES", record.entry));
+  check_cl(status, record.device, fmt::format("{}: CL_PROGRAM_BINARIES", record.entry()));
   if (binaries.empty() || binaries.front().empty()) return;
   record.stored_variants.insert(record.launched_variants.begin(), record.launched_variants.end());
   store_program(record.cache_file, record.key,

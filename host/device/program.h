@@ -8,20 +8,28 @@
 
 #include "device/compile_process.h"
 #include "device/device.h"
+#include "device/kernel_source.h"
 #include "device/program_cache.h"
 
 namespace sundog {
 
+/// A program's text, which is only expanded where it is compiled.
+struct ProgramSource {
+  KernelText text;
+  std::string identity;  // text.identity()
+};
+
 struct ProgramRecord {
   cl::Program program;
   DeviceInfo device;
-  std::string entry;                 // kernel file, for messages
-  std::string source;                // expanded
+  ProgramSource source;
   std::string options;               // build options
   std::string key;                   // everything that the binary depends on
   std::filesystem::path cache_file;  // empty: not cached
   bool stored = false;               // the cache holds this program, with machine code for stored_variants
   std::set<std::string> stored_variants, launched_variants;
+
+  const std::string& entry() const { return source.text.entry; }  // for messages
 };
 
 /// Prepared for a Device's next build: the program last found in the cache, and one that another process is
@@ -42,17 +50,17 @@ struct PreparedBuilds {
 /// Loads the program from the cache, takes another process's result, or compiles it. Throws BuildError,
 /// DeviceError.
 std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const cl::Device& device,
-                                             const DeviceInfo& info, const std::string& entry,
-                                             const std::string& source, const BuildWish& wish,
-                                             PreparedBuilds& prepared, BuildReport& report);
+                                             const DeviceInfo& info, ProgramSource source,
+                                             const BuildWish& wish, PreparedBuilds& prepared,
+                                             BuildReport& report);
 
 /// Whether build_program() would find it in the cache. Keeps it for the next build.
-bool is_program_cached(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                        PreparedBuilds& prepared);
 
 /// Starts building for build_program() in another process, with machine code for `launch`. Returns whether it
 /// started.
-bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
+bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared);
 
 /// Updates the cache if it lacks a launched variant. Throws DeviceError, IoError.

@@ -19,6 +19,19 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
 
 }  // namespace
 
+TEST_CASE("a program is known by its plain text, without a translation") {
+  GeneratedFiles files = {{"main.cl", "#include \"plain/one.cl\"\n"},
+                          {"plain/one.cl", "ENTRY static float half_of(float x) { return 0.5f * x; }\n"}};
+  const auto identity = [&] { return KernelText{"main.cl", {}, files}.identity(); };
+  const std::string before = identity();
+  CHECK(before.find("static float half_of(float x)") != std::string::npos);
+  CHECK(KernelText{"main.cl", {}, files}.expanded().find("REAL half_of(") != std::string::npos);
+  CHECK(before == identity());
+  CHECK(before != KernelText{"main.cl", {{"LANES", "4"}}, files}.identity());
+  files["plain/one.cl"] += "// changed\n";
+  CHECK(before != identity());
+}
+
 TEST_CASE("the embedded kernels are the files of kernels/, byte for byte") {
   namespace fs = std::filesystem;
   std::size_t files = 0;
@@ -38,14 +51,14 @@ TEST_CASE("a folder replaces the embedded kernels") {
   write_file(folder.path() / "lib" / "own.cl", "int own;\n");
   CHECK(embedded_kernel("lib/own.cl", folder.path()) == "int own;\n");
   CHECK_THROWS_AS(embedded_kernel("shared/types.h", folder.path()), MissingKernelFile);
-  CHECK(expand_kernel("lib/own.cl", {}, {}, folder.path()).find("int own;") != std::string::npos);
+  CHECK(KernelText{"lib/own.cl", {}, {}, folder.path()}.expanded().find("int own;") != std::string::npos);
 }
 
 TEST_CASE("a file included twice is expanded once, and #line names what follows") {
   const GeneratedFiles files = {{"main.cl", "#include \"a.cl\"\n#include \"b.cl\"\nint in_main;\n"},
                                 {"a.cl", "#include \"b.cl\"\nint in_a;\n"},
                                 {"b.cl", "int in_b;"}};
-  const std::string text = expand_kernel("main.cl", {}, files);
+  const std::string text = KernelText{"main.cl", {}, files}.expanded();
   CHECK(occurrences(text, "int in_b;") == 1);
   CHECK(text.find("int in_b;") < text.find("int in_a;"));
   CHECK(text.find("#line 1 \"b.cl\"\nint in_b;\n") != std::string::npos);
@@ -56,7 +69,7 @@ TEST_CASE("a file included twice is expanded once, and #line names what follows"
 TEST_CASE("a file included under an #if is there again for those who need it for certain") {
   const GeneratedFiles files = {{"main.cl", "#if WANTED\n#include \"a.cl\"\n#endif\n#include \"a.cl\"\n"},
                                 {"a.cl", "int in_a;\n"}};
-  const std::string text = expand_kernel("main.cl", {}, files);
+  const std::string text = KernelText{"main.cl", {}, files}.expanded();
   CHECK(occurrences(text, "int in_a;") == 2);
   CHECK(occurrences(text, "#ifndef SUNDOG_INCLUDED_a_cl\n#define SUNDOG_INCLUDED_a_cl\n") == 2);
 }
@@ -70,26 +83,26 @@ TEST_CASE(
                                 {"c.cl", "int in_c;\n"},
                                 {"d.cl", "#include \"c.cl\"\n"}};
   // Under C, behind that, and under #else.
-  CHECK(occurrences(expand_kernel("main.cl", {}, files), "int in_c;") == 3);
+  CHECK(occurrences(KernelText{"main.cl", {}, files}.expanded(), "int in_c;") == 3);
 }
 
 TEST_CASE("a header's own include guard does not count as an #if") {
   const std::string guarded = "// Comment.\n#ifndef H\n#define H\n#include \"a.cl\"\n#endif\n";
   const GeneratedFiles files = {
       {"main.cl", "#include \"h.h\"\n#include \"a.cl\"\n"}, {"h.h", guarded}, {"a.cl", "int in_a;\n"}};
-  CHECK(occurrences(expand_kernel("main.cl", {}, files), "int in_a;") == 1);
+  CHECK(occurrences(KernelText{"main.cl", {}, files}.expanded(), "int in_a;") == 1);
 }
 
 TEST_CASE("defines stand first, sorted by name") {
   const GeneratedFiles files = {{"main.cl", "int x;\n"}};
-  const std::string text = expand_kernel("main.cl", {{"ZETA", "1"}, {"ALPHA", "2.0f"}}, files);
+  const std::string text = KernelText{"main.cl", {{"ZETA", "1"}, {"ALPHA", "2.0f"}}, files}.expanded();
   CHECK(text.find("#define ALPHA 2.0f\n#define ZETA 1\n") < text.find("int x;"));
 }
 
 TEST_CASE("generated files go before embedded ones of the same path; <angle> includes are left alone") {
   const GeneratedFiles files = {{"main.cl", "#include \"shared/types.h\"\n#include <cstdint>\n"},
                                 {"shared/types.h", "int own_types;\n"}};
-  const std::string text = expand_kernel("main.cl", {}, files);
+  const std::string text = KernelText{"main.cl", {}, files}.expanded();
   CHECK(occurrences(text, "int own_types;") == 1);
   CHECK(occurrences(text, "#include <cstdint>") == 1);
 }
@@ -98,8 +111,8 @@ TEST_CASE("a missing or circular include names the file and line that asks for i
   const GeneratedFiles files = {{"main.cl", "int x;\n#include \"lib/nowhere.cl\"\n"},
                                 {"self.cl", "#include \"other.cl\"\n"},
                                 {"other.cl", "\n\n#include \"self.cl\"\n"}};
-  CHECK_THROWS_WITH(expand_kernel("main.cl", {}, files),
+  CHECK_THROWS_WITH(KernelText{"main.cl", {}, files}.expanded(),
                     "main.cl:2: lib/nowhere.cl: there is no such kernel file");
-  CHECK_THROWS_WITH(expand_kernel("self.cl", {}, files), "other.cl:3: self.cl includes itself");
-  CHECK_THROWS_AS(expand_kernel("absent.cl", {}, files), BuildError);
+  CHECK_THROWS_WITH(KernelText{"self.cl", {}, files}.expanded(), "other.cl:3: self.cl includes itself");
+  CHECK_THROWS_AS(KernelText{"absent.cl", {}, files}.expanded(), BuildError);
 }

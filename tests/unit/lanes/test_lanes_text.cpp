@@ -93,7 +93,7 @@ TEST_CASE("every plain kernel is made, and expands in its place") {
     CHECK(sundog::spmd::in_lanes(path, read, false) == sundog::spmd::in_lanes(path, read, false));
   }
   CHECK(files > 1);
-  const std::string source = sundog::expand_kernel("entry/render_path.cl", {});
+  const std::string source = sundog::KernelText{"entry/render_path.cl", {}}.expanded();
   CHECK_THAT(source, Contains("MASK step_path("));
   CHECK_THAT(source, Contains("\"plain/pathtracer/bounce.cl\""));
 }
