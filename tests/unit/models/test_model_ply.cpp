@@ -68,6 +68,34 @@ TEST_CASE("binary PLY files of both byte orders say the same", "[models]") {
   }
 }
 
+TEST_CASE("binary PLY triangles are read alike with a polygon among them, and refused by their number",
+          "[models]") {
+  constexpr int faces = 20000;
+  const auto file = [](int quad_at, std::uint32_t last_corner) {
+    std::string bytes = header("binary_little_endian", xyz, faces + 3, faces, "property uchar flags\n");
+    for (int i = 0; i < faces + 3; ++i)
+      for (const float x : {float(i), float(i % 2), 0.0f}) put(bytes, x, false);
+    for (int i = 0; i < faces; ++i) {
+      const auto first = std::uint32_t(i);
+      bytes += i == quad_at ? '\4' : '\3';
+      put(bytes, first, false), put(bytes, first + 1, false);
+      if (i == quad_at) put(bytes, first + 3, false);
+      put(bytes, i + 1 == faces ? last_corner : first + 2, false);
+      bytes += '\7';
+    }
+    return bytes;
+  };
+  const Mesh plain = load_text("a.ply", file(-1, faces + 1)).meshes.at(0);
+  REQUIRE(plain.triangles.size() == faces);
+  CHECK(plain.triangles[12345] == glm::uvec3(12345, 12346, 12347));
+  CHECK(plain.triangles.back() == glm::uvec3(faces - 1, faces, faces + 1));
+  const Mesh mixed = load_text("a.ply", file(100, faces + 1)).meshes.at(0);
+  REQUIRE(mixed.triangles.size() == faces + 1);
+  CHECK(mixed.triangles[12346] == plain.triangles[12345]);
+  CHECK_THAT(load_error("a.ply", file(-1, 40000)),
+             ContainsSubstring("face 19999: vertex 40000, but there are 20003 vertices"));
+}
+
 TEST_CASE("an ASCII PLY's polygons are triangulated and its normals made", "[models]") {
   const Model model =
       load_text("a.ply", header("ascii", xyz, 5, 2) +
