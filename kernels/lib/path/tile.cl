@@ -119,8 +119,8 @@ static inline void store_sample(const Scene* scene, u32 place, float4 radiance, 
 }
 
 // store_sample() for the pixels of all lanes of `lanes`; arrays by lane.
-static inline void store_lanes(const Scene* scene, const Launch* launch, u32 item, MASK lanes, const float4* radiance,
-                               const float* signs, __global float4* restrict film,
+static inline void store_lanes(const Scene* scene, const Launch* launch, u32 item, MASK lanes,
+                               const float4* radiance, const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {
   float4 zero = (float4)(0.0f);  // NaN where one is not finite
 #pragma unroll
