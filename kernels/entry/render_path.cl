@@ -99,8 +99,9 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     const REAL alpha = coverage_of(&paths, over);
     for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
-      const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane));
-      store_sample(scene, (u32)MASK_LANE(work.place, lane), radiance, work.sign[lane], film, weights, counts);
+      const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane)),
+                   limited = limit_components(radiance, scene->info->max_component);
+      store_sample((u32)MASK_LANE(work.place, lane), limited, work.sign[lane], film, weights, counts);
     }
   }
   counts[COUNT_MARCH_LEFT] = 0u;

@@ -41,7 +41,9 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
-    store_lanes(scene, launch, item, lanes, radiance, signs, film, weights, counts);
+    for (u32 lane = 0; lane < BATCH; ++lane)
+      radiance[lane] = limit_components(radiance[lane], scene->info->max_component);
+    store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

@@ -105,22 +105,20 @@ static inline float4 limit_components(float4 radiance, float most) {
 }
 
 // Adds a sample's light to film and weights of the rectangle's pixel `place`, with the weight `sign`.
-static inline void store_sample(const Scene* scene, u32 place, float4 radiance, float sign,
-                                __global float4* restrict film, __global float* restrict weights,
-                                u32* counts) {
+static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
+                                __global float* restrict weights, u32* counts) {
   const float3 zero = radiance.xyz * 0.0f;  // NaN if one is not finite
   if (zero.x + zero.y + zero.z != 0.0f) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
   }
-  const float4 limited = limit_components(radiance, scene->info->max_component);
-  film[place] += HAS_FILTER ? sign * limited : limited;
+  film[place] += HAS_FILTER ? sign * radiance : radiance;
   weights[place] += HAS_FILTER ? sign : 1.0f;
 }
 
 // store_sample() for the pixels of all lanes of `lanes`; arrays by lane.
-static inline void store_lanes(const Scene* scene, const Launch* launch, u32 item, MASK lanes,
-                               const float4* radiance, const float* signs, __global float4* restrict film,
+static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const float4* radiance,
+                               const float* signs, __global float4* restrict film,
                                __global float* restrict weights, u32* counts) {
   float4 zero = (float4)(0.0f);  // NaN where one is not finite
 #pragma unroll
@@ -130,7 +128,7 @@ static inline void store_lanes(const Scene* scene, const Launch* launch, u32 ite
     for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
       const u32 lane = lowest_bit(bits);
       const uint2 at = lane_pixel(launch, item, lane);
-      store_sample(scene, at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
+      store_sample(at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
     }
     return;
   }
@@ -138,7 +136,7 @@ static inline void store_lanes(const Scene* scene, const Launch* launch, u32 ite
 #pragma unroll
   for (u32 lane = 0; lane < BATCH; ++lane) {
     const u32 pixel = pixel_of_tile(launch, corner, lane);
-    film[pixel] += limit_components(radiance[lane], scene->info->max_component);
+    film[pixel] += radiance[lane];
     weights[pixel] += REAL_LANE(share, lane);
   }
 }
