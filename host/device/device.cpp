@@ -140,8 +140,8 @@ std::string Device::expanded(const std::string& entry, const KernelDefines& defi
 
 const std::shared_ptr<ProgramRecord>* Device::find_built(const std::string& entry,
                                                          const std::string& source) const {
-  const auto built = std::ranges::find_if(
-      programs_, [&, options = all_build_options(value_of(info_.environment), wish_)](const auto& program) {
+  const auto built =
+      std::ranges::find_if(programs_, [&, options = all_build_options(info_, wish_)](const auto& program) {
         return program->entry == entry && program->source == source && program->options == options;
       });
   return built == programs_.end() ? nullptr : &*built;

@@ -230,7 +230,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   record->device = info;
   record->entry = entry;
   record->source = source;
-  record->options = all_build_options(environment, wish);
+  record->options = all_build_options(info, wish);
   record->key = program_key(info, record->options, source);
   record->cache_file = program_cache_file(environment, record->key);
   const bool from_source = wants_log(environment, wish);
@@ -261,7 +261,7 @@ bool is_program_cached(const DeviceInfo& info, const std::string& source, const 
                        PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
   if (wants_log(environment, wish)) return false;
-  std::string key = program_key(info, all_build_options(environment, wish), source);
+  std::string key = program_key(info, all_build_options(info, wish), source);
   std::optional<CachedProgram> program = cached_program(program_cache_file(environment, key), key, prepared);
   if (program) prepared.found = {std::move(key), std::move(*program)};
   return prepared.found.has_value();
@@ -270,7 +270,7 @@ bool is_program_cached(const DeviceInfo& info, const std::string& source, const 
 bool begin_program(const DeviceInfo& info, const std::string& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
-  const std::string options = all_build_options(environment, wish);
+  const std::string options = all_build_options(info, wish);
   std::string key = program_key(info, options, source);
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();
