@@ -38,7 +38,7 @@ TEST_CASE("kernels writes a scene's programs as a GPU of a maker gets them, with
       {"kernels", "--scene", SUNDOG_SOURCE_DIR "/scenes/cornell_path.json", "--gpu", "nvidia", "--out", out});
   CHECK(made.status == 0);
   CHECK_THAT(made.out, Contains(out + "/render_path.cl -cl-std=CL1.2") && Contains(out + "/trace_rays.cl "));
-  const std::string text = read_file(out + "/render_path.cl");
+  const std::string text = sundog::read_file(out + "/render_path.cl");
   CHECK_THAT(text, Contains("#define DEVICE_HAS_FMA 1\n") && Contains("#define LANES 1\n") &&
                        Contains("__kernel void render_path("));
   const CommandResult unknown = run_sundog(

@@ -16,17 +16,18 @@ TEST_CASE("a bundle runs from another folder, from a link and without any settin
   fast.environment["BUNDLE_LEVEL"] = "1";
   fast.environment["BUNDLE_PICTURES"] = "none";
   const CommandResult made = run_command(
-      {SUNDOG_SOURCE_DIR "/cmake/make_bundle.sh", SUNDOG_BINARY, folder.file("tried-slim.tar.zst")}, fast);
+      {SUNDOG_SOURCE_DIR "/cmake/make_bundle.sh", SUNDOG_BINARY, (folder / "tried-slim.tar.zst").string()},
+      fast);
   CAPTURE(made.err);
   REQUIRE(made.status == 0);
   const fs::path moved = folder / "a folder";
   fs::create_directory(moved);
   REQUIRE(
-      run_command({"tar", "-C", moved.string(), "--zstd", "-xf", folder.file("tried-slim.tar.zst")}).status ==
-      0);
+      run_command({"tar", "-C", moved.string(), "--zstd", "-xf", (folder / "tried-slim.tar.zst").string()})
+          .status == 0);
   const fs::path program = moved / "tried-slim" / "sundog";
   fs::create_symlink(program, folder / "link");
-  for (const std::string& start : {program.string(), folder.file("link")}) {
+  for (const std::string& start : {program.string(), (folder / "link").string()}) {
     const CommandResult info = run_command({"env", "-i", "PATH=/usr/bin:/bin", start, "info",
                                             (moved / "tried-slim/scenes/spheres.json").string()});
     CAPTURE(start, info.err);
