@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-struct HostEnvironment;
+struct DeviceInfo;
 
 /// Settings of a device's future builds.
 struct BuildWish {
@@ -12,8 +12,9 @@ struct BuildWish {
   bool from_source = false;  // do not use caches, which lose the log
 };
 
-/// All options of a build: sundog's, the user's (such as -cl-nv-maxrregcount=64), and `wish`'s.
-std::string all_build_options(const HostEnvironment& environment, const BuildWish& wish);
+/// All options of a build: sundog's, the device's (device_rules.h), the user's (HostEnvironment, such as
+/// -cl-nv-maxrregcount=64), which take the place of the device's by the same name, and `wish`'s.
+std::string all_build_options(const DeviceInfo& device, const BuildWish& wish);
 
 /// Disables drivers' own caches, which lose the log. Call before the first OpenCL call.
 /// HostEnvironment::build_log implies it.

@@ -12,8 +12,8 @@ namespace sundog {
 /// ray per lane (the "compact" one).
 bool wants_vectors(const DeviceInfo& device);
 
-/// Whether the compiler keeps function calls. Mesa's inlines every call, so that the interpreter of fields
-/// (kernels/lib/sdf/interpret.cl) takes minutes to compile.
+/// Whether the compiler keeps function calls (device_rules.h): without, the interpreter of fields
+/// (kernels/lib/sdf/interpret.cl) is not built.
 bool calls_functions(const DeviceInfo& device);
 
 /// "0:0 ... (estimate 48000), before 1:0 ... (600)": the default device and the estimates that decided.

@@ -39,10 +39,6 @@ bool wants_vectors(const DeviceInfo& device) {
   return device.device_class == DeviceClass::cpu && device.native_vector_width > 1;
 }
 
-bool calls_functions(const DeviceInfo& device) {
-  return device.platform_name != "rusticl" && device.platform_name != "Clover";
-}
-
 double estimate_speed(const DeviceInfo& device, unsigned host_threads) {
   unsigned units = std::max(device.compute_units, 1u);
   if (device.type == "cpu" && host_threads > 0) units = std::min(units, host_threads);

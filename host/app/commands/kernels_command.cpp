@@ -12,8 +12,15 @@
 #include "app/process/environment.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "compile/compiled_scene.h"
+#include "device/build_options.h"
+#include "device/device_rules.h"
 #include "device/embedded_kernels.h"
+#include "device/kernel_source.h"
 #include "lanes/lanes.h"
+#include "render/device/halo_tracer.h"
+#include "render/device/scene_programs.h"
+#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -22,6 +29,7 @@ struct KernelsCommand {
   std::string file;
   int lanes = 0;
   bool explains = false, lines = false;
+  std::string scene, gpu, out;
 };
 
 /// A kernel's path as it is, a file's below plain/.
@@ -50,6 +58,25 @@ std::string made_text(const KernelsCommand& c) {
          spmd::in_lanes(path, read, c.lines);
 }
 
+/// Writes the scene's programs as a GPU's compiler receives them; no device is needed. Returns their files
+/// and options, a line each.
+std::string write_programs(const KernelsCommand& c) {
+  const DeviceInfo device = typical_gpu(c.gpu);
+  const HostEnvironment& environment = value_of(program_environment());
+  const SceneDescription scene = load_scene(c.scene);
+  std::vector<SceneProgram> programs = scene_programs(compile(scene), device);
+  if (scene.environment.type == EnvironmentType::halo) programs.push_back(halo_program(device));
+  std::filesystem::create_directories(c.out);
+  std::string list;
+  for (auto& [entry, defines, generated] : programs) {
+    defines.emplace("DEVICE_HAS_FMA", "1");
+    const auto file = std::filesystem::path(c.out) / std::filesystem::path(entry).filename();
+    write_file(file, expand_kernel(entry, defines, generated, environment.kernels));
+    list += fmt::format("{} {}\n", file.string(), all_build_options(device, {}));
+  }
+  return list;
+}
+
 }  // namespace
 
 void add_kernels(Arguments& root, Command& chosen) {
@@ -60,11 +87,19 @@ void add_kernels(Arguments& root, Command& chosen) {
   value(app, "--lanes", "N", c->lanes, "1, 4, 8 or 16: begin with #define LANES N");
   app->add_flag("--explain", c->explains, "what varies from lane to lane in each function, and why");
   app->add_flag("--lines", c->lines, "with #line directives that name the plain file");
+  value(app, "--scene", "FILE", c->scene,
+        "write the programs of this scene to files, and list them with their build options");
+  value(app, "--gpu", "MAKER", c->gpu, "of --scene: as a GPU of nvidia, amd or intel gets them");
+  value(app, "--out", "FOLDER", c->out, "of --scene: the files' folder");
   app->callback([c, &chosen] {
+    if (c->scene.empty() != c->gpu.empty() || c->scene.empty() != c->out.empty())
+      throw UsageError("kernels: --scene, --gpu and --out go together");
     if (c->lanes != 0 && c->lanes != 1 && c->lanes != 4 && c->lanes != 8 && c->lanes != 16)
       throw UsageError(fmt::format("--lanes: wanted 1, 4, 8 or 16, found {}", c->lanes));
     chosen = RunLater{[c] {
-      fmt::print("{}", c->file.empty() ? list_text() : made_text(*c));
+      fmt::print("{}", !c->scene.empty() ? write_programs(*c)
+                       : c->file.empty() ? list_text()
+                                         : made_text(*c));
       return static_cast<int>(exit_done);
     }};
   });

@@ -4,23 +4,19 @@
 #include <algorithm>
 
 #include "render/device/kernel_config.h"
+#include "render/device/scene_programs.h"
 
 namespace sundog {
 
 std::vector<KernelFigures> kernel_figures(Device& device, const CompiledScene& scene) {
   const auto nvidia = device.nvidia();
   device.build_with({nvidia ? "-cl-nv-verbose" : "", true});
-  std::vector<std::string> entries{"entry/render_whitted.cl", "entry/aov.cl"};
-  if (scene.features.camera_inside) entries.push_back("entry/camera_media.cl");
-  if (scene.info.instance_count > 0) entries.push_back("entry/trace_rays.cl");
   const KernelConfig config = make_kernel_config(scene, device.info());
   const std::size_t room = greatest_work_group(config, device.info());
   std::vector<KernelFigures> result;
-  for (const std::string& entry : entries) {
+  for (const auto& [entry, defines, generated] : scene_programs(scene, device.info())) {
     BuildReport report;
-    const bool rays = entry == "entry/trace_rays.cl";
-    const Program program =
-        device.build(entry, config.defines, &report, rays ? GeneratedFiles{} : config.generated);
+    const Program program = device.build(entry, defines, &report, generated);
     auto compiler = read_ptxas_log(report.log);
     for (const std::string& name : program.kernel_names()) {
       KernelFigures& figures = result.emplace_back();

@@ -14,9 +14,13 @@ unsigned usual_lanes(const DeviceInfo& device) {
   return device.native_vector_width >= 16 ? 16 : device.native_vector_width >= 8 ? 8 : 4;
 }
 
+SceneProgram program_of(unsigned lanes) {
+  return {"entry/trace_halo.cl", {{"LANES", std::to_string(lanes)}, {"TILE_W", "1"}, {"TILE_H", "1"}}, {}};
+}
+
 Program build(Device& device, unsigned lanes) {
-  return device.build("entry/trace_halo.cl",
-                      {{"LANES", std::to_string(lanes)}, {"TILE_W", "1"}, {"TILE_H", "1"}});
+  const SceneProgram program = program_of(lanes);
+  return device.build(program.entry, program.defines);
 }
 
 /// One band's counts on the device.
@@ -33,6 +37,8 @@ void clear(Device& device, Band& band) {
 }
 
 }  // namespace
+
+SceneProgram halo_program(const DeviceInfo& device) { return program_of(usual_lanes(device)); }
 
 void build_halo_kernel(Device& device) { build(device, usual_lanes(device.info())); }
 

@@ -4,6 +4,7 @@
 
 #include "compile/halo/halo_map.h"
 #include "device/device.h"
+#include "render/device/scene_programs.h"
 
 namespace sundog {
 
@@ -11,6 +12,8 @@ namespace sundog {
 struct HaloLaunchSizes {
   unsigned lanes = 0, local = 0;
 };
+
+SceneProgram halo_program(const DeviceInfo& device);
 
 /// Builds the kernel of trace_halo_on(), or loads it from the cache. Throws DeviceError, BuildError.
 void build_halo_kernel(Device& device);

@@ -30,3 +30,20 @@ TEST_CASE("kernels takes a file of one's own, and refuses it at its place") {
   CHECK(run_sundog({"kernels", "plain/none.cl"}).status != 0);
   CHECK(run_sundog({"kernels", "--lanes", "3"}).status == 2);
 }
+
+TEST_CASE("kernels writes a scene's programs as a GPU of a maker gets them, without a device") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "programs").string();
+  const CommandResult made = run_sundog(
+      {"kernels", "--scene", SUNDOG_SOURCE_DIR "/scenes/cornell_path.json", "--gpu", "nvidia", "--out", out});
+  CHECK(made.status == 0);
+  CHECK_THAT(made.out, Contains(out + "/render_path.cl -cl-std=CL1.2") && Contains(out + "/trace_rays.cl "));
+  const std::string text = sundog::read_file(out + "/render_path.cl");
+  CHECK_THAT(text, Contains("#define DEVICE_HAS_FMA 1\n") && Contains("#define LANES 1\n") &&
+                       Contains("__kernel void render_path("));
+  const CommandResult unknown = run_sundog(
+      {"kernels", "--scene", SUNDOG_SOURCE_DIR "/scenes/cornell_path.json", "--gpu", "acme", "--out", out});
+  CHECK(unknown.status == 2);
+  CHECK_THAT(unknown.err, Contains("acme: wanted nvidia, amd or intel"));
+  CHECK(run_sundog({"kernels", "--gpu", "nvidia"}).status == 2);
+}

@@ -31,27 +31,34 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
   const TemporaryFolder folder;
   const std::string model = folder.write("ball.obj", octahedron).string();
   const CommandResult result =
-      gpu_script({"--device", "portable", "--quick", (folder / "out").string(), model});
+      gpu_script({"--device", "portable", "--quick", "--seconds", "1800", (folder / "out").string(), model});
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
-  for (const char* part : {"ball-kernels-compact", "ball-kernels-wide", "ball-rays-compact", "ball-rays-wide",
-                           "ball-workgroup"}) {
+  for (const char* part : {"devices", "pictures", "builds", "frames"}) {
     CAPTURE(part);
     CHECK_THAT(result.out, ContainsSubstring(std::string("there:   ") + part + "\n"));
     CHECK_FALSE(read_file(folder / "out" / (std::string(part) + ".txt")).empty());
+  }
+  for (const char* part : {"ball-rays-0", "ball-rays-1", "ball-rays-2", "ball-rays-wide", "workgroup",
+                           "spheres-kernels", "cornell_path-kernels"}) {
+    CAPTURE(part);
+    CHECK_THAT(result.out, ContainsSubstring(std::string("there:   ") + part + "\n"));
     const json report = json::parse(read_file(folder / "out" / (std::string(part) + ".json")));
     CHECK_FALSE(report.at("measurements").empty());
   }
-  for (const std::string tracer : {"compact", "wide"}) {
-    const json report = json::parse(read_file(folder / "out" / ("ball-rays-" + tracer + ".json")));
-    for (const json& row : report.at("measurements")) CHECK(row.at("tracer") == tracer);
+  for (const std::string way : {"0", "1", "2", "wide"}) {
+    const json report = json::parse(read_file(folder / "out" / ("ball-rays-" + way + ".json")));
+    for (const json& row : report.at("measurements"))
+      CHECK(row.at("tracer") == (way == "wide" ? "wide" : "compact"));
   }
+  CHECK_THAT(read_file(folder / "out" / "builds.txt"), ContainsSubstring("spheres warm: "));
+  CHECK_THAT(read_file(folder / "out" / "frames.txt"), ContainsSubstring(" Msamples/s\n"));
   CHECK_THAT(result.out, ContainsSubstring("ball-embree") && ContainsSubstring("ball-tinybvh"));
   CHECK(result.out == read_file(folder / "out" / "summary.txt"));
   std::size_t logs = 0;
   for (const auto& file : fs::directory_iterator(folder / "out" / "build_logs"))
     logs += read_file(file.path()).find("== log ==") != std::string::npos;
-  CHECK(logs >= 6);  // frames, AOVs and rays, for both tracers
+  CHECK(logs >= 6);  // frames, AOVs and rays, of both integrators
 }
 
 TEST_CASE("gpu.sh continues when parts fail, and names them") {
@@ -61,8 +68,17 @@ TEST_CASE("gpu.sh continues when parts fail, and names them") {
   CAPTURE(result.out, result.err);
   CHECK(result.status == 1);
   CHECK_THAT(result.out, ContainsSubstring("there:   devices\n") &&
-                             ContainsSubstring("failed:  none-kernels-compact (status 4)") &&
-                             ContainsSubstring("failed:  none-workgroup (status 4)"));
+                             ContainsSubstring("failed:  none-rays-0 (status 4)") &&
+                             ContainsSubstring("failed:  workgroup (status 4)"));
+}
+
+TEST_CASE("gpu.sh leaves out what would begin after its time, and says so") {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      gpu_script({"--device", "portable", "--quick", "--seconds", "0", (folder / "out").string()});
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("missing: devices: the 0 seconds were over\n"));
 }
 
 TEST_CASE("gpu.sh says how it is called") {

@@ -1,0 +1,6 @@
+# `bundle`: sundog-VERSION-linux-x86_64.tar.zst, which runs from any folder of a machine without packages; `bundle-slim`: without PoCL.
+foreach(kind IN ITEMS "" -slim)
+  add_custom_target(bundle${kind} USES_TERMINAL VERBATIM DEPENDS sundog
+    COMMAND ${PROJECT_SOURCE_DIR}/cmake/make_bundle.sh $<TARGET_FILE:sundog>
+            ${CMAKE_BINARY_DIR}/sundog-${PROJECT_VERSION}-linux-x86_64${kind}.tar.zst)
+endforeach()

@@ -1,0 +1,58 @@
+// See device_rules.h. docs/measurements/gpu-compilers.md has the figures behind the rows.
+#include "device/device_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "device/choice.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::array rules{
+    // Inlined, frames keep their structs in registers. Nodes in pieces of 16 bytes cost no register. With 128
+    // registers a multiprocessor holds 16 warps; kernels that have more spill little or nothing for that.
+    DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=1 -cl-nv-maxrregcount=128"},
+    // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
+    DeviceRule{"amd", "Advanced Micro Devices", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
+    DeviceRule{"intel", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
+    DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL"},
+    // Mesa's compilers inline every call: the interpreter of fields (kernels/lib/sdf/interpret.cl) takes
+    // minutes.
+    DeviceRule{"", "rusticl", false, false, ""},
+    DeviceRule{"", "Clover", false, false, ""},
+    DeviceRule{"", "", false, true, ""},
+};
+
+}  // namespace
+
+bool DeviceRule::matches(const DeviceInfo& device) const {
+  return (!of_gpus || device.device_class == DeviceClass::gpu) &&
+         (device.vendor.find(reports) != std::string::npos ||
+          device.platform_name.find(reports) != std::string::npos);
+}
+
+std::span<const DeviceRule> device_rules() { return rules; }
+
+const DeviceRule& rule_of(const DeviceInfo& device) {
+  return *std::ranges::find_if(rules, [&](const DeviceRule& rule) { return rule.matches(device); });
+}
+
+bool calls_functions(const DeviceInfo& device) { return rule_of(device).calls; }
+
+DeviceInfo typical_gpu(std::string_view name) {
+  const auto rule = std::ranges::find(rules, name, &DeviceRule::name);
+  if (name.empty() || rule == rules.end())
+    throw UsageError(fmt::format("{}: wanted nvidia, amd or intel", name));
+  DeviceInfo device;
+  device.type = "gpu";
+  device.device_class = DeviceClass::gpu;
+  device.native_vector_width = 1;
+  device.vendor = rule->reports;
+  return device;
+}
+
+}  // namespace sundog

@@ -1,0 +1,29 @@
+// What a device's programs get beyond those of other devices, by what it reports: one table.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "device/devices.h"
+
+namespace sundog {
+
+/// A row of the table; the first row that matches a device decides.
+struct DeviceRule {
+  std::string_view name;     // as in `sundog kernels --gpu`
+  std::string_view reports;  // in its vendor or platform
+  bool of_gpus;              // only for the class gpu
+  bool calls;                // its compiler keeps calls of functions
+  std::string_view options;  // for its compiler; definitions that kernels have defaults for
+  bool matches(const DeviceInfo& device) const;
+};
+
+/// The last row matches every device.
+std::span<const DeviceRule> device_rules();
+
+const DeviceRule& rule_of(const DeviceInfo& device);
+
+/// What a GPU of that row reports, as far as its programs depend on it. Throws UsageError with the names that
+/// there are.
+DeviceInfo typical_gpu(std::string_view name);
+
+}  // namespace sundog

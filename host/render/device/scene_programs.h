@@ -1,0 +1,21 @@
+// All programs that drawing a scene may need.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "device/device.h"
+
+namespace sundog {
+
+struct SceneProgram {
+  std::string entry;
+  KernelDefines defines;
+  GeneratedFiles generated;
+};
+
+/// Those of the integrator, of AOVs, of photons and camera media where the scene has them, of `bench rays`
+/// where something is traced. Pure.
+std::vector<SceneProgram> scene_programs(const CompiledScene& scene, const DeviceInfo& device);
+
+}  // namespace sundog
