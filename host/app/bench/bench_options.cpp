@@ -68,13 +68,59 @@ void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed)
   app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 6)")
       ->type_name("N")
       ->range(1, 10000);
-  value(app, "--json", "FILE", options.json, "write the measurements as JSON");
-  value(app, "--csv", "FILE", options.csv, "write the measurements as CSV");
+  app->add_option("--seconds", options.seconds, "further runs until those of each measurement took so long")
+      ->type_name("S")
+      ->range(0, 1e6);
+  value(app, "--precision", "P%", options.precision,
+        "further runs, at most 1000, until the median is known to P per cent: half of its interval");
   value(app, "--continue", "FILE", options.continue_from,
         "take the runs that this JSON of an earlier run has, and measure the others");
-  value(app, "--html", "FILE", options.html, "write the report as one page with plots");
   outside_files(app, options.outside_files);
-  app->add_flag("-q,--quiet", options.quiet, "print nothing");
+  add_report_options(app, options);
+}
+
+void add_report_options(Arguments* app, ReportFiles& files) {
+  value(app, "--json", "FILE", files.json, "write the measurements as JSON");
+  value(app, "--csv", "FILE", files.csv, "write the measurements as CSV");
+  value(app, "--html", "FILE", files.html, "write the report as one page with plots");
+  value(app, "--latex", "FILE", files.latex, "write the tables for LaTeX with booktabs");
+  value(app, "--svg", "FILE.svg", files.svg,
+        "write the plots for a paper's column: the first to FILE.svg, then FILE-2.svg, ...");
+  value(app, "--t4", "FILE", files.t4, "write the measurements as JSON in the T4 format of tuners");
+  app->add_flag("-q,--quiet", files.quiet, "print nothing");
+}
+
+void check_report_files(const ReportFiles& files, const std::vector<std::string>& inputs) {
+  check_output_files(files.all(), inputs);
+  for (const std::string& file : files.all())
+    if (!file.empty()) check_writable(file);
+}
+
+namespace {
+
+void write_json(const std::string& file, const nlohmann::json& json) {
+  if (file.empty()) return;
+  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
+             program_environment()->faults);
+}
+
+}  // namespace
+
+void write_report(const Report& report, const ReportFiles& files) {
+  write_json(files.json, report_json(report));
+  if (!files.t4.empty()) write_json(files.t4, report_t4(report));
+  if (!files.latex.empty()) write_file(files.latex, report_latex(report));
+  if (!files.svg.empty()) {
+    const std::filesystem::path file(files.svg);
+    const std::vector<std::string> plots = report_svgs(report);
+    for (std::size_t i = 0; i < plots.size(); ++i) {
+      const std::string name = fmt::format("{}-{}{}", file.stem().string(), i + 1, file.extension().string());
+      write_file(i == 0 ? file : file.parent_path() / name, plots[i]);
+    }
+  }
+  if (!files.csv.empty()) write_file(files.csv, report_csv(report));
+  if (!files.html.empty()) write_file(files.html, report_html(report));
+  if (!files.quiet) fmt::print("{}", report_text(report));
 }
 
 void add_bench_size(Arguments* app, BenchOptions& options) {
@@ -93,7 +139,7 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
   if (!options.size.empty())
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  return load_beside({options.json, options.csv, options.html}, [&] {
+  return load_beside(options.all(), [&] {
     return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
   });
 }
@@ -146,6 +192,7 @@ void add_bench(Arguments& root, Command& chosen) {
   add_bench_textures(*bench, chosen);
   add_bench_devices(*bench, chosen);
   add_bench_kernels(*bench, chosen);
+  add_bench_compare(*bench, chosen);
 }
 
 }  // namespace sundog

@@ -12,18 +12,34 @@ namespace sundog {
 
 class Arguments;
 
-struct BenchOptions {
-  std::vector<std::string> scenes, devices, overrides;
-  std::string json, csv, html;  // files; empty: none
-  std::string continue_from;    // a report whose runs count; empty: none
-  std::string size;             // "WxH" of the images; empty: the scenes'
-  int repeat = 6;
-  bool outside_files = false;  // as for render
+/// Where a report is written; empty: nowhere.
+struct ReportFiles {
+  std::string json, csv, html, latex, svg, t4;
   bool quiet = false;
+
+  std::vector<std::string> all() const { return {json, csv, html, latex, svg, t4}; }
 };
 
-/// SCENE... --device --set --repeat --json --csv --html --quiet. Where no scene is needed the benchmark has
-/// one.
+struct BenchOptions : ReportFiles {
+  std::vector<std::string> scenes, devices, overrides;
+  std::string continue_from;  // a report whose runs count; empty: none
+  std::string size;           // "WxH" of the images; empty: the scenes'
+  int repeat = 6;
+  double seconds = 0;          // as MeasureOptions has them
+  std::string precision;       // "2%"
+  bool outside_files = false;  // as for render
+};
+
+/// --json --csv --html --latex --svg --t4 --quiet.
+void add_report_options(Arguments* app, ReportFiles& files);
+
+/// Throws UsageError or IoError where a file cannot be written or is one of `inputs`.
+void check_report_files(const ReportFiles& files, const std::vector<std::string>& inputs);
+
+/// Writes the files and prints the report.
+void write_report(const Report& report, const ReportFiles& files);
+
+/// SCENE... --device --set --repeat, and those of a report. Where no scene is needed the benchmark has one.
 void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed = true);
 
 /// --size, for benchmarks that render frames of one size.
@@ -68,5 +84,6 @@ void add_bench_rays(Arguments& bench, Command& chosen);
 void add_bench_samples(Arguments& bench, Command& chosen);
 void add_bench_quality(Arguments& bench, Command& chosen);
 void add_bench_textures(Arguments& bench, Command& chosen);
+void add_bench_compare(Arguments& bench, Command& chosen);
 
 }  // namespace sundog

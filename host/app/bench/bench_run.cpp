@@ -22,6 +22,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "bench/report/machine.h"
+#include "bench/runs/energy.h"
 #include "device/driver_folder.h"
 #include "render/film/hash.h"
 #include "scene/json/override.h"
@@ -34,13 +35,13 @@ constexpr double most_of_time = 0.05;  // that keeping may take
 
 /// Files of a bench that holds `time`: what a person must know of its intervals and of the load.
 std::vector<std::string> notes_on_runs(const Report& report, double limit) {
-  std::size_t timed = 0, left_out = 0;
+  std::size_t timed = 0, left_out = 0, slow = 0;
   std::vector<std::string> noisy;
   for (const MeasuredWay& way : report.ways) {
     timed += way.is_good();
     if (way.noisy && way.is_good()) noisy.push_back(way.name);
-    left_out += static_cast<std::size_t>(
-        std::ranges::count_if(way.runs, [](const Run& run) { return run.left_out == "busy"; }));
+    left_out += static_cast<std::size_t>(std::ranges::count(way.runs, std::string("busy"), &Run::left_out));
+    slow += static_cast<std::size_t>(std::ranges::count(way.runs, std::string("slow clock"), &Run::left_out));
   }
   std::vector<std::string> notes;
   if (timed == 0) return notes;
@@ -52,6 +53,10 @@ std::vector<std::string> notes_on_runs(const Report& report, double limit) {
         "{} run{} left out and measured again, because other programs had more than {:.2g} cores meanwhile, "
         "or because a run had fewer cores than the others of its row.",
         left_out, left_out == 1 ? " was" : "s were", limit));
+  if (slow > 0)
+    notes.push_back(fmt::format(
+        "{} run{} left out and measured again, because the clock was lower than in others of their row.",
+        slow, slow == 1 ? " was" : "s were"));
   if (!noisy.empty())
     notes.push_back(fmt::format(
         "Not measured quietly: {} of {} rows. Other programs used the machine in too many runs; these rows "
@@ -62,17 +67,21 @@ std::vector<std::string> notes_on_runs(const Report& report, double limit) {
   return notes;
 }
 
+/// "2%" or "2": 0.02.
+double precision_of(std::string text) {
+  if (text.ends_with('%')) text.pop_back();
+  return 0.01 * parse_real("--precision", text, 0.01, 100);
+}
+
 }  // namespace
 
 BenchRun::BenchRun(const std::string& name, const std::string& title, const BenchOptions& options)
     : options_(options),
       load_(std::make_shared<LoadMeter>(std::thread::hardware_concurrency())),
       progress_(std::make_unique<BenchProgress>(!options.quiet, 0)) {
-  const std::vector<std::string> files{options.json, options.csv, options.html};
-  check_output_files(files, options.scenes);
-  for (const std::string& file : files)
-    if (!file.empty()) check_writable(file);
+  check_report_files(options, options.scenes);
   for (const std::string& setting : options.overrides) check_override(setting);
+  if (!options.precision.empty()) precision_of(options.precision);
   head_.name = name;
   head_.title = title;
   head_.complete = false;
@@ -83,10 +92,16 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
                                            {"command", command_line_text()}});
   head_.environment = driver_variables();
   if (!options.continue_from.empty()) {
-    KnownReport known = read_known_report(options.continue_from, name, build_revision());
+    KnownReport known = read_report("--continue", options.continue_from);
+    if (known.bench != name)
+      throw UsageError(fmt::format("--continue {}: it is of bench {}", options.continue_from, known.bench));
+    if (known.revision != build_revision())
+      throw UsageError(fmt::format("--continue {}: revision {} has measured it, this is {}: measure anew",
+                                   options.continue_from, known.revision, build_revision()));
     known_devices_ = std::move(known.devices);
     known_scenes_ = std::move(known.scenes);
-    known_ = std::move(known.ways);
+    for (MeasuredWay& way : known.ways)
+      if (way.problem.empty()) known_[way.name] = std::move(way);
     head_.facts.emplace_back("continues", options.continue_from);
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
@@ -99,6 +114,9 @@ void BenchRun::add_devices(const std::vector<DeviceInfo>& devices) {
     add_device_row(head_.devices, device);
     check_known(known_devices_, head_.devices, "label", options_.continue_from);
   }
+  const auto energy = std::make_shared<EnergyMeter>(devices);
+  head_.facts.emplace_back("energy", energy->source());
+  load_->count(energy);
   if (std::ranges::any_of(devices, is_pocl))
     head_.facts.emplace_back("PoCL", pocl_fact(*program_environment()));
 }
@@ -127,6 +145,8 @@ MeasureOptions BenchRun::measuring(double budget, int repeat) {
   progress_ = std::make_unique<BenchProgress>(!options_.quiet, 0);
   MeasureOptions measuring;
   measuring.repeat = repeat < 0 ? options_.repeat : repeat;
+  measuring.seconds = options_.seconds;
+  if (!options_.precision.empty()) measuring.precision = precision_of(options_.precision);
   measuring.budget = budget;
   measuring.stop = &stop_.flag();
   measuring.known = known_;
@@ -149,16 +169,12 @@ Report BenchRun::so_far() const {
   return report;
 }
 
-void BenchRun::write_json(const Report& report) const {
-  if (options_.json.empty()) return;
-  write_file(options_.json,
-             report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
-             program_environment()->faults);
-}
-
 void BenchRun::keep() {
   const Stopwatch clock;
-  if (!options_.json.empty() && !is_pipe_or_device(options_.json)) write_json(so_far());
+  ReportFiles files;
+  files.json = options_.json;
+  files.quiet = true;
+  if (!files.json.empty() && !is_pipe_or_device(files.json)) write_report(so_far(), files);
   keeping_ = clock.seconds();
   since_kept_ = {};
 }
@@ -168,10 +184,7 @@ int BenchRun::publish(bool all_right) {
   Report report = so_far();
   report.complete = !is_stopped();
   if (is_stopped()) report.notes.insert(report.notes.begin(), "Interrupted: some of it was not measured.");
-  write_json(report);
-  if (!options_.csv.empty()) write_file(options_.csv, report_csv(report));
-  if (!options_.html.empty()) write_file(options_.html, report_html(report));
-  if (!options_.quiet) fmt::print("{}", report_text(report));
+  write_report(report, options_);
   if (is_stopped()) {
     tell(fmt::format("sundog: interrupted: {}\n",
                      options_.json.empty() ? "the report has what was measured until then"

@@ -42,7 +42,6 @@ class BenchRun {
   MeasureOptions measuring(double budget, int repeat);
   Report so_far() const;
   void keep();
-  void write_json(const Report& report) const;
 
   BenchOptions options_;
   StopOnSignal stop_;

@@ -125,7 +125,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
           "Each result was compared with the default's to the bit before its time counted.",
           options.repeat, options.rays, options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
-      "each of these runs was faster than each of the default's.",
+      "the interval of its median lies below that of the default's.",
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
       "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
       "no times."};

@@ -27,59 +27,58 @@ Table table_of(const json& rows) {
   return table;
 }
 
+double number(const json& run, const char* name, double otherwise) {
+  return run.contains(name) && run[name].is_number() ? run[name].get<double>() : otherwise;
+}
+
 MeasuredWay way_of(const json& value) {
   MeasuredWay way;
   way.name = value.at("name").get<std::string>();
   way.problem = text_of(value.at("problem"));
   for (const json& run : value.at("runs"))
     way.runs.push_back({run.at("seconds").get<double>(), run.at("cores").get<double>(),
-                        run.at("others").is_null() ? -1 : run.at("others").get<double>(),
-                        run.at("at").get<double>(), text_of(run.at("left_out"))});
+                        number(run, "others", -1), run.at("at").get<double>(), text_of(run.at("left_out")),
+                        number(run, "clock_MHz", 0), number(run, "joules", -1)});
   return way;
 }
 
 }  // namespace
 
-KnownReport read_known_report(const std::string& file, const std::string& bench,
-                              const std::string& revision) {
+KnownReport read_report(const std::string& option, const std::string& file) {
   const auto refuse = [&](const std::string& why) {
-    return UsageError(fmt::format("--continue {}: {}", file, why));
+    return UsageError(fmt::format("{} {}: {}", option, file, why));
   };
   try {
     const json report = json::parse(read_file(file));
     if (report.at("schema") != 2) throw refuse("it has another schema; measure anew");
-    if (report.at("bench") != bench) throw refuse("it is of bench " + text_of(report.at("bench")));
-    if (report.at("facts").at("revision") != revision)
-      throw refuse(fmt::format("revision {} has measured it, this is {}: measure anew",
-                               text_of(report.at("facts").at("revision")), revision));
-    KnownReport known{table_of(report.at("devices")), table_of(report.at("scenes")), {}};
-    for (const json& value : report.at("ways"))
-      if (MeasuredWay way = way_of(value); way.problem.empty()) known.ways[way.name] = std::move(way);
+    KnownReport known{text_of(report.at("bench")),
+                      text_of(report.at("facts").at("revision")),
+                      table_of(report.at("devices")),
+                      table_of(report.at("scenes")),
+                      {}};
+    for (const json& way : report.at("ways")) known.ways.push_back(way_of(way));
     return known;
   } catch (const json::exception&) {
     throw refuse("it is no report of sundog bench --json");
   }
 }
 
+std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (plain_name(table.columns[i]) == column) return cell_text(row[i]);
+  return {};
+}
+
 void check_known(const Table& known, const Table& rows, const std::string& name, const std::string& file) {
-  const auto cell = [](const Table& table, const std::vector<Cell>& row, const std::string& column) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      // A report has names such as programs like.
-      std::string found = table.columns[i].unit.empty() ? table.columns[i].name
-                                                        : table.columns[i].name + "_" + table.columns[i].unit;
-      std::ranges::replace(found, ' ', '_');
-      if (found == column) return cell_text(row[i]);
-    }
-    return std::string();
-  };
   const std::vector<Cell>& mine = rows.rows.back();
-  const std::string own = cell(rows, mine, name);
+  const std::string own = known_cell(rows, mine, name);
   bool any = false;
   for (const auto& row : known.rows) {
-    if (cell(known, row, name) != own) continue;
+    if (known_cell(known, row, name) != own) continue;
     any = true;
     const bool same = std::ranges::all_of(known.columns, [&](const Column& column) {
-      return column.name == "file" || cell(known, row, column.name) == cell(rows, mine, column.name);
+      return column.name == "file" ||
+             known_cell(known, row, column.name) == known_cell(rows, mine, column.name);
     });
     if (same) return;
   }

@@ -1,19 +1,24 @@
-// An earlier report of a bench, whose runs need not be taken again.
+// Reports that an earlier run of a bench wrote, read again.
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include "bench/report/report.h"
 
 namespace sundog {
 
 struct KnownReport {
+  std::string bench, revision;
   Table devices, scenes;
-  std::map<std::string, MeasuredWay> ways;  // by name, those without a problem
+  std::vector<MeasuredWay> ways;
 };
 
-/// Throws IoError, UsageError where it is no report of `bench`, or one of another revision.
-KnownReport read_known_report(const std::string& file, const std::string& bench, const std::string& revision);
+/// Throws IoError, UsageError (which names `option`) where the file is no report of a bench.
+KnownReport read_report(const std::string& option, const std::string& file);
+
+/// A cell of a row, by the name that the JSON has for the column; empty: there is none.
+std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column);
 
 /// Throws UsageError where `known` has rows named (by the column `name`) as the last one of `rows`, but none
 /// equal to it.

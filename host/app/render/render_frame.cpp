@@ -19,6 +19,7 @@
 #include "app/render/render_result.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "bench/runs/energy.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
@@ -148,8 +149,11 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
     options.on_picture = [&](const Film& film) { write_so_far(command, scene.description->image, film); };
   }
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
+  EnergyMeter energy(setup.devices);
+  const Stopwatch frame;
   RenderResult result = setup.session ? setup.session->render(scene.flat, options)
                                       : render(scene.flat, plan_servers(command, scene, setup), options);
+  times.joules = energy.joules(), times.frame = frame.seconds(), times.joules_by = energy.source();
   bar.erase();
   const bool told = setup.job && result.checkpoint_kept && !result.failure;
   if (told) tell_kept(result, checkpoint);

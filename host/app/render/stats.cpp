@@ -134,6 +134,13 @@ json seconds_json(const TimeLedger& times) {
   return seconds;
 }
 
+json energy_json(const TimeLedger& times) {
+  const bool known = times.joules >= 0;
+  return {{"joules", known ? json(times.joules) : json()},
+          {"watts", known && times.frame > 0 ? json(times.joules / times.frame) : json()},
+          {"counted_by", times.joules_by}};
+}
+
 }  // namespace
 
 json stats_json(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
@@ -151,6 +158,7 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"counters", counters_json(result.counts)},
           {"seconds", seconds_json(times)},
           {"kernels_cached", times.render.cached},
+          {"energy", energy_json(times)},
           {"peak_memory", peak_memory()}};
 }
 

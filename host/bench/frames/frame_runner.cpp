@@ -92,6 +92,14 @@ bool same_bits_of(const Image& a, const Image& b) {
          std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
 }
 
+Image confirmed_image(FrameRunner& frames) {
+  const auto image = [&] {
+    frames.run();
+    return frames.image();
+  };
+  return confirmed<Image>(image, same_bits_of);
+}
+
 Subject frame_subject(const std::string& name, FrameSubject of) {
   struct State {
     std::shared_ptr<FrameRunner> frames;

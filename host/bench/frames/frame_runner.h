@@ -74,4 +74,7 @@ Subject frame_subject(const std::string& name, FrameSubject of);
 /// The same bits in both.
 bool same_bits_of(const Image& a, const Image& b);
 
+/// What others are compared with: a picture that two frames in a row agree on, as confirmed() has it.
+Image confirmed_image(FrameRunner& frames);
+
 }  // namespace sundog

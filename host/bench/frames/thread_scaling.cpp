@@ -33,17 +33,16 @@ Subject thread_subject(const ThreadScaling& plan, unsigned threads, const std::s
       throw DeviceError(fmt::format("the device has {} compute units", part.compute_units));
     part.sub_units = threads;
     *frames = std::make_shared<FrameRunner>(part, size->scene);
-    (*frames)->run();
+    if (size->first > 0) {
+      (*frames)->run();
+      return;
+    }
+    size->expected = confirmed_image(**frames);
+    size->first = threads;
   };
   subject.run = [frames] { return (*frames)->run(); };
   subject.check = [=]() -> std::string {
-    Image image = (*frames)->image();
-    if (size->first == 0) {
-      size->first = threads;
-      size->expected = std::move(image);
-      return "";
-    }
-    if (same_bits_of(image, size->expected)) return "";
+    if (same_bits_of((*frames)->image(), size->expected)) return "";
     return fmt::format("its image differs from that of {}", threads_text(size->first));
   };
   return subject;
@@ -143,11 +142,11 @@ Table ThreadTimes::pivot(const std::string& title, const std::string& unit,
 void ThreadTimes::add_to(Report& report) const {
   const auto time_cell = [&](int size, unsigned count) {
     const Subject* time = find(size, count);
-    return time ? Cell(1e3 * time->seconds().median) : Cell();
+    return time ? Cell(scaled(time->seconds(), 1e3)) : Cell();
   };
   const auto gain_cell = [&](double scale, int size, unsigned count) {
     const auto gain = speed_up(size, count);
-    return gain ? Cell(gain->median * scale) : Cell();
+    return gain ? Cell(scaled(*gain, scale)) : Cell();
   };
   report.parts.push_back(pivot("time of a frame", "ms", time_cell));
   report.parts.push_back(
@@ -171,7 +170,8 @@ void ThreadTimes::add_to(Report& report) const {
                            {"size", "pixels", static_cast<double>(size)},
                            {"threads", "", threads ? static_cast<double>(threads) : 1.0}};
     for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
-    row.push_back({"speed-up", "", threads ? gain_cell(1, size, threads) : Cell()});
+    const auto gain = threads ? speed_up(size, threads) : std::nullopt;
+    row.push_back({"speed-up", "", gain ? Cell(gain->median) : Cell()});
     add_row(report.measurements, row);
     report.ways.push_back(subjects_[i]);
     if (!subjects_[i].problem.empty())

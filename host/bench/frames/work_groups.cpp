@@ -25,7 +25,8 @@ bool is_padded_prime(const WorkGroup& group) {
 }
 
 std::string range_text(const Spread& seconds) {
-  return fmt::format("{} to {} ms", number_text(1e3 * seconds.min), number_text(1e3 * seconds.max));
+  const Interval interval = median_interval(seconds);
+  return fmt::format("{} to {} ms", number_text(1e3 * interval.low), number_text(1e3 * interval.high));
 }
 
 }  // namespace
@@ -67,9 +68,7 @@ void WorkGroupTimes::add_way(const WorkGroup& group, const std::string& text) {
     return seconds;
   };
   subject.check = [this]() -> std::string {
-    const std::uint64_t result = kernel_.result();
-    if (!expected_) expected_ = result;
-    return result == *expected_ ? "" : "its result is not the default's";
+    return kernel_.result() == expected_ ? "" : "its result is not the default's";
   };
 }
 
@@ -78,7 +77,11 @@ void WorkGroupTimes::measure(const MeasureOptions& options) {
   add_way({}, "default");
   const auto open = [&] {
     kernel_ = open_();
-    kernel_.run({});
+    const auto result = [&] {
+      kernel_.run({});
+      return kernel_.result();
+    };
+    expected_ = confirmed<std::uint64_t>(result, std::equal_to<>());
   };
   if (!prepared(subjects_, open) || options.is_stopped()) return;
   const auto [x, y] = kernel_.local ? kernel_.local() : std::pair<std::size_t, std::size_t>();
@@ -119,7 +122,7 @@ const std::string& WorkGroupTimes::text_of(const Subject& subject) const {
 bool WorkGroupTimes::is_clear() const {
   if (duel_.empty() || !duel_[0].is_good() || !duel_[1].is_good()) return false;
   const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
-  return best.runs.size() >= 3 && best.max < usual.min;
+  return best.runs.size() >= 3 && median_interval(best).high < median_interval(usual).low;
 }
 
 std::string WorkGroupTimes::verdict() const {

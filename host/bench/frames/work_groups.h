@@ -69,7 +69,7 @@ class WorkGroupTimes {
   std::string name_;
   std::function<TimedKernel()> open_;
   TimedKernel kernel_;
-  std::optional<std::uint64_t> expected_;
+  std::uint64_t expected_ = 0;  // the result of the default
   std::vector<std::shared_ptr<Way>> ways_;
   std::vector<Subject> subjects_;  // the default is the first
   std::vector<Subject> duel_;      // the default, and the size of the least median; or none

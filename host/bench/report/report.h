@@ -37,6 +37,9 @@ struct Table {
   std::vector<std::vector<Cell>> rows;
 };
 
+/// "time [ms]" as a name that programs like: "time_ms".
+std::string plain_name(const Column& column);
+
 /// A cell and its column.
 struct Field {
   std::string name, unit;
@@ -70,10 +73,11 @@ struct Bar {
   Spread value;
   std::string note;  // drawn behind the bar
 };
-/// Lying bars with their spread.
+/// Lying bars with their spread; as `ratios` points about 1 on a logarithmic axis, in a terminal too.
 struct BarPlot {
   std::string title, unit;
   std::vector<Bar> bars;
+  bool ratios = false;
 };
 
 /// Times in two dimensions. values[row][column]; empty: not measured. With `has_best` the least is outlined.
@@ -113,6 +117,16 @@ std::string report_csv(const Report& report);
 /// One page that needs nothing else: tables and SVG plots, in the reader's light or dark colours, and fit for
 /// print.
 std::string report_html(const Report& report);
+
+/// The tables, with booktabs.
+std::string report_latex(const Report& report);
+
+/// Plots as files, for a column of 88 mm with letters of 8 points.
+std::vector<std::string> report_svgs(const Report& report);
+
+/// The measurements in the T4 format of Kernel Tuner and others (results-schema.json, 1.0.0): what stands
+/// before the time in a row is the configuration.
+nlohmann::json report_t4(const Report& report);
 
 /// A number with about three digits that count: "0.0123", "4.57", "12.3", "1234".
 std::string number_text(double value);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string_view>
 
 #include "bench/report/report.h"
@@ -91,13 +92,6 @@ json cell_json(const Cell& cell) {
   }
 }
 
-/// "time [ms]" as a name that programs like: "time_ms".
-std::string plain_name(const Column& column) {
-  std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;
-  std::ranges::replace(name, ' ', '_');
-  return name;
-}
-
 json rows_json(const Table& table) {
   json rows = json::array();
   for (const auto& row : table.rows) {
@@ -116,6 +110,8 @@ json way_json(const MeasuredWay& way) {
                     {"cores", run.cores},
                     {"others", run.others < 0 ? json() : json(run.others)},
                     {"at", run.at},
+                    {"clock_MHz", run.clock > 0 ? json(run.clock) : json()},
+                    {"joules", run.joules < 0 ? json() : json(run.joules)},
                     {"left_out", run.left_out.empty() ? json() : json(run.left_out)}});
   return {{"name", way.name},
           {"problem", way.problem.empty() ? json() : json(way.problem)},
@@ -139,7 +135,39 @@ std::string csv_cell(const Cell& cell, bool as_spread) {
   return as_spread ? text + ",,," : text;
 }
 
+/// Points with their intervals about 1, a line each.
+std::string ratios_text(const BarPlot& plot) {
+  constexpr int width = 49;
+  double reach = 0.01;  // of the axis to both sides of 1, as a logarithm
+  std::size_t room = 0;
+  for (const Bar& bar : plot.bars) {
+    reach = std::max(reach, std::abs(std::log(bar.value.median)));
+    room = std::max(room, width_of(bar.label));
+  }
+  reach *= 1.5;  // what an interval has beyond is cut off
+  const auto at = [&](double value) {
+    const double part = std::clamp(0.5 + 0.5 * std::log(value) / reach, 0.0, 1.0);
+    return static_cast<int>(std::lround(part * (width - 1)));
+  };
+  std::string text;
+  for (const Bar& bar : plot.bars) {
+    const int low = at(bar.value.min), middle = at(bar.value.median), high = at(bar.value.max);
+    text += "  " + padded(bar.label, room, true) + "  ";
+    for (int i = 0; i < width; ++i)
+      text += i == middle ? "●" : i == width / 2 ? "│" : i >= low && i <= high ? "─" : " ";
+    text += fmt::format("  {}\n", bar.note);
+  }
+  return text + fmt::format("  {:{}}  {:<{}}1{:>{}}\n", "", room, number_text(std::exp(-reach)), width / 2,
+                            number_text(std::exp(reach)), width / 2);
+}
+
 }  // namespace
+
+std::string plain_name(const Column& column) {
+  std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
 
 void add_row(Table& table, const std::vector<Field>& fields) {
   std::vector<Cell>& row = table.rows.emplace_back(table.columns.size());
@@ -157,11 +185,16 @@ void add_row(Table& table, const std::vector<Field>& fields) {
 std::vector<Field> run_fields(const MeasuredWay& way) {
   const bool good = way.is_good();
   const Spread seconds = way.seconds(), others = way.others();
+  const double joules = way.joules(),
+               mean = std::accumulate(seconds.runs.begin(), seconds.runs.end(), 0.0) /
+                      static_cast<double>(std::max<std::size_t>(1, seconds.runs.size()));
   return {{"time", "ms", good ? Cell(scaled(seconds, 1e3)) : Cell()},
           {"runs", "", good ? Cell(static_cast<double>(seconds.runs.size())) : Cell()},
           {"cores used", "", good ? Cell(way.cores()) : Cell()},
           {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
           {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
+          {"energy", "J", good && joules >= 0 ? Cell(joules) : Cell()},
+          {"power", "W", good && joules >= 0 ? Cell(joules / mean) : Cell()},
           {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}};
 }
 
@@ -192,11 +225,14 @@ std::string report_text(const Report& report) {
   for (const auto& [name, value] : report.facts)
     text += fmt::format("  {}  {}\n", padded(name, width, true), value);
   bool any = false;
-  for (const Part& part : report.parts)
+  for (const Part& part : report.parts) {
     if (const auto* table = std::get_if<Table>(&part)) {
       text += fmt::format("\n{}", table_text(*table));
       any = true;
     }
+    if (const auto* plot = std::get_if<BarPlot>(&part); plot && plot->ratios)
+      text += "\n" + ratios_text(*plot);
+  }
   if (!any) text += fmt::format("\n{}", table_text(report.measurements));
   if (!report.notes.empty()) text += "\n";
   for (const std::string& note : report.notes) text += note + "\n";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sundog {
 namespace {
@@ -61,5 +62,11 @@ double processor_seconds() {
 Spread MeasuredWay::seconds() const { return spread_of(runs, &Run::seconds); }
 Spread MeasuredWay::cores() const { return spread_of(runs, &Run::cores); }
 Spread MeasuredWay::others() const { return spread_of(runs, &Run::others); }
+
+double MeasuredWay::joules() const {
+  const Spread all = spread_of(runs, &Run::joules);
+  if (all.runs.empty() || all.min < 0) return -1;
+  return std::accumulate(all.runs.begin(), all.runs.end(), 0.0) / static_cast<double>(all.runs.size());
+}
 
 }  // namespace sundog

@@ -35,7 +35,9 @@ struct Run {
   double cores = 0;      // that this process had: processor seconds by wall second
   double others = -1;    // cores that other processes had meanwhile; below 0: unknown
   double at = 0;         // seconds since the bench began
-  std::string left_out;  // why it does not count: "busy" or "wrong result"; empty: it counts
+  std::string left_out;  // why it does not count: "busy", "slow clock" or "wrong result"; empty: it counts
+  double clock = 0;      // MHz at its end, of the fastest core or of the GPU; 0: unknown
+  double joules = -1;    // that the devices used; below 0: unknown
 };
 
 /// One way of doing the work that a bench times: a row of its table.
@@ -60,6 +62,8 @@ struct MeasuredWay {
   }
   Spread cores() const;
   Spread others() const;
+  /// Joules a run, in the mean: counters are too coarse for a short one. Below 0: unknown.
+  double joules() const;
 };
 
 }  // namespace sundog

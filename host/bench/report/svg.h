@@ -13,13 +13,16 @@ std::string escape_html(const std::string& text);
 /// Colours, light, dark and for print, and the rules of all plots.
 std::string plot_style();
 
+/// Where a plot stands: in a page, or in a paper's column, which is half as wide.
+enum class Place { page, column };
+
 /// The opening tag and style of a plot.
-std::string svg_begin(double width, double height, const std::string& title,
+std::string svg_begin(Place place, double width, double height, const std::string& title,
                       const std::string& more_style = "");
 
-std::string svg(const CurvePlot& plot);
-std::string svg(const BarPlot& plot);
-std::string svg(const HeatMap& map);
+std::string svg(const CurvePlot& plot, Place place = Place::page);
+std::string svg(const BarPlot& plot, Place place = Place::page);
+std::string svg(const HeatMap& map, Place place = Place::page);
 
 /// Round numbers from 0 that cover [0, most] in about `count` steps.
 std::vector<double> axis_ticks(double most, int count = 5);

@@ -51,50 +51,60 @@ double heat_share(double value, double least) { return least > 0 ? std::log2(val
 
 }  // namespace
 
-std::string svg(const BarPlot& plot) {
+std::string svg(const BarPlot& plot, Place place) {
   std::vector<std::string> labels;
-  double most = 0;
+  double most = 0, reach = 0.01;
   for (const Bar& bar : plot.bars) {
-    labels.push_back(bar.label);
+    labels.push_back(place == Place::column ? bar.label.substr(0, 18) : bar.label);
     most = std::max(most, bar.value.max);
+    reach = std::max(reach, 1.5 * std::abs(std::log(bar.value.median)));
   }
-  const double left = label_room(labels), row = 30, width = 760, right = 150;
+  const bool narrow = place == Place::column;
+  const double left = label_room(labels), row = 30, width = narrow ? 400 : 760, right = narrow ? 80 : 150;
   const double height = row * static_cast<double>(plot.bars.size()) + 44;
   const double length = width - left - right, end = axis_ticks(most > 0 ? most : 1).back();
-  const auto x = [&](double value) { return left + value / end * length; };
-  std::string text = svg_begin(width, height, plot.title);
-  for (const double tick : axis_ticks(end))
+  const auto x = [&](double value) {
+    if (!plot.ratios) return left + value / end * length;
+    return left + std::clamp(0.5 + 0.5 * std::log(value) / reach, 0.0, 1.0) * length;
+  };
+  const std::vector<double> ticks =
+      plot.ratios ? std::vector{std::exp(-reach), 1.0, std::exp(reach)} : axis_ticks(end);
+  std::string text = svg_begin(place, width, height, plot.title);
+  for (const double tick : ticks)
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"4\" y2=\"{1}\"/><text class=\"mid\" "
         "x=\"{0:.1f}\" y=\"{2}\">{3}</text>",
-        x(tick), height - 40, height - 24, fmt::format("{:g}", tick));
+        x(tick), height - 40, height - 24, fmt::format("{:.3g}", tick));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + length / 2, height - 6,
                       escape_html(plot.unit));
   double y = 6;
-  for (const Bar& bar : plot.bars) {
+  for (std::size_t i = 0; i < plot.bars.size(); ++i, y += row) {
+    const Bar& bar = plot.bars[i];
     text += fmt::format(
-        "<g><title>{}: {}</title><rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"20\"/>",
-        escape_html(bar.label), cell_text(bar.value), left, y, x(bar.value.median) - left);
+        "<g><title>{}: {}</title><rect class=\"bar\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>",
+        escape_html(bar.label), cell_text(bar.value), plot.ratios ? x(bar.value.median) - 3 : left,
+        plot.ratios ? y + 7 : y, plot.ratios ? 6 : x(bar.value.median) - left, plot.ratios ? 6 : 20);
     text += fmt::format(
         "<path class=\"whisker\" d=\"M{0:.1f} {2} v8 M{0:.1f} {3} H{1:.1f} M{1:.1f} {2} v8\"/></g>",
         x(median_interval(bar.value).low), x(median_interval(bar.value).high), y + 6, y + 10);
-    text += fmt::format(
-        "<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>", left - 8,
-        y + 15, escape_html(bar.label), x(bar.value.max) + 8, y + 15,
-        escape_html(number_text(bar.value.median) + (bar.note.empty() ? "" : " (" + bar.note + ")")));
-    y += row;
+    text +=
+        fmt::format("<text class=\"end\" x=\"{}\" y=\"{}\">{}</text><text x=\"{:.1f}\" y=\"{}\">{}</text>",
+                    left - 8, y + 15, escape_html(labels[i]), x(bar.value.max) + 8, y + 15,
+                    escape_html(number_text(bar.value.median) +
+                                (bar.note.empty() || narrow ? "" : " (" + bar.note + ")")));
   }
   return text + "</svg>";
 }
 
-std::string svg(const HeatMap& map) {
+std::string svg(const HeatMap& map, Place place) {
   const double left = label_room(map.rows) + 24, top = 44, cell_h = 28;
-  const double cell_w = std::clamp(
-      (760 - left) / static_cast<double>(std::max<std::size_t>(map.columns.size(), 1)), 40.0, 84.0);
+  const double cell_w = std::clamp(((place == Place::column ? 400 : 760) - left) /
+                                       static_cast<double>(std::max<std::size_t>(map.columns.size(), 1)),
+                                   40.0, 84.0);
   const double width = left + cell_w * static_cast<double>(map.columns.size()) + 4,
                height = top + cell_h * static_cast<double>(map.rows.size()) + 4;
   const ValueRange range = range_of(map);
-  std::string text = svg_begin(width, height, map.title, fmt::format(";max-width:{}px", width));
+  std::string text = svg_begin(place, width, height, map.title, fmt::format(";max-width:{}px", width));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
                       escape_html(map.x_label));
   text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",

@@ -11,19 +11,21 @@
 namespace sundog {
 namespace {
 
-constexpr double width = 760, height = 380, left = 64, right = 200, top = 16, bottom = 56;
-constexpr double plot_width = width - left - right, plot_height = height - top - bottom;
+constexpr double height = 380, left = 64, top = 16, bottom = 56;
+constexpr double plot_height = height - top - bottom;
 constexpr int styles = 8;
 
 struct Axes {
-  double low = 0, high = 1;        // log2 of x
-  double most = 1;                 // y
-  double bottom_y = 0, top_y = 1;  // log2 of y
-  bool logarithmic = false;        // y is, and the ticks are round numbers
+  double width = 760, right = 200;  // of the picture, of the legend
+  double low = 0, high = 1;         // log2 of x
+  double most = 1;                  // y
+  double bottom_y = 0, top_y = 1;   // log2 of y
+  bool logarithmic = false;         // y is, and the ticks are round numbers
   std::vector<double> ticks_x, ticks_y;
 
+  double plot_width() const { return width - left - right; }
   double x(double value) const {
-    return left + (high > low ? (std::log2(value) - low) / (high - low) : 0.5) * plot_width;
+    return left + (high > low ? (std::log2(value) - low) / (high - low) : 0.5) * plot_width();
   }
   double y(double value) const {
     const double part = logarithmic ? (std::log2(value) - bottom_y) / (top_y - bottom_y) : value / most;
@@ -109,11 +111,11 @@ std::string frame(const CurvePlot& plot, const Axes& axes) {
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text class=\"end\" "
         "x=\"{3}\" y=\"{4:.1f}\">{5}</text>",
-        left, width - right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
+        left, axes.width - axes.right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
   for (const double value : axes.ticks_x)
     text += fmt::format("<text class=\"mid\" x=\"{:.1f}\" y=\"{}\">{}</text>", axes.x(value),
                         height - bottom + 20, number_text(value));
-  text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + plot_width / 2,
+  text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"{}\">{}</text>", left + axes.plot_width() / 2,
                       height - 12, escape_html(plot.x_label));
   return text + fmt::format("<text class=\"mid axis\" transform=\"translate(16 {}) rotate(-90)\">{}</text>",
                             top + plot_height / 2, escape_html(plot.y_label));
@@ -145,9 +147,9 @@ std::string draw(const Curve& curve, std::size_t index, const Axes& axes) {
                      marks);
 }
 
-std::string legend(const CurvePlot& plot) {
+std::string legend(const CurvePlot& plot, const Axes& axes) {
   std::string text;
-  const double x = width - right + 20;
+  const double x = axes.width - axes.right + 20;
   double y = top + 10;
   for (std::size_t i = 0; i < plot.curves.size(); ++i, y += 22)
     text += fmt::format(
@@ -175,13 +177,14 @@ std::vector<double> axis_ticks(double most, int count) {
   return ticks;
 }
 
-std::string svg(const CurvePlot& plot) {
-  const Axes axes = make_axes(plot);
-  std::string text = svg_begin(width, height, plot.title);
+std::string svg(const CurvePlot& plot, Place place) {
+  Axes axes = make_axes(plot);
+  if (place == Place::column) axes.width = 400, axes.right = 130;
+  std::string text = svg_begin(place, axes.width, height, plot.title);
   text += frame(plot, axes);
   if (plot.ideal) text += ideal_line(axes);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) text += draw(plot.curves[i], i, axes);
-  return text + legend(plot) + "</svg>";
+  return text + legend(plot, axes) + "</svg>";
 }
 
 }  // namespace sundog

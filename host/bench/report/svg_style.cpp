@@ -35,11 +35,25 @@ std::string plot_style() {
   return text;
 }
 
-std::string svg_begin(double width, double height, const std::string& title, const std::string& more_style) {
+std::string svg_begin(Place place, double width, double height, const std::string& title,
+                      const std::string& more_style) {
   return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px{2}\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\"{5} viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px{2}\" "
       "role=\"img\" aria-label=\"{3}\"><style>{4}</style>",
-      width, height, more_style, escape_html(title), plot_style());
+      width, height, more_style, escape_html(title), plot_style(),
+      place == Place::column ? " width=\"88mm\"" : "");
+}
+
+std::vector<std::string> report_svgs(const Report& report) {
+  std::vector<std::string> all;
+  for (const Part& part : report.parts)
+    std::visit(
+        [&](const auto& shown) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(shown)>, Table>)
+            all.push_back(svg(shown, Place::column));
+        },
+        part);
+  return all;
 }
 
 }  // namespace sundog

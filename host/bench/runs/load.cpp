@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "bench/runs/energy.h"
 
 namespace sundog {
 namespace {
@@ -16,9 +19,20 @@ constexpr double disturbing = 0.05;   // of the machine's cores
 
 }  // namespace
 
+double core_clock(const std::string& folder) {
+  double most = 0;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    std::ifstream in(entry.path() / "cpufreq/scaling_cur_freq");
+    double kilohertz = 0;
+    if (in >> kilohertz) most = std::max(most, 1e-3 * kilohertz);
+  }
+  return most;
+}
+
 ProcessorTimes processor_times() {
   static const Stopwatch clock;
-  ProcessorTimes times{clock.seconds(), processor_seconds(), -1};
+  ProcessorTimes times{clock.seconds(), processor_seconds(), -1, core_clock()};
   std::ifstream in("/proc/stat");
   std::string name;
   // user, nice, system, idle, waiting for disks, two kinds of interrupts, stolen
@@ -39,12 +53,19 @@ LoadMeter::LoadMeter(unsigned cores, std::function<ProcessorTimes()> clock)
 void LoadMeter::begin() {
   begun_ = clock_();
   before_.push_back(begun_);
+  if (energy_) joules_ = energy_->joules();
 }
 
 Run LoadMeter::end() {
   const ProcessorTimes now = clock_();
   Run run;
   run.at = begun_.wall - first_.wall;
+  run.clock = now.clock;
+  if (energy_) {
+    const double joules = energy_->joules();
+    run.joules = joules < 0 || joules_ < 0 ? -1 : joules - joules_;
+    if (energy_->clock() > 0) run.clock = energy_->clock();
+  }
   run.cores = (now.own - begun_.own) / std::max(1e-9, now.wall - begun_.wall);
   const double from = std::min(begun_.wall, now.wall - least_window);
   while (before_.size() > 1 && before_[1].wall <= from) before_.pop_front();

@@ -14,8 +14,13 @@ namespace sundog {
 namespace {
 
 constexpr const char* busy = "busy";
+constexpr const char* slow_clock = "slow clock";
+constexpr double slower = 0.95;  // clock that matters, over another run's
+constexpr std::size_t most_runs = 1000, interval_runs = 6;
 // A run that had so much less cores, and took so much longer, than another of its way was disturbed.
 constexpr double fewer_cores = 0.85, longer = 1.1;
+
+bool is_noise(const std::string& left_out) { return left_out == busy || left_out == slow_clock; }
 
 std::size_t counted(const MeasuredWay& way) {
   return static_cast<std::size_t>(
@@ -47,22 +52,20 @@ class Measurement {
   }
 
   void rounds() {
-    const auto repeat = static_cast<std::size_t>(options_.repeat);
     std::vector<std::size_t> order(subjects_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    for (std::size_t round = 1; round <= 2 * repeat && (round == 1 || !is_over()); ++round) {
+    for (bool any = true, first = true; any && (first || !is_over()); first = false) {
       std::ranges::shuffle(order, random_);
-      bool any = false;
+      any = false;
       for (const std::size_t i : order) {
         Subject& subject = subjects_[i];
-        if (subject.once || !subject.problem.empty() || counted(subject) >= repeat) continue;
+        if (is_finished(subject)) continue;
         if (options_.is_stopped()) return;
         any = true;
         tell(subject, fmt::format("run {}", subject.runs.size() + 1));
         run(subject, true, false);
         ++done_;
       }
-      if (!any) return;
       judge();
     }
   }
@@ -73,7 +76,7 @@ class Measurement {
     for (Subject& subject : subjects_) {
       std::vector<Run*> left_out;
       for (Run& run : subject.runs)
-        if (run.left_out == busy) left_out.push_back(&run);
+        if (is_noise(run.left_out)) left_out.push_back(&run);
       std::ranges::stable_sort(left_out, {}, [](const Run* run) { return run->others; });
       std::size_t wanted = (subject.once ? 1 : repeat) - std::min(repeat, counted(subject));
       for (Run* run : left_out) {
@@ -87,6 +90,21 @@ class Measurement {
   }
 
  private:
+  /// Whether it has what was asked for, or as many runs again were disturbed.
+  bool is_finished(const Subject& subject) const {
+    const std::size_t repeat = static_cast<std::size_t>(options_.repeat), count = counted(subject);
+    if (subject.once || !subject.problem.empty() || options_.repeat == 0) return true;
+    if (subject.runs.size() >= 2 * std::max(repeat, count) || count >= std::max(repeat, most_runs))
+      return true;
+    if (count < repeat) return false;
+    const Spread times = subject.seconds();
+    if (std::accumulate(times.runs.begin(), times.runs.end(), 0.0) < options_.seconds) return false;
+    if (options_.precision <= 0) return true;
+    const Interval interval = median_interval(times);
+    return count >= interval_runs &&
+           0.5 * (interval.high - interval.low) <= options_.precision * times.median;
+  }
+
   bool is_over() const { return options_.budget > 0 && clock_.seconds() > options_.budget; }
 
   void tell(const Subject& subject, const std::string& what) const {
@@ -123,8 +141,8 @@ class Measurement {
   void judge() {
     for (Subject& subject : subjects_) {
       for (Run& run : subject.runs) {
-        if (!run.left_out.empty() && run.left_out != busy) continue;
-        run.left_out = is_disturbed(subject, run, options_.load->limit()) ? busy : "";
+        if (run.left_out.empty() || is_noise(run.left_out))
+          run.left_out = disturbance(subject, run, options_.load->limit());
       }
     }
   }
@@ -138,10 +156,16 @@ class Measurement {
 
 }  // namespace
 
-bool is_disturbed(const MeasuredWay& way, const Run& run, double limit) {
-  return run.others > limit || std::ranges::any_of(way.runs, [&](const Run& other) {
-           return run.cores < fewer_cores * other.cores && run.seconds > longer * other.seconds;
-         });
+std::string disturbance(const MeasuredWay& way, const Run& run, double limit) {
+  const auto any = [&](const auto& is_better) { return std::ranges::any_of(way.runs, is_better); };
+  if (run.others > limit || any([&](const Run& other) {
+        return run.cores < fewer_cores * other.cores && run.seconds > longer * other.seconds;
+      }))
+    return busy;
+  const bool slow = any([&](const Run& other) {
+    return run.clock > 0 && run.clock < slower * other.clock && slower * run.seconds > other.seconds;
+  });
+  return slow ? slow_clock : "";
 }
 
 bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "bench/runs/load.h"
 
 namespace sundog {
@@ -21,8 +22,10 @@ struct Subject : MeasuredWay {
 };
 
 struct MeasureOptions {
-  int repeat = 6;                            // runs of each that count
-  double budget = 0;                         // seconds, after which no further round begins; 0: no limit
+  int repeat = 6;        // runs of each that count, at least
+  double seconds = 0;    // that the runs of each take together, at least
+  double precision = 0;  // half the median's interval over the median, at most; 0: does not matter
+  double budget = 0;     // seconds, after which no further round begins; 0: no limit
   const std::atomic<bool>* stop = nullptr;   // set: no further run
   std::map<std::string, MeasuredWay> known;  // runs of an earlier report, by the way's name
   std::function<void(const std::string& step, double done)> on_step;
@@ -32,18 +35,31 @@ struct MeasureOptions {
   bool is_stopped() const { return stop && stop->load(); }
 };
 
-/// Whether other programs, or a lack of cores, slowed a run of the way. Cores count where others of its runs
-/// had more and took less time.
-bool is_disturbed(const MeasuredWay& way, const Run& run, double limit);
+/// What slowed a run of the way: "busy", other programs or a lack of cores, or "slow clock"; "": nothing.
+/// Cores and the clock count where others of its runs had more and took less time.
+std::string disturbance(const MeasuredWay& way, const Run& run, double limit);
 
 /// Does what comes before all subjects; where a device fails in it, that is their problem. Whether it did
 /// not.
 bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work);
 
-/// Warms each way up, then times rounds of all of them, in another order each time, until each has `repeat`
-/// runs that count, or twice as many rounds have passed: then the least disturbed runs count too, and the way
-/// is noisy. The wrong result or failure of a run takes the way out with a problem. `known` runs count
-/// without being repeated. Other errors than a device's are thrown.
+/// What two runs in a row agree on, so that one spoiled run is no reference for others. Throws DeviceError
+/// where none of the first few do.
+template <class T, class Make, class Same>
+T confirmed(const Make& make, const Same& same) {
+  T last = make();
+  for (int i = 0; i < 4; ++i) {
+    T next = make();
+    if (same(last, next)) return next;
+    last = std::move(next);
+  }
+  throw DeviceError("its results differ from run to run, so there is nothing to compare with");
+}
+
+/// Warms each way up, then times rounds of all of them, in another order each time, until each has
+/// the runs that were asked for, or as many again were disturbed: then the least disturbed count too up to
+/// `repeat`, and the way is noisy. The wrong result or failure of a run takes the way out with a problem.
+/// `known` runs count without being repeated. Other errors than a device's are thrown.
 void measure(std::vector<Subject>& subjects, const MeasureOptions& options);
 
 }  // namespace sundog

@@ -59,6 +59,19 @@ TEST_CASE("each bench compares every timed result: one that was spoiled later is
   }
 }
 
+TEST_CASE("one spoiled run that others are compared with marks none of them as wrong") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  for (const auto& bench : {small_benches(folder)[0], small_benches(folder)[2]}) {
+    const CommandResult result =
+        run_bench(bench, {"--repeat", "1", "--json", file, "--quiet"}, "spoil>2500@0:0#1");
+    CAPTURE(bench[0], result.out, result.err);
+    CHECK(result.status == 0);
+    const json report = json::parse(sundog::read_file(file));
+    for (const json& way : report.at("ways")) CHECK(way.at("problem").is_null());
+  }
+}
+
 TEST_CASE("a device that fails in timed runs is a row with its error, beside the runs that it had made") {
   const CliFolder folder;
   const std::string file = folder.file("b.json");

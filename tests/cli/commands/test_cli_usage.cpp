@@ -24,7 +24,8 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"frobnicate"}, "found 'frobnicate' (see sundog --help)"},
       {{"rendr", scene}, "found 'rendr': did you mean 'render'? (see sundog --help)"},
       {{"bench"},
-       "wanted a benchmark (workgroup, threads, rays, samples, quality, textures, devices, kernels), found "
+       "wanted a benchmark (workgroup, threads, rays, samples, quality, textures, devices, kernels, "
+       "compare), found "
        "none"},
       {{"bench", "speed"}, "found 'speed'"},
       {{"bench", "thraeds"}, "found 'thraeds': did you mean 'threads'? (see sundog bench --help)"},

@@ -2,10 +2,12 @@
 #include "bench/runs/measure.h"
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "base/error.h"
 #include "bench/report/report.h"
 #include "catch.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 
@@ -122,9 +124,54 @@ TEST_CASE("where quiet runs cannot be had the least disturbed count, and the way
 TEST_CASE("a run that had fewer cores than others of its way, and took longer, is disturbed") {
   MeasuredWay way;
   way.runs = {{1, 2, -1, 0, ""}, {2, 1, -1, 0, ""}, {0.9, 1, -1, 0, ""}};
-  CHECK_FALSE(is_disturbed(way, way.runs[0], 0.1));
-  CHECK(is_disturbed(way, way.runs[1], 0.1));
-  CHECK_FALSE(is_disturbed(way, way.runs[2], 0.1));
+  CHECK(disturbance(way, way.runs[0], 0.1).empty());
+  CHECK(disturbance(way, way.runs[1], 0.1) == "busy");
+  CHECK(disturbance(way, way.runs[2], 0.1).empty());
+}
+
+TEST_CASE("runs with a lower clock are left out and measured again, and the report says so") {
+  Machine machine;
+  std::vector<Subject> subjects{second(machine, "a")};
+  int runs = 0;
+  subjects[0].run = [&] {
+    const bool slow = ++runs == 3 || runs == 4;
+    machine.now.clock = slow ? 2000 : 3000;
+    machine.pass(slow ? 1.5 : 1, 1);
+    return slow ? 1.5 : 1.0;
+  };
+  measure(subjects, machine.options(5));
+  CHECK(subjects[0].runs.size() == 7);
+  CHECK(subjects[0].runs[1].left_out == "slow clock");
+  CHECK(subjects[0].runs[1].clock == 2000);
+  CHECK(subjects[0].seconds().max == 1);
+  const TemporaryFolder folder;
+  CHECK(core_clock((folder / "none").string()) == 0);
+  std::filesystem::create_directories(folder / "cpu1" / "cpufreq");
+  folder.write("cpu1/cpufreq/scaling_cur_freq", "2450000\n");
+  CHECK(core_clock((folder / ".").string()) == 2450);
+}
+
+TEST_CASE("runs are taken until they took so long, or until the median is known so well") {
+  Machine machine;
+  std::vector<Subject> long_ones{second(machine, "a")};
+  MeasureOptions options = machine.options(6);
+  options.seconds = 10;
+  measure(long_ones, options);
+  CHECK(long_ones[0].runs.size() == 10);
+  std::vector<Subject> noisy{second(machine, "a"), second(machine, "b")};
+  std::mt19937 random;
+  noisy[1].run = [&] {
+    const double seconds = 1 + 0.1 * static_cast<double>(random() % 100) / 100;
+    machine.pass(seconds, 1);
+    return seconds;
+  };
+  options.seconds = 0;
+  options.precision = 0.01;
+  measure(noisy, options);
+  CHECK(noisy[0].runs.size() == 6);
+  CHECK((noisy[1].runs.size() > 12 && noisy[1].runs.size() < 200));
+  const Interval interval = median_interval(noisy[1].seconds());
+  CHECK(interval.high - interval.low <= 0.02 * noisy[1].seconds().median);
 }
 
 TEST_CASE("runs of an earlier report count, and only the rest is measured") {

@@ -117,6 +117,54 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
   CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
 }
 
+TEST_CASE("LaTeX has the tables with booktabs, intervals in them, and every special sign escaped") {
+  Report report = small_report();
+  report.measurements.title = "50 % of_all";
+  const std::string text = report_latex(report);
+  CHECK_THAT(text, ContainsSubstring("\\caption{50 \\% of\\_all}") &&
+                       ContainsSubstring("\\begin{tabular}{lrr}") &&
+                       ContainsSubstring("scene & time (ms) & runs \\\\") &&
+                       ContainsSubstring("ice, hollow & 12.3 {\\footnotesize[12, 13]} & 3 \\\\"));
+  for (const char* rule : {"\\toprule", "\\midrule", "\\bottomrule"}) CHECK(count(text, rule) == 1);
+  report.parts = {Table{"Best", {{"size", ""}}, {{"[a]"}}}};
+  CHECK_THAT(report_latex(report), ContainsSubstring("{[}a]") && !ContainsSubstring("hollow"));
+}
+
+TEST_CASE("plots for a paper's column are files of 88 mm, half as wide as those of a page") {
+  Report report;
+  const Bar bar{"a label that is much longer than a column has room for", spread({5, 4, 6}), "a note"};
+  report.parts = {Table{}, CurvePlot{"", "", "", {{"a", {{1, {1, 1, 1}}}}}}, BarPlot{"", "ms", {bar}},
+                  HeatMap{}};
+  const std::vector<std::string> plots = report_svgs(report);
+  REQUIRE(plots.size() == 3);
+  for (const std::string& plot : plots) CHECK_THAT(plot, ContainsSubstring(" width=\"88mm\""));
+  for (std::size_t i = 0; i < 2; ++i) CHECK_THAT(plots[i], ContainsSubstring("viewBox=\"0 0 400 "));
+  CHECK_THAT(plots[1], !ContainsSubstring("column has room for</text>") && !ContainsSubstring("a note"));
+}
+
+TEST_CASE("ratios are drawn about 1, in text too") {
+  Report report;
+  report.parts = {
+      BarPlot{"r", "ratio", {{"faster", {0.5, 0.4, 0.6}, "faster"}, {"alike", {1, 0.9, 1.2}, ""}}, true}};
+  const std::string text = report_text(report);
+  const std::size_t line = text.find("faster  ");
+  REQUIRE(line != std::string::npos);
+  CHECK(text.find("\u25cf", line) < text.find("\u2502", line));  // the point is left of 1
+  CHECK(count(svg(std::get<BarPlot>(report.parts[0])), "class=\"bar\"") == 2);
+}
+
+TEST_CASE("T4 has a result a row, whose configuration is what stands before the time") {
+  const nlohmann::json t4 = report_t4(small_report());
+  CHECK(t4.at("schema_version") == "1.0.0");
+  const auto& results = t4.at("results");
+  REQUIRE(results.size() == 2);
+  CHECK(results[0].at("configuration") == nlohmann::json({{"scene", "ice, hollow"}}));
+  CHECK(results[0].at("times").at("runtimes") == nlohmann::json({13, 12, 12.345}));
+  CHECK(results[0].at("invalidity") == "correct");
+  CHECK(results[0].at("measurements")[0] ==
+        nlohmann::json({{"name", "time"}, {"value", 12.345}, {"unit", "ms"}}));
+}
+
 TEST_CASE("plots of nothing, of one point and of zeros are drawn without a number that is none") {
   Bar zero;
   zero.label = "zero";

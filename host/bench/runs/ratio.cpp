@@ -1,0 +1,69 @@
+// See ratio.h.
+#include "bench/runs/ratio.h"
+
+#include <algorithm>
+#include <random>
+
+namespace sundog {
+namespace {
+
+constexpr std::size_t fewest = 6;        // of which an interval has 95 %
+constexpr std::size_t resamples = 2000;  // of a bootstrap
+
+std::vector<double> medians(const Calls& calls) {
+  std::vector<double> all;
+  for (const auto& runs : calls)
+    if (!runs.empty()) all.push_back(spread(runs).median);
+  return all;
+}
+
+double resampled_median(const std::vector<double>& values, std::mt19937& random) {
+  std::vector<double> drawn;
+  for (std::size_t i = 0; i < values.size(); ++i) drawn.push_back(values[random() % values.size()]);
+  return spread(drawn).median;
+}
+
+/// The range of all runs, widened.
+Interval wide_range(const Calls& calls) {
+  std::vector<double> all;
+  for (const auto& runs : calls) all.insert(all.end(), runs.begin(), runs.end());
+  const auto [low, high] = std::ranges::minmax(all);
+  return {low * low / high, high * high / low};
+}
+
+}  // namespace
+
+const char* Ratio::verdict() const {
+  return !is_known() || (low <= 1 && high >= 1) ? "not told apart" : high < 1 ? "faster" : "slower";
+}
+
+Ratio paired_ratio(const std::vector<Run>& base, const std::vector<Run>& other) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < std::min(base.size(), other.size()); ++i)
+    if (base[i].left_out.empty() && other[i].left_out.empty())
+      ratios.push_back(other[i].seconds / base[i].seconds);
+  if (ratios.empty()) return {};
+  const Spread found = spread(ratios);
+  const Interval interval = median_interval(found);
+  if (ratios.size() < fewest)
+    return {found.median, std::min(1.0, interval.low), std::max(1.0, interval.high)};
+  return {found.median, interval.low, interval.high};
+}
+
+Ratio ratio_of_calls(const Calls& base, const Calls& other) {
+  const std::vector<double> a = medians(base), b = medians(other);
+  if (a.empty() || b.empty()) return {};
+  const double value = spread(b).median / spread(a).median;
+  if (std::min(a.size(), b.size()) < fewest) {
+    const Interval of_a = wide_range(base), of_b = wide_range(other);
+    return {value, of_b.low / of_a.high, of_b.high / of_a.low};
+  }
+  std::mt19937 random;  // the same interval for the same runs
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < resamples; ++i)
+    ratios.push_back(resampled_median(b, random) / resampled_median(a, random));
+  std::ranges::sort(ratios);
+  return {value, ratios[resamples / 40], ratios[resamples - 1 - resamples / 40]};
+}
+
+}  // namespace sundog
