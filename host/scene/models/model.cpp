@@ -53,19 +53,19 @@ std::string unread_text(const std::vector<std::string>& features) {
   return rest == 0 ? text : fmt::format("{} and {} more feature{}", text, rest, rest == 1 ? "" : "s");
 }
 
-Model load(const models::Source& source, const std::string& extension, const ModelOptions& options) {
+Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
   if (source.bytes.empty()) models::fail(source, "", "the file is empty");
   if (extension == ".obj") return models::load_obj(source, options);
   if (extension == ".ply") return models::load_ply(source, options);
   if (extension == ".stl") return models::load_stl(source, options);
   if (extension == ".nff") return models::load_nff(source);
-  return models::load_gltf(source, options);
+  return models::load_gltf(std::move(source), options);
 }
 
 /// Beyond this, the camera's position cannot be written, and squares overflow.
 constexpr double farthest = 1e17;
 
-void check_extent(const models::Source& source, const Model& model) {
+void check_extent(const std::filesystem::path& path, const Model& model) {
   for (const Object& object : model.objects) {
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape) continue;
@@ -75,8 +75,8 @@ void check_extent(const models::Source& source, const Model& model) {
         const dvec3 at(object.world_from_object * glm::dvec4(mesh.positions[triangle[corner]], 1));
         const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
         if (!(most <= farthest))
-          models::fail(
-              source, "",
+          throw SceneError(
+              path.string(), "",
               fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
                           mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x, at.y,
                           at.z, farthest));
@@ -101,9 +101,9 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
   try {
     models::Source source = models::read_source(path);
     source.outside_files = options.outside_files;
-    Model model = load(source, models::model_extension(path), options);
+    Model model = load(std::move(source), models::model_extension(path), options);
     models::bring_near(model);
-    check_extent(source, model);
+    check_extent(path, model);
     if (model.dropped_polygons > 0)
       model.warnings.push_back(fmt::format("{} face{} of one or two corners {} left out",
                                            model.dropped_polygons, model.dropped_polygons == 1 ? "" : "s",
@@ -115,6 +115,13 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
   } catch (const std::bad_alloc&) {
     throw SceneError(path.string(), "", "the model does not fit into memory");
   }
+}
+
+Model posed(Model model, const std::filesystem::path& path, const Playing& playing) {
+  model.pose(playing, model);
+  models::bring_near(model);
+  check_extent(path, model);
+  return model;
 }
 
 }  // namespace sundog
