@@ -154,14 +154,14 @@ TEST_CASE("photons on what moves make the mean of its stills") {
       double sum = 0, moving = 0;
       for (int i = 0; i < stills; ++i)
         sum += mean_on(device, plate(motion.still((i + 0.5) / stills))).value.x / stills;
-      constexpr u32 seeds = 2;
+      constexpr u32 seeds = 4;  // one picture has a noise of 3 %
       for (u32 seed = 0; seed < seeds; ++seed) {
         SceneDescription scene = plate(motion.moving);
         scene.render.seed = static_cast<int>(seed);
         moving += mean_on(device, scene).value.x / seeds;
       }
       CAPTURE(motion.name);
-      CHECK(moving == Approx(sum).epsilon(0.02));
+      CHECK(moving == Approx(sum).epsilon(0.04));
     }
   });
 }
