@@ -220,6 +220,16 @@ std::shared_ptr<const SceneDescription> SceneFrames::check(const std::vector<int
   return first;
 }
 
+Shutter SceneFrames::shutter() const {
+  const auto number = [&](const char* key, double otherwise) {
+    const json::json_pointer place(std::string("/camera/") + key);
+    const json& document = state_->source.document;
+    return document.contains(place) && document[place].is_number() ? document[place].get<double>()
+                                                                   : otherwise;
+  };
+  return {number("shutter", 0), static_cast<int>(number("shutter_steps", 16))};
+}
+
 bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
 
 std::string scene_file_name(const fs::path& path) {
