@@ -48,6 +48,16 @@ void apply_track(json& document, const Track& track, double frame, const JsonVal
   }
 }
 
+void apply_tracks(json& document, double frame, const JsonValue& list) {
+  std::vector<Track> tracks = read_tracks(list);
+  const JsonItems places = list.items("tracks");
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    tracks[i].pointer = resolve_names(document, tracks[i].pointer);
+    check_alone(tracks, i, places[i]);
+    apply_track(document, tracks[i], frame, places[i]);
+  }
+}
+
 /// Frames have other noise, unless the scene has a seed.
 void set_seed(json& document, double frame) {
   json& seed = document["render"]["seed"];
@@ -59,19 +69,18 @@ void set_seed(json& document, double frame) {
 void apply_animation(json& document, double frame, const JsonContext& context) {
   const json original = document;
   const JsonValue root(original, context);
-  const JsonValue list = root.member("animate", "an array of tracks: what the frames change");
-  std::vector<Track> tracks = read_tracks(list);
-  const JsonItems places = list.items("tracks");
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    tracks[i].pointer = resolve_names(document, tracks[i].pointer);
-    check_alone(tracks, i, places[i]);
-    apply_track(document, tracks[i], frame, places[i]);
-  }
+  if (document.contains("animate")) apply_tracks(document, frame, root.member("animate", "tracks"));
   if (!document.contains("render") || document["render"].is_object()) set_seed(document, frame);
 }
 
+double seconds_at(const json& document, double frame) {
+  const auto rate = document.find("frames_per_second");
+  const bool given = rate != document.end() && rate->is_number() && rate->get<double>() > 0;
+  return frame / (given ? rate->get<double>() : default_frames_per_second);
+}
+
 std::string track_of(const json& document, const std::string& pointer, bool whole) {
-  const json& list = document.at("animate");
+  const json list = document.value("animate", json::array());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string moved = resolve_names(document, list[i].at("value").get<std::string>());
     if (whole ? list[i].at("type") != "rotate" && leads_through(pointer, moved) : overlap(moved, pointer))

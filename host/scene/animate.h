@@ -8,9 +8,14 @@
 namespace sundog {
 
 /// Sets every animated value of the document to that of `frame`, and the seed to the frame's number where the
-/// document leaves that to it. Throws SceneError: for a document without "animate", where a pointer leads
-/// nowhere, and where a track would be lost to a later one.
+/// document leaves that to it. Throws SceneError where a pointer leads nowhere, and where a track would be
+/// lost to a later one.
 void apply_animation(nlohmann::json& document, double frame, const JsonContext& context);
+
+inline constexpr double default_frames_per_second = 24;
+
+/// The frame's time by the document's "frames_per_second".
+double seconds_at(const nlohmann::json& document, double frame);
 
 /// The place in the document of the track that sets the value at `pointer` or a part of it; with `whole` only
 /// one that sets all of it. Empty: none does.

@@ -325,6 +325,7 @@ struct SceneDescription {
   std::vector<SdfDescription> fields;
   std::vector<Object> objects;
   std::vector<std::string> warnings;  // one line each: features of model files that were ignored
+  bool plays = false;                 // a part changes with the frame by itself: a model's animation
 };
 
 }  // namespace sundog

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "scene/animate.h"
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
 #include "scene/lamps.h"
@@ -65,7 +66,10 @@ json model_document(const fs::path& path, const LoadOptions& options) {
   const auto [width, height] = options.size;
   const std::optional<double> aspect =
       width > 0 && height > 0 ? std::optional(static_cast<double>(width) / height) : std::nullopt;
-  json document = make_model_scene(path, load_model(path, {.outside_files = options.outside_files}), aspect);
+  const Model model = load_model(path, {.outside_files = options.outside_files});
+  const bool plays = options.frame && model.pose;
+  json document = make_model_scene(path, model, aspect, plays);
+  if (plays) set_view(document, posed(model, path, {.seconds = seconds_at(document, *options.frame)}));
   take_ground_above(document, document["camera"]["position"][1].get<double>());
   return document;
 }
@@ -86,10 +90,14 @@ json read_scene_document(const fs::path& path, const LoadOptions& options) {
 SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options,
                                      const NamedMeshes& made) {
   std::vector<std::string> warnings;
-  const JsonContext context{.file = file,
-                            .native_code = options.native_code,
-                            .warnings = &warnings,
-                            .outside_files = options.outside_files};
+  bool plays = false;
+  const JsonContext context{
+      .file = file,
+      .native_code = options.native_code,
+      .warnings = &warnings,
+      .outside_files = options.outside_files,
+      .seconds = options.frame ? std::optional(seconds_at(document, *options.frame)) : std::nullopt,
+      .plays = &plays};
   SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
   if (made.empty())  // those of programs are held already

@@ -42,12 +42,13 @@ double aspect_of(const json& document) {
 
 /// The document generated around a model. Its camera fits the overridden image size, and its ground the
 /// overridden camera.
-json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides) {
-  json document = make_model_scene(file, model);
+json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides,
+                bool plays = false) {
+  json document = make_model_scene(file, model, std::nullopt, plays);
   json changed = document;
   apply_overrides(changed, file, overrides);
   const double aspect = aspect_of(changed);
-  if (aspect > 0 && aspect != aspect_of(document)) document = make_model_scene(file, model, aspect);
+  if (aspect > 0 && aspect != aspect_of(document)) document = make_model_scene(file, model, aspect, plays);
   const json::json_pointer height("/camera/position/1");
   if (changed.contains(height) && changed[height].is_number())
     take_ground_above(document, changed[height].get<double>());
@@ -59,6 +60,7 @@ struct SceneSource {
   fs::path file;
   json document;
   std::optional<Model> model = std::nullopt;
+  json played = {};  // of a model with animations: before settings
 };
 
 SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,
@@ -92,6 +94,8 @@ struct Reading {
   const LoadOptions& options;
   std::vector<std::string> warnings = {};
   FrameCache* cache = nullptr;
+  std::optional<double> seconds = std::nullopt;  // of the frame
+  bool plays = false;
 
   JsonContext context() {
     return {.file = file,
@@ -99,7 +103,9 @@ struct Reading {
             .warnings = &warnings,
             .measures = !(cache && cache->checks()),
             .outside_files = options.outside_files,
-            .cache = cache};
+            .cache = cache,
+            .seconds = seconds,
+            .plays = &plays};
   }
 };
 
@@ -123,9 +129,27 @@ auto explained(const json& document, const Reading& reading, const Read& read) {
   }
 }
 
-/// Makes the document that of the frame. A setting that a track would undo is refused.
-void animate(json& document, Reading& reading) {
-  if (!reading.options.frame) return;
+/// The document around a model that is animated, with the model's camera and lights at the frame.
+json play_view(SceneSource& source, const Reading& reading) {
+  if (source.played.is_null())
+    source.played = make_scene(source.file, *source.model, reading.overrides, true);
+  json document = source.played;
+  apply_overrides(document, source.file, reading.overrides);
+  const json object = document.value(json::json_pointer("/objects/0"), json::object());
+  const auto name = object.find("animation"), cycle = object.find("cycle");
+  Playing playing{.seconds = seconds_at(document, *reading.options.frame)};
+  if (name != object.end() && name->is_string()) playing.animation = name->get<std::string>();
+  if (cycle != object.end() && cycle->is_boolean()) playing.cycle = cycle->get<bool>();
+  document = source.played;
+  set_view(document, posed(*source.model, source.file, playing));
+  apply_overrides(document, source.file, reading.overrides);
+  return document;
+}
+
+/// The document of the frame. A setting that a track would undo is refused.
+json document_at_frame(SceneSource& source, Reading& reading) {
+  if (!reading.options.frame) return source.document;
+  json document = source.model && source.model->pose ? play_view(source, reading) : source.document;
   const JsonContext context = reading.context();
   explained(document, reading, [&] { apply_animation(document, *reading.options.frame, context); });
   for (const std::string& setting : reading.overrides)
@@ -135,9 +159,11 @@ void animate(json& document, Reading& reading) {
           fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the "
                       "track",
                       setting));
+  return document;
 }
 
 SceneDescription read_document(const json& document, Reading& reading, std::optional<Model> model) {
+  if (const auto frame = reading.options.frame) reading.seconds = seconds_at(document, *frame);
   return explained(document, reading, [&] {
     const JsonContext context = reading.context();
     SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
@@ -159,7 +185,10 @@ struct SceneFrames::State {
 
 SceneFrames::SceneFrames(const fs::path& path, std::vector<std::string> overrides, LoadOptions options)
     : state_(std::make_unique<State>(open_source(path, overrides, options), std::move(overrides),
-                                     std::move(options))) {}
+                                     std::move(options))) {
+  if (auto& model = state_->source.model)
+    for (Mesh& mesh : model->meshes) share_vertices(mesh);
+}
 
 SceneFrames::~SceneFrames() = default;
 
@@ -168,10 +197,9 @@ std::shared_ptr<const SceneDescription> SceneFrames::read(std::optional<double> 
   LoadOptions options = state.options;
   options.frame = frame;
   Reading reading{state.source.file, state.overrides, options, {}, &state.cache};
-  json document = state.source.document;
-  animate(document, reading);
+  json document = document_at_frame(state.source, reading);
   std::shared_ptr<const SceneDescription> next;
-  if (state.scene)
+  if (state.scene && !state.scene->plays)
     next = explained(document, reading,
                      [&] { return change_scene(*state.scene, state.document, document, options); });
   if (!next) {
@@ -192,6 +220,16 @@ std::shared_ptr<const SceneDescription> SceneFrames::check(const std::vector<int
   return first;
 }
 
+Shutter SceneFrames::shutter() const {
+  const auto number = [&](const char* key, double otherwise) {
+    const json::json_pointer place(std::string("/camera/") + key);
+    const json& document = state_->source.document;
+    return document.contains(place) && document[place].is_number() ? document[place].get<double>()
+                                                                   : otherwise;
+  };
+  return {number("shutter", 0), static_cast<int>(number("shutter_steps", 16))};
+}
+
 bool is_standard_input(const fs::path& path) { return path == "-" || path == "/dev/stdin"; }
 
 std::string scene_file_name(const fs::path& path) {
@@ -202,8 +240,8 @@ SceneDescription load_scene(const fs::path& path, const std::vector<std::string>
                             const LoadOptions& options) {
   SceneSource source = open_source(path, overrides, options);
   Reading reading{source.file, overrides, options};
-  animate(source.document, reading);
-  return read_document(source.document, reading, std::move(source.model));
+  const json document = document_at_frame(source, reading);
+  return read_document(document, reading, std::move(source.model));
 }
 
 }  // namespace sundog

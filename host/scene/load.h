@@ -44,6 +44,13 @@ std::string scene_file_name(const std::filesystem::path& path);
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                             const LoadOptions& options = {});
 
+/// The part of a frame for which tracks and animations are blurred, and the number of times at which the
+/// scene is seen meanwhile.
+struct Shutter {
+  double open = 0;
+  int steps = 16;
+};
+
 /// A scene file whose frames are read one after the other: the file itself is read once, and so is what
 /// frames have in common.
 class SceneFrames {
@@ -54,6 +61,8 @@ class SceneFrames {
 
   /// The scene at that frame of its animation; without one, as it is written.
   std::shared_ptr<const SceneDescription> read(std::optional<double> frame);
+  /// As the document's camera says.
+  Shutter shutter() const;
   /// Throws what reading one of these frames would throw, but for files that their predecessors do not name
   /// and meshes that they do not generate. Returns the first scene.
   std::shared_ptr<const SceneDescription> check(const std::vector<int>& frames);

@@ -112,18 +112,31 @@ void add_ground(json& document, const SceneBounds& bounds, const Camera& camera,
                                  {"material", "ground"}});
 }
 
+SceneBounds bounds_of_motion(const std::filesystem::path& file, const Model& model) {
+  constexpr int poses = 16;
+  SceneBounds bounds;
+  double duration = 0;
+  for (int i = 0; i <= poses; ++i) {
+    const Model at = posed(model, file, {.seconds = duration * i / poses});
+    duration = at.duration;
+    const SceneBounds more = bounds_of(at.objects, at.meshes);
+    if (!more.empty()) bounds.add(more.lower), bounds.add(more.upper);
+  }
+  return bounds;
+}
+
 }  // namespace
 
-json make_model_scene(const std::filesystem::path& file, const Model& model, std::optional<double> aspect) {
+json make_model_scene(const std::filesystem::path& file, const Model& model, std::optional<double> aspect,
+                      bool plays) {
   ImageSettings image;
   image.background_bottom = {0.75, 0.75, 0.75}, image.background_top = {0.35, 0.42, 0.5};
   image = model.image.value_or(image);
   const double fitted = aspect.value_or(static_cast<double>(image.width) / image.height);
-  const SceneBounds bounds = bounds_of(model.objects, model.meshes);
+  const SceneBounds bounds = plays && model.pose && !model.camera ? bounds_of_motion(file, model)
+                                                                  : bounds_of(model.objects, model.meshes);
   const Camera camera = model.camera ? *model.camera : frame(bounds, fitted, {});
   const MadeUpLights made_up = expose(model, camera);
-  json lights = json::array();
-  for (const LightDescription& light : model.lights) lights.push_back(to_json(light));
   json document = {
       {"camera", to_json(camera)},
       {"image",
@@ -133,11 +146,19 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
          {{"bottom", to_json(image.background_bottom)}, {"top", to_json(image.background_top)}}}}},
       {"render", json::object()},
       {"materials", json::object()},
-      {"lights", lights.empty() ? to_json(made_up) : lights},
+      {"lights", to_json(made_up)},
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
-  if (!model.camera && lights.empty() && !bounds.empty())
+  set_view(document, model);
+  if (!model.camera && model.lights.empty() && !bounds.empty())
     add_ground(document, bounds, camera, image, made_up);
   return document;
+}
+
+void set_view(json& document, const Model& model) {
+  if (model.camera) document["camera"] = to_json(*model.camera);
+  if (model.lights.empty()) return;
+  document["lights"] = json::array();
+  for (const LightDescription& light : model.lights) document["lights"].push_back(to_json(light));
 }
 
 void take_ground_above(json& document, double height) {

@@ -41,7 +41,9 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     const MASK going = lanes & step_photon(scene, &photons, &rays, &landings, counts, lanes);
     for (u32 bits = lane_bits(lanes & landings.is); bits; bits &= bits - 1u) {
       const u32 i = lowest_bit(bits), to = first - launch->first + i;
-      const float3 p = get3(&landings.p, i), flux = get3(&landings.flux, i);
+      const float3 flux = get3(&landings.flux, i);
+      const float3 p = still_point(scene, (u32)MASK_LANE(landings.instance, i), get3(&landings.p, i),
+                                   REAL_LANE(starts.time, i));
       const float2 wi = pack_direction(get3(&landings.wi, i));
       const u32 slice = photon_slice(REAL_LANE(starts.time, i));
       landed[2u * to] = (float4)(p, with_count(wi.x, slice));
@@ -55,8 +57,8 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
 }
 
 // Reads the scene and the media at the lights; writes what has become of the photons [launch.first,
-// launch.last): to landed, two rows a photon, where it has landed, the direction that it came from, and its
-// flux; to cells, its cell's number, or NO_PHOTON.
+// launch.last): to landed, two rows a photon, where it has landed, on an object as it stood when the shutter
+// opened, the direction that it came from, and its flux; to cells, its cell's number, or NO_PHOTON.
 __kernel void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
                             __global float4* restrict landed, __global u32* restrict cells,
                             const PhotonLaunch launch) {

@@ -88,6 +88,22 @@ std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedS
   return plans;
 }
 
+/// Joins the samples of the same frame at another time.
+void add_samples(const RenderResult& more, int channels, RenderResult& all) {
+  for (std::size_t i = 0; i < all.film.sums.size(); ++i) {
+    float4& sum = all.film.sums[i];
+    const float4& other = more.film.sums[i];
+    sum.x += other.x, sum.y += other.y, sum.z += other.z, sum.w += other.w;
+    all.film.weights[i] += more.film.weights[i];
+    all.film.done[i] = all.film.done[i] && more.film.done[i];
+  }
+  for (std::size_t i = 0; i < all.counts.size(); ++i) all.counts[i] += more.counts[i];
+  all.image = all.film.develop(channels);
+  all.complete = all.complete && more.complete;
+  all.time_limited = all.time_limited || more.time_limited;
+  if (more.failure) all.failure = more.failure;
+}
+
 }  // namespace
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
@@ -137,7 +153,8 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
     if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet, setup.run);
   RenderOptions options = render_options(command, scene.description->image);
-  const std::string checkpoint = checkpoint_file(command, setup);
+  const std::string checkpoint = scene.times > 1 ? "" : checkpoint_file(command, setup);
+  if (scene.times > 1) options.resume.clear(), options.time_limit /= scene.times;
   RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
   options.stop = &setup.stop.flag();
   options.checkpoint = checkpoint;
@@ -153,6 +170,8 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   const Stopwatch frame;
   RenderResult result = setup.session ? setup.session->render(scene.flat, options)
                                       : render(scene.flat, plan_servers(command, scene, setup), options);
+  for (int time = 1; time < scene.times && result.complete && !result.failure; ++time)
+    add_samples(setup.session->render(scene.at_time(time), options), options.channels, result);
   times.joules = energy.joules(), times.frame = frame.seconds(), times.joules_by = energy.source();
   bar.erase();
   const bool told = setup.job && result.checkpoint_kept && !result.failure;

@@ -38,6 +38,8 @@ struct Setup {
 struct LoadedScene {
   std::shared_ptr<const SceneDescription> description;
   std::shared_ptr<const CompiledScene> flat;
+  int times = 1;  // at which the scene is seen while the shutter is open, `flat` at the first
+  std::function<std::shared_ptr<const CompiledScene>(int)> at_time{};  // at the others
 };
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);

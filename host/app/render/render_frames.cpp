@@ -13,6 +13,7 @@
 #include "app/process/exit_status.h"
 #include "app/process/warnings.h"
 #include "app/render/frame_log.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "render/film/hash.h"
 #include "scene/load.h"
@@ -29,6 +30,8 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
       "{} {} {} {} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
       static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither, command.full_floats,
       command.denoise, command.metadata, command.noise, command.dpi, command.color_space, command.bits);
+  if (scene.times > 1)
+    text += fmt::format(" {} {}", scene.times, hash_scene(*scene.at_time(scene.times - 1)));
   text += std::filesystem::path(command.out).extension().string();
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);
   for (const std::string& name : command.aovs) text += " " + name;
@@ -53,19 +56,29 @@ enum class Outcome { rendered, kept, unfinished, elsewhere };
 class FrameRun {
  public:
   FrameRun(const RenderCommand& command, Setup& setup)
-      : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {}
+      : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {
+    if (shutter_.open > 0 && !setup.session)
+      throw UsageError(
+          "/camera/shutter: frames that a shutter blurs are rendered by one process: leave --isolate and "
+          "mpirun "
+          "out, or the shutter");
+  }
 
   int render();
 
  private:
   Outcome take(int frame);
+  LoadedScene load(const RenderCommand& one, int frame, TimeLedger& times);
+  LoadedScene load_at(const RenderCommand& one, int frame, int time, TimeLedger& times);
   void tell_waiting(const std::vector<int>& frames) const;
   void tell_end() const;
 
   const RenderCommand& command_;
   Setup& setup_;
   std::unique_ptr<SceneFrames> frames_;
-  FrameLog log_;  // after all frames have been checked
+  Shutter shutter_ = frames_->shutter();
+  FrameLog log_;           // after all frames have been checked
+  std::int64_t seed_ = 0;  // of the frame
   int status_ = exit_done;
   std::size_t kept_ = 0;
   std::vector<int> unfinished_;
@@ -108,7 +121,7 @@ Outcome FrameRun::take(int frame) {
   const FrameLock lock = log_.lock(frame);
   if (!lock) return Outcome::elsewhere;
   if (command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume)) return Outcome::kept;
-  const LoadedScene scene = load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
+  const LoadedScene scene = load(one, frame, times);
   const FramePicture picture{one.out, log_.keeps() ? frame_key(one, scene) : "",
                              static_cast<int>(scene.flat->info.width),
                              static_cast<int>(scene.flat->info.height)};
@@ -124,6 +137,29 @@ Outcome FrameRun::take(int frame) {
     fmt::print("  frame {} of {}, about {} left\n", setup_.run.over + 1, setup_.run.total,
                duration_text(setup_.run.seconds_left(0, 0)));
   return end.complete ? Outcome::rendered : Outcome::unfinished;
+}
+
+/// The scene at one of the times while the shutter is open, with its share of the samples and a seed of its
+/// own.
+LoadedScene FrameRun::load_at(const RenderCommand& one, int frame, int time, TimeLedger& times) {
+  const auto read = [&] {
+    const auto& [open, steps] = shutter_;
+    auto scene = std::make_shared<SceneDescription>(*frames_->read(frame + open * (time + 0.5) / steps));
+    RenderSettings& render = scene->render;
+    if (time == 0) seed_ = render.seed;
+    render.seed = static_cast<decltype(render.seed)>((seed_ * steps + time) & 0x7fffffff);
+    render.samples = (render.samples + steps - 1) / steps;
+    return std::shared_ptr<const SceneDescription>(std::move(scene));
+  };
+  return load_and_compile(one, read, setup_, times);
+}
+
+LoadedScene FrameRun::load(const RenderCommand& one, int frame, TimeLedger& times) {
+  if (shutter_.open == 0) return load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
+  LoadedScene scene = load_at(one, frame, 0, times);
+  scene.times = shutter_.steps;
+  scene.at_time = [this, one, frame, &times](int time) { return load_at(one, frame, time, times).flat; };
+  return scene;
 }
 
 void FrameRun::tell_waiting(const std::vector<int>& frames) const {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/names.h"
+#include "scene/formula/lexer.h"
 #include "scene/formula/list.h"
 #include "scene/formula/lower.h"
 #include "scene/formula/syntax.h"
@@ -105,6 +106,21 @@ FormulaParameter read_declaration(const std::string& name, const JsonValue& valu
   return p;
 }
 
+/// Whether the texts, of which the first that errs is left to the parser, read `t` before they set it.
+bool reads_clock(std::span<const std::string> texts) {
+  try {
+    for (const std::string& text : texts) {
+      const std::vector<Token> tokens = tokens_of(text);
+      for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+        if (tokens[i].kind != Token::Kind::name || tokens[i].text != "t") continue;
+        if (i == 0 || tokens[i - 1].text != ".") return tokens[i + 1].text != "=";
+      }
+    }
+  } catch (const FormulaError&) {
+  }
+  return false;
+}
+
 FormulaDerivative read_derivative(JsonObject& object, FormulaDerivative fallback) {
   using Derivative = NamedValue<FormulaDerivative>;
   static constexpr std::array derivatives = {Derivative{"automatic", FormulaDerivative::automatic},
@@ -142,7 +158,7 @@ FormulaDefinition read_definition(JsonObject& object) {
   d.safety = d.kind == FormulaKind::direct          ? (d.normalize ? 0.8 : 1)
              : d.estimate == EscapeEstimate::linear ? 0.85
                                                     : 0.9;
-  d.parameters = read_declarations(object);
+  d.parameters = read_declarations(object, std::array{d.start, d.map, d.distance});
   return d;
 }
 
@@ -207,7 +223,7 @@ double bailout_of(std::vector<FormulaStep>& steps) {
 
 }  // namespace
 
-std::vector<FormulaParameter> read_declarations(JsonObject& object) {
+std::vector<FormulaParameter> read_declarations(JsonObject& object, std::span<const std::string> texts) {
   std::vector<FormulaParameter> all;
   if (const auto given = object.find("parameters"))
     for (const auto& [name, value] : given->members("parameters")) {
@@ -215,6 +231,12 @@ std::vector<FormulaParameter> read_declarations(JsonObject& object) {
         value.fail(fmt::format("a formula may have {} parameters", FormulaDefinition::max_parameters));
       all.push_back(read_declaration(name, value));
     }
+  const bool has_own = std::ranges::count(all, "t", &FormulaParameter::name) > 0;
+  if (!has_own && all.size() < FormulaDefinition::max_parameters && reads_clock(texts)) {
+    const JsonContext& context = object.value().context();
+    all.push_back({.name = "t", .value = {context.seconds.value_or(0)}});
+    if (context.plays) *context.plays = true;
+  }
   return all;
 }
 

@@ -1,6 +1,7 @@
 // Reads the leaves of a field's tree: built-in formulas, users' formulas, and hybrids of both.
 #pragma once
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +18,9 @@ namespace sundog {
 /// Reads formula text: a string or an array of lines.
 std::string read_text(JsonObject& object, std::string_view key);
 
-/// Reads the "parameters" that a user's formula declares. Throws SceneError.
-std::vector<FormulaParameter> read_declarations(JsonObject& object);
+/// Reads the "parameters" that a user's formula declares, and adds the clock `t` where one of its texts reads
+/// that name without setting it. Throws SceneError.
+std::vector<FormulaParameter> read_declarations(JsonObject& object, std::span<const std::string> texts);
 
 /// A formula and its default interval: lower, upper.
 struct FormulaLeaf {

@@ -43,7 +43,11 @@ struct JsonContext {
   bool measures = true;         // formulas are tried out; who only checks keys and types need not
   bool outside_files = false;   // a scene may name files outside its folder
   FrameCache* cache = nullptr;  // of the frames before this one
+  std::optional<double> seconds = std::nullopt;  // of a frame; none: the scene as it is written
+  bool* plays = nullptr;                         // when set, whether a value was read that follows them
 };
+
+inline constexpr std::string_view quaternion_text = "a quaternion of 4 numbers x, y, z, w that are not all 0";
 
 /// Allowed keys or choices, in a static array.
 using Names = std::span<const std::string_view>;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <utility>
 
 namespace sundog::models {
 
@@ -26,17 +27,20 @@ dvec3 near_origin(std::span<const dvec3> positions, double far_sizes) {
 }
 
 void bring_near(Model& model) {
-  std::vector<dvec3> origins;
-  for (Mesh& mesh : model.meshes) {
+  model.origins.resize(model.meshes.size(), dvec3(0));
+  for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+    Mesh& mesh = model.meshes[i];
     glm::vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower);
-    for (const glm::vec3& p : mesh.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
-    const dvec3 origin = origins.emplace_back(near_origin(dvec3(lower), dvec3(upper)));
+    for (const glm::vec3& p : std::as_const(mesh.positions))
+      lower = glm::min(lower, p), upper = glm::max(upper, p);
+    const dvec3 origin = near_origin(dvec3(lower), dvec3(upper));
     if (origin == dvec3(0)) continue;
+    model.origins[i] += origin;
     for (glm::vec3& p : mesh.positions) p = glm::vec3(dvec3(p) - origin);
   }
   for (Object& object : model.objects)
     if (const auto* shape = std::get_if<MeshShape>(&object.shape))
-      if (const dvec3& origin = origins[static_cast<std::size_t>(shape->mesh)]; origin != dvec3(0))
+      if (const dvec3& origin = model.origins[static_cast<std::size_t>(shape->mesh)]; origin != dvec3(0))
         object.world_from_object = glm::translate(object.world_from_object, origin);
 }
 

@@ -54,13 +54,13 @@ std::string unread_text(const std::vector<std::string>& features) {
   return rest == 0 ? text : fmt::format("{} and {} more feature{}", text, rest, rest == 1 ? "" : "s");
 }
 
-Model load(const models::Source& source, const std::string& extension, const ModelOptions& options) {
-  if (source.bytes.empty()) models::fail(source, "", "the file is empty");
+Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
+  if (source.bytes.empty()) throw SceneError(path.string(), "", "the file is empty");
   if (extension == ".obj") return models::load_obj(source, options);
   if (extension == ".ply") return models::load_ply(source, options);
   if (extension == ".stl") return models::load_stl(source, options);
   if (extension == ".nff") return models::load_nff(source);
-  return models::load_gltf(source, options);
+  return models::load_gltf(std::move(source), options);
 }
 
 /// Beyond this, the camera's position cannot be written, and squares overflow.
@@ -81,7 +81,7 @@ bool has_near_box(const dmat4& world_from_object, const Mesh& mesh) {
   return true;
 }
 
-void check_extent(const models::Source& source, const Model& model) {
+void check_extent(const std::filesystem::path& path, const Model& model) {
   for (const Object& object : model.objects) {
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape) continue;
@@ -92,10 +92,11 @@ void check_extent(const models::Source& source, const Model& model) {
         const glm::vec3& point = mesh.positions[triangle[corner]];
         if (is_near(object.world_from_object, point)) continue;
         const dvec3 at(object.world_from_object * glm::dvec4(point, 1));
-        models::fail(source, "",
-                     fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
-                                 mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x,
-                                 at.y, at.z, farthest));
+        throw SceneError(
+            path.string(), "",
+            fmt::format("{} has a vertex at {:.3g}, {:.3g}, {:.3g}; coordinates up to {:g} are read",
+                        mesh.name.empty() ? "a mesh" : fmt::format("the mesh '{}'", mesh.name), at.x, at.y,
+                        at.z, farthest));
       }
   }
 }
@@ -117,9 +118,9 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
   try {
     models::Source source = models::read_source(path);
     source.outside_files = options.outside_files;
-    Model model = load(source, models::model_extension(path), options);
+    Model model = load(std::move(source), models::model_extension(path), options);
     models::bring_near(model);
-    check_extent(source, model);
+    check_extent(path, model);
     if (model.dropped_polygons > 0)
       model.warnings.push_back(fmt::format("{} face{} of one or two corners {} left out",
                                            model.dropped_polygons, model.dropped_polygons == 1 ? "" : "s",
@@ -131,6 +132,13 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
   } catch (const std::bad_alloc&) {
     throw SceneError(path.string(), "", "the model does not fit into memory");
   }
+}
+
+Model posed(Model model, const std::filesystem::path& path, const Playing& playing) {
+  model.pose(playing, model);
+  models::bring_near(model);
+  check_extent(path, model);
+  return model;
 }
 
 }  // namespace sundog

@@ -1,6 +1,9 @@
 #include "scene/read/library.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "scene/materials/by_integrator.h"
 #include "scene/read/frame_cache.h"
@@ -75,19 +78,43 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   return std::move(model.objects);
 }
 
-const ModelLibrary::Parts& ModelLibrary::load(const fs::path& file, const ModelOptions& options,
-                                              const std::string& place) {
-  const std::pair key(file_key(file), options.crease_angle);
-  if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+Model ModelLibrary::read(const std::string& key, const fs::path& file, const ModelOptions& options,
+                         const std::string& place) {
+  if (const auto kept = kept_.find(key); kept != kept_.end() && !options.crease_angle) return kept->second;
   const auto read = [&] { return load_model(file, options); };
-  Model model =
-      cache_ ? cache_->model(fmt::format("{} {}", key.first, options.crease_angle.value_or(-1)), place, read)
-             : read();
+  if (!cache_) return read();
+  return cache_->model(fmt::format("{} {}", key, options.crease_angle.value_or(-1)), place, read);
+}
+
+const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValue& from, const fs::path& file,
+                                              const ModelOptions& options) {
+  Playing playing;
+  const auto name = object.find("animation"), cycle = object.find("cycle");
+  if (name) playing.animation = name->text();
+  if (cycle) playing.cycle = cycle->boolean();
+  const std::tuple key(file_key(file), options.crease_angle, playing.animation, playing.cycle);
+  if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
+  Model model = read(std::get<0>(key), file, options, from.pointer());
+  const std::vector<std::string>& known = model.animations;
+  if (const auto& asked = name ? name : cycle; asked && known.empty() && (name || playing.cycle))
+    asked->fail(fmt::format("{} has no animations", file.filename().string()));
+  if (name && std::ranges::count(known, playing.animation) == 0)
+    name->wanted(fmt::format("an animation of {}: {}", file.filename().string(), fmt::join(known, ", ")));
+  if (model.pose) scene_.plays = true;
+  if (model.pose && seconds_) {
+    playing.seconds = *seconds_;
+    model = posed(std::move(model), file, playing);
+  }
   return loaded_.emplace(key, add(std::move(model), file.filename().string())).first->second;
 }
 
 void ModelLibrary::keep(const fs::path& file, Model model) {
-  loaded_.emplace(std::pair(file_key(file), std::nullopt), add(std::move(model), file.filename().string()));
+  const std::string key = file_key(file);
+  if (model.pose)
+    kept_.emplace(key, std::move(model));
+  else
+    loaded_.emplace(std::tuple(key, std::nullopt, "", false),
+                    add(std::move(model), file.filename().string()));
 }
 
 void ModelLibrary::place(const Parts& parts, const Placement& placement) {

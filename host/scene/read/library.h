@@ -4,10 +4,11 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "scene/description.h"
+#include "scene/json/value.h"
 #include "scene/model.h"
 
 namespace sundog {
@@ -27,17 +28,20 @@ struct Placement {
 class ModelLibrary {
  public:
   /// Adds to `scene`, which must outlive the library.
-  explicit ModelLibrary(SceneDescription& scene, FrameCache* cache = nullptr)
-      : scene_(scene), cache_(cache) {}
+  /// At that time of the scene; without one, models stand as they are written.
+  explicit ModelLibrary(SceneDescription& scene, FrameCache* cache = nullptr,
+                        std::optional<double> seconds = std::nullopt)
+      : scene_(scene), cache_(cache), seconds_(seconds) {}
 
   /// A model in the scene's tables: objects with the scene's indices, in model space.
   using Parts = std::vector<Object>;
 
   /// Adds a model; `name` prefixes its materials' and media's names.
   Parts add(Model model, const std::string& name);
-  /// Reads and adds a model file, or finds what was added before. `place` names it. Throws what load_model()
-  /// throws.
-  const Parts& load(const std::filesystem::path& file, const ModelOptions& options, const std::string& place);
+  /// Adds what the object names: the model file at `from`, with its animations at the scene's time, or what
+  /// was added before. Throws what load_model() throws.
+  const Parts& load(JsonObject& object, const JsonValue& from, const std::filesystem::path& file,
+                    const ModelOptions& options);
   /// Adds a model that has been read already, for load() to find.
   void keep(const std::filesystem::path& file, Model model);
 
@@ -47,9 +51,14 @@ class ModelLibrary {
  private:
   int grey();
 
+  Model read(const std::string& key, const std::filesystem::path& file, const ModelOptions& options,
+             const std::string& place);
+
   SceneDescription& scene_;
   FrameCache* cache_;
-  std::map<std::pair<std::string, std::optional<double>>, Parts> loaded_;
+  std::optional<double> seconds_;
+  std::map<std::string, Model> kept_;  // by file
+  std::map<std::tuple<std::string, std::optional<double>, std::string, bool>, Parts> loaded_;
   int grey_ = -1;
 };
 

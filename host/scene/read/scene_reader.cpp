@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/image_io.h"
+#include "scene/animate.h"
 #include "scene/bounds.h"
 #include "scene/decode_images.h"
 #include "scene/displace.h"
@@ -34,7 +35,7 @@ namespace {
 class SceneReader {
  public:
   SceneReader(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made)
-      : root_(root), made_(made), library_(scene_, cache()) {
+      : root_(root), made_(made), library_(scene_, cache(), root.context().seconds) {
     scene_.file = root.context().file;
     scene_.media.push_back(outer_vacuum());
     if (known) library_.keep(scene_.file, std::move(*known));
@@ -52,7 +53,9 @@ class SceneReader {
     object.text("$schema", " ");
     if (const auto image = object.find("image")) scene_.image = read_image(*image);
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
-    if (const auto animate = object.find("animate")) read_tracks(*animate);  // animate.cpp has applied them
+    const auto animate = object.find("animate");
+    if (animate) read_tracks(*animate);  // animate.cpp has applied them
+    object.number("frames_per_second", default_frames_per_second, above_0);
     bool placed = false;
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
@@ -63,6 +66,9 @@ class SceneReader {
     read_tables(object);
     for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
       read_object(item, Placement{});
+    if (const bool* plays = root_.context().plays) scene_.plays = scene_.plays || *plays;
+    if (root_.context().seconds && !animate && !scene_.plays)
+      root_.member("animate", "an array of tracks: what the frames change");
     if (!placed)
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
@@ -134,7 +140,7 @@ class SceneReader {
         ModelOptions options = model_options();
         if (const auto angle = object.find("crease_angle"))
           options.crease_angle = angle->number({.low = 0, .high = 180});
-        return library_.load(file, options, from.pointer());
+        return library_.load(object, from, file, options);
       }
       const auto generate = [&] { return model_of(generate_mesh(from), name); };
       if (!cache()) return library_.add(generate(), name);
@@ -189,7 +195,7 @@ class SceneReader {
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
         const JsonValue file = object.at("file", "the path of a model file");
-        library_.place(library_.load(find_model(file), model_options(), file.pointer()), placement);
+        library_.place(library_.load(object, file, find_model(file), model_options()), placement);
       } else if (type == "field") {
         place_field(object, find_name(object.at("field", "the name of a field"), fields_, "field"),
                     placement);

@@ -152,7 +152,7 @@ static void read_parameters(JsonObject& object, const std::string& type, Texture
 static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
   object.at("formula", "a text of the formula language");
   formula.text = read_text(object, "formula");
-  formula.parameters = read_declarations(object);
+  formula.parameters = read_declarations(object, {&formula.text, 1});
   try {
     return lower_pattern(formula).values.size() == 3;
   } catch (const FormulaError& error) {

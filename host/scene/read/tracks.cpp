@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace sundog {
 namespace {
@@ -26,6 +27,10 @@ std::vector<double> numbers(const JsonValue& value) {
   std::vector<double> result;
   for (const JsonValue& item : value.items("numbers")) result.push_back(item.number());
   return result;
+}
+
+bool is_rotation(const std::vector<double>& values) {
+  return values.size() == 4 && std::ranges::any_of(values, [](double v) { return v != 0; });
 }
 
 bool is_pointer(const std::string& text) {
@@ -53,6 +58,7 @@ TrackKey read_key(const JsonValue& value, Track::Kind kind) {
     key.value = at.json();
     if (at.json().is_object() || at.json().is_null()) at.wanted("a number, an array, a text, true or false");
     if (is_numeric(at.json())) key.values = numbers(at);
+    if (kind == Track::Kind::slerp && !is_rotation(key.values)) at.wanted(quaternion_text);
     key.left = read_handle(object, "handle_left");
     key.right = read_handle(object, "handle_right");
     if ((key.left || key.right) && kind != Track::Kind::bezier)
@@ -117,9 +123,9 @@ void read_turn(JsonObject& object, Track& track) {
 Track read_track(const JsonValue& value) {
   using Kind = Track::Kind;
   static constexpr std::array kinds = {
-      NamedValue<Kind>{"step", Kind::step}, NamedValue<Kind>{"linear", Kind::linear},
+      NamedValue<Kind>{"step", Kind::step},     NamedValue<Kind>{"linear", Kind::linear},
       NamedValue<Kind>{"smooth", Kind::smooth}, NamedValue<Kind>{"bezier", Kind::bezier},
-      NamedValue<Kind>{"rotate", Kind::rotate}};
+      NamedValue<Kind>{"slerp", Kind::slerp},   NamedValue<Kind>{"rotate", Kind::rotate}};
   const Kind kind = value.member("type", names_of(kinds)).choose(kinds);
   return value.object(kind == Kind::rotate ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
     Track track;
@@ -198,6 +204,15 @@ double between(const Track& track, std::size_t key, double frame, std::size_t c)
          length * (slope_at(track, key, c) * (s3 - 2 * s2 + s) + slope_at(track, key + 1, c) * (s3 - s2));
 }
 
+std::vector<double> turned_between(const TrackKey& from, const TrackKey& to, double frame) {
+  const auto quaternion = [](const std::vector<double>& v) {
+    return glm::normalize(glm::dquat(v[3], v[0], v[1], v[2]));
+  };
+  const glm::dquat q = glm::slerp(quaternion(from.values), quaternion(to.values),
+                                  (frame - from.frame) / (to.frame - from.frame));
+  return {q.x, q.y, q.z, q.w};
+}
+
 json keyed(const Track& track, double frame) {
   const TrackKey &first = track.keys.front(), &last = track.keys.back();
   if (const double length = last.frame - first.frame; track.cycle && length > 0)
@@ -209,6 +224,7 @@ json keyed(const Track& track, double frame) {
   if (after == track.keys.end() || from.values.empty() || track.kind == Track::Kind::step ||
       frame == from.frame)
     return from.value;
+  if (track.kind == Track::Kind::slerp) return turned_between(from, *after, frame);
   std::vector<double> values;
   for (std::size_t c = 0; c < from.values.size(); ++c) values.push_back(between(track, key, frame, c));
   return from.value.is_array() ? json(values) : json(values[0]);

@@ -25,10 +25,11 @@ struct TrackKey {
 /// One value of the document over time. All but rotate go through keys, and hold the first and the last value
 /// outside of them; values that are no numbers step. smooth is a cubic Hermite spline: Catmull-Rom's slopes,
 /// limited so that the values between two keys lie between theirs (Fritsch and Carlson 1980), 0 at the ends.
-/// bezier has handles, which without any of their own lie on that spline. rotate turns a point or direction
-/// about an axis, by `degrees` from frame `first` to frame `last`.
+/// bezier has handles, which without any of their own lie on that spline. slerp takes quaternions x, y, z, w
+/// the short way (Shoemake 1985). rotate turns a point or direction about an axis, by `degrees` from frame
+/// `first` to frame `last`.
 struct Track {
-  enum class Kind { step, linear, smooth, bezier, rotate } kind = Kind::linear;
+  enum class Kind { step, linear, smooth, bezier, slerp, rotate } kind = Kind::linear;
   std::string pointer;         // of the value that is animated
   std::vector<TrackKey> keys;  // at least one, frames rising, of values of one kind and length
   bool whole = false;          // round to whole numbers

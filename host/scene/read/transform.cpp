@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
 #include "scene/read/parts.h"
@@ -11,7 +12,18 @@ namespace sundog {
 
 namespace {
 
+dmat4 read_quaternion(const JsonValue& value) {
+  const auto items = value.items("4 numbers");
+  if (items.size() != 4) value.wanted(quaternion_text);
+  const glm::dquat q(items[3].number(), items[0].number(), items[1].number(), items[2].number());
+  if (!(glm::length(q) > 0)) value.wanted(quaternion_text);
+  return glm::mat4_cast(glm::normalize(q));
+}
+
 dmat4 read_rotate(JsonObject& object) {
+  object.not_both("quaternion", "axis");
+  object.not_both("quaternion", "degrees");
+  if (const auto quaternion = object.find("quaternion")) return read_quaternion(*quaternion);
   const dvec3 axis = object.at("axis", "a direction [x, y, z]").direction();
   const double degrees = object.at("degrees", "an angle in degrees").number();
   return glm::rotate(dmat4(1), glm::radians(degrees), axis);

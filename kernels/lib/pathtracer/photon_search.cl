@@ -13,7 +13,7 @@
 
 // A lane's way through the photons about its surface.
 typedef struct PhotonSearch {
-  float3 p, n;
+  float3 p, n;  // of the surface as it stood when the shutter opened, where photons lie
   PhotonMap map;
   int3 low;     // the cube of the lowest corner
   u32 slice;    // of time
@@ -28,8 +28,12 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
                                         const SurfaceInteractions* s, u32 i) {
   PhotonSearch search;
   const u32 sample = (u32)MASK_LANE(at->sample, i);
-  search.p = get3(&s->p, i);
-  search.n = get3(&s->ng, i);
+  const u32 instance = (u32)MASK_LANE(s->instance, i);
+  search.p = still_point(scene, instance, get3(&s->p, i), time);
+  search.n = still_vector(scene, instance, get3(&s->ng, i), time);
+#if HAS_TURNS
+  search.n *= rsqrt(dot(search.n, search.n));
+#endif
   search.map = scene->photon_maps[photon_map_of(sample) - scene->photon_maps[0].number];
   search.low = photon_cube(search.p - search.map.radius, search.map.inverse_edge);
   search.slice = photon_slice(time);
@@ -91,7 +95,9 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
   for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     searches.of[i] = begin_search(scene, at, (u32)MASK_LANE(depth, i), REAL_LANE(time, i), s, i);
-    REAL_LANE(searches.area, i) = M_PI_F * searches.of[i].map.radius * searches.of[i].map.radius;
+    const REAL size = moved_size(scene, (u32)MASK_LANE(s->instance, i), time);
+    const float radius = searches.of[i].map.radius * REAL_LANE(size, i);
+    REAL_LANE(searches.area, i) = M_PI_F * radius * radius;
   }
   return searches;
 }

@@ -19,6 +19,7 @@ typedef struct Landing {
   bool is;
   float3 p, wi, flux;  // wi points to where it comes from
   int sent_on;         // how often it was
+  int instance;        // that it lies on
 } Landing;
 
 ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at, float3 flux,
@@ -91,8 +92,12 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
     const float rest = scattered_share(&lobes);
     if (photon->bent && rest > 0.0f && spectrum_greatest(photon->path.throughput) > 0.0f) {
       const SampledSpectrum flux = photon->path.throughput * (lobes.all / rest);
-      const Landing here = {true, at.s.p, -ray->d, spectrum_seen(scene, &photon->path.wavelengths, &flux),
-                            photon->path.depth - 1};
+      const Landing here = {true,
+                            at.s.p,
+                            -ray->d,
+                            spectrum_seen(scene, &photon->path.wavelengths, &flux),
+                            photon->path.depth - 1,
+                            at.s.instance};
       *landed = here;
     }
     return false;

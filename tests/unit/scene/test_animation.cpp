@@ -129,6 +129,57 @@ TEST_CASE("a bezier track goes by its handles, and without any as a smooth one")
           Approx(frame_of(fov_track("smooth"), frame).camera.fov));
 }
 
+TEST_CASE("a slerp track takes rotations the short way") {
+  const auto turned = [](const char* second, double frame) {
+    const TemporaryFolder folder;
+    folder.write(
+        "scene.json",
+        fmt::format(R"({{"camera": {{"position": [0, 0, 4], "target": [0, 0, 0]}}, "materials": {{"m": {{}}}},
+      "objects": [{{"type": "box", "material": "m", "transform": [{{"rotate": {{"quaternion": [0, 0, 0, 1]}}}}]}}],
+      "animate": [{{"type": "slerp", "value": "/objects/0/transform/0/rotate/quaternion", "keys": [
+        {{"frame": 0, "value": [0, 0, 0, 2]}}, {{"frame": 9, "value": {}}}]}}]}})",
+                    second));
+    return dvec3(
+        load_scene(folder.path() / "scene.json", {}, {.frame = frame}).objects[0].world_from_object[0]);
+  };
+  const double h = std::sqrt(0.5), c = std::sqrt(0.75);
+  const char *quarter = "[0, 1, 0, 1]", *other_way = "[0, 1, 0, -1]", *same = "[0, -1, 0, -1]";
+  CHECK(glm::distance(turned(quarter, 9), dvec3(0, 0, -1)) < 1e-12);
+  CHECK(glm::distance(turned(quarter, 3), dvec3(c, 0, -0.5)) < 1e-12);
+  CHECK(glm::distance(turned(same, 3), dvec3(c, 0, -0.5)) < 1e-12);
+  CHECK(glm::distance(turned(other_way, 4.5), dvec3(h, 0, h)) < 1e-12);
+  CHECK(turned("[0, 0, 0, 1]", 4) == dvec3(1, 0, 0));
+  for (const char* bad : {"[0, 1, 0]", "[0, 0, 0, 0]", "7"}) CHECK_THROWS_AS(turned(bad, 3), SceneError);
+}
+
+TEST_CASE("formulas read the clock of the frames, unless the name is theirs") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", R"json({"camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+    "frames_per_second": 10, "materials": {"a": {"color": "wave"}, "b": {"color": "own"}, "c": {"color": "given"}},
+    "textures": {"wave": {"type": "formula", "formula": "0.5 + 0.5 * sin(p.x + t)"},
+      "own": {"type": "formula", "formula": ["t = p.x", "t * t"]},
+      "given": {"type": "formula", "parameters": {"t": 7}, "formula": "t + p.x"}},
+    "objects": [{"type": "formula", "material": "a", "distance": "length(p) - 1 - 0.1 * t"},
+      {"type": "box", "material": "b"}, {"type": "box", "material": "c"}]})json");
+  const auto clock = [](const std::vector<FormulaParameter>& all) {
+    return all.empty() ? -1 : all.at(0).value.at(0);
+  };
+  SceneFrames frames(folder.path() / "scene.json", {}, {});
+  for (const std::optional<double> frame : {std::optional(5.0), {}, {20.0}}) {
+    const auto scene = frames.read(frame);
+    const double seconds = frame.value_or(0) / 10;
+    std::vector<double> found;
+    for (const TextureDescription& texture : scene->textures)
+      found.push_back(clock(texture.formula.parameters));
+    CHECK(std::ranges::count(found, seconds) == 1);
+    CHECK(std::ranges::count(found, -1) == 1);
+    CHECK(std::ranges::count(found, 7) == 1);
+    const FormulaStep& step = scene->fields.at(0).root.formula.steps.at(0);
+    CHECK(clock(step.definition.parameters) == seconds);
+    CHECK(step.values == std::vector{seconds});
+  }
+}
+
 TEST_CASE("tracks call objects and lights by their names, and values by names with any sign in them") {
   const TemporaryFolder folder;
   folder.write("scene.json", R"({"camera": {"position": [0, 0, 4], "target": [0, 0, 0]},

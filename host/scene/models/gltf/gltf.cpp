@@ -1,16 +1,17 @@
-// glTF 2.0 and GLB: reads one scene's nodes with their meshes, instances, camera and lights. In: JSON and
-// buffers. Out: a Model whose objects share meshes.
+// glTF 2.0 and GLB: reads one scene's nodes with their meshes, instances, camera and lights, as they stand or
+// at a time of the animations. In: JSON and buffers. Out: a Model whose objects share meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
-#include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
 #include "scene/json/json_memory.h"
+#include "scene/models/gltf/gltf_animations.h"
 #include "scene/models/gltf/gltf_meshes.h"
 #include "scene/models/gltf/gltf_unread.h"
 #include "scene/models/gltf/gltf_views.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct Node {
   std::string name, pointer;
+  NodePose rest;
   dmat4 local{1};
   std::vector<std::size_t> children;
   std::optional<std::size_t> mesh, camera, light, parent, skin;
@@ -35,26 +37,33 @@ dmat4 place(dvec3 translation, glm::dquat rotation, dvec3 scale) {
   return m;
 }
 
-glm::dquat unit_quaternion(double x, double y, double z, double w, const JsonAt& at) {
-  const double length = std::sqrt(x * x + y * y + z * z + w * w);
-  if (!(length > 1e-6)) at.fail("a rotation whose quaternion is 0");
-  return glm::dquat(w / length, x / length, y / length, z / length);
+dmat4 matrix_of(const NodePose& pose) {
+  return pose.matrix ? *pose.matrix : place(pose.translation, pose.rotation, pose.scale);
 }
 
-dmat4 read_transform(const JsonAt& at) {
+glm::dquat checked_quaternion(double x, double y, double z, double w, const JsonAt& at) {
+  const auto unit = unit_quaternion(x, y, z, w);
+  if (!unit) at.fail("a rotation whose quaternion is 0");
+  return *unit;
+}
+
+NodePose read_pose(const JsonAt& at) {
+  NodePose pose;
   if (const auto matrix = at.find("matrix")) {
     const std::vector<double> values = matrix->numbers(16);
     dmat4 m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = values[static_cast<std::size_t>(i)];
     if (glm::row(m, 3) != glm::dvec4(0, 0, 0, 1)) matrix->fail("the last row must be 0 0 0 1");
-    return m;
+    pose.matrix = m;
+    return pose;
   }
-  glm::dquat rotation(1, 0, 0, 0);
   if (const auto found = at.find("rotation")) {
     const std::vector<double> q = found->numbers(4);
-    rotation = unit_quaternion(q[0], q[1], q[2], q[3], *found);
+    pose.rotation = checked_quaternion(q[0], q[1], q[2], q[3], *found);
   }
-  return place(at.vector("translation", dvec3(0)), rotation, at.vector("scale", dvec3(1)));
+  pose.translation = at.vector("translation", dvec3(0));
+  pose.scale = at.vector("scale", dvec3(1));
+  return pose;
 }
 
 bool is_singular(const dmat4& m) {
@@ -71,14 +80,35 @@ class GltfReader {
         materials_(root, textures_),
         meshes_(root, accessors_, materials_, crease_degrees) {}
 
+  /// The nodes as they stand.
   Model read() {
+    Model model;
+    model_ = &model;
     for (const JsonAt& at : root_.list("cameras")) cameras_.push_back(read_gltf_camera(at));
     if (const auto extension = root_.extension("KHR_lights_punctual"))
       for (const JsonAt& at : extension->list("lights")) lights_.push_back(read_gltf_light(at));
     read_nodes();
     walk(scene_roots());
-    model_.warnings.insert(model_.warnings.end(), accessors_.warnings().begin(), accessors_.warnings().end());
-    return std::move(model_);
+    model.warnings.insert(model.warnings.end(), accessors_.warnings().begin(), accessors_.warnings().end());
+    return model;
+  }
+
+  /// Moves what read() has returned to a time of the animations.
+  void pose(const Playing& playing, Model& model) {
+    if (!animations_) animations_.emplace(root_, accessors_, nodes_.size());
+    if (playing.animation.empty() && animations_->compete())
+      model.warnings.emplace_back(
+          "several animations move the same nodes: the first of the file counts; \"animation\" names one");
+    std::vector<NodePose> poses;
+    for (const Node& node : nodes_) poses.push_back(node.rest);
+    animations_->move(playing, poses);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].local = matrix_of(poses[i]);
+    model.duration = animations_->last();
+    model_ = &model;
+    worlds_.clear();
+    meshes_.skin_anew();
+    model.objects.clear(), model.lights.clear(), model.camera.reset();
+    walk(scene_roots());
   }
 
  private:
@@ -99,7 +129,8 @@ class GltfReader {
   void read_node(const JsonAt& at, Node& node) {
     node.name = at.text("name");
     node.pointer = at.pointer();
-    node.local = read_transform(at);
+    node.rest = read_pose(at);
+    node.local = matrix_of(node.rest);
     if (const auto mesh = at.find("mesh")) node.mesh = mesh->index(meshes_.count(), "mesh");
     if (const auto skin = at.find("skin")) node.skin = skin->index(skins_.size(), "skin");
     if (const auto camera = at.find("camera")) node.camera = camera->index(cameras_.size(), "camera");
@@ -140,8 +171,8 @@ class GltfReader {
       };
       glm::dquat rotation(1, 0, 0, 0);
       if (rotations)
-        rotation = unit_quaternion(value(*rotations, 4, 0), value(*rotations, 4, 1), value(*rotations, 4, 2),
-                                   value(*rotations, 4, 3), attributes);
+        rotation = checked_quaternion(value(*rotations, 4, 0), value(*rotations, 4, 1),
+                                      value(*rotations, 4, 2), value(*rotations, 4, 3), attributes);
       node.instances.push_back(place(vector(translations, dvec3(0)), rotation, vector(scales, dvec3(1))));
     }
   }
@@ -192,7 +223,7 @@ class GltfReader {
     if (node.light) add_light(node, world);
     if (!node.mesh) return;
     if (node.skin && !node.instanced && meshes_.has_joints(*node.mesh)) return add_skinned(node);
-    const int mesh = meshes_.use(*node.mesh, model_);
+    const int mesh = meshes_.use(*node.mesh, *model_);
     if (mesh < 0) return;
     if (!node.instanced) return add_object(node, mesh, world);
     for (const dmat4& instance : node.instances) add_object(node, mesh, world * instance);
@@ -200,7 +231,7 @@ class GltfReader {
 
   // A mesh with a skin is placed by the joints; its node's transform is ignored.
   void add_skinned(const Node& node) {
-    const int mesh = meshes_.use_skinned(*node.mesh, *node.skin, joints_of(*node.skin), model_);
+    const int mesh = meshes_.use_skinned(*node.mesh, *node.skin, joints_of(*node.skin), *model_);
     if (mesh >= 0) add_object(node, mesh, dmat4(1));
   }
 
@@ -242,8 +273,9 @@ class GltfReader {
   // Some files hide a node by a scale of 0.
   void add_object(const Node& node, int mesh, const dmat4& world) {
     if (is_singular(world)) {
-      model_.warnings.push_back(
-          fmt::format("{}: the transform flattens the mesh; it is left out", node.pointer));
+      if (!animations_)
+        model_->warnings.push_back(
+            fmt::format("{}: the transform flattens the mesh; it is left out", node.pointer));
       return;
     }
     Object object;
@@ -251,14 +283,14 @@ class GltfReader {
     object.shape = MeshShape{mesh};
     object.world_from_object = world;
     object.place = node.pointer;
-    model_.objects.push_back(std::move(object));
+    model_->objects.push_back(std::move(object));
   }
 
   void add_camera(const Node& node, const dmat4& world) {
     const GltfCamera& from = cameras_[*node.camera];
     if (!from.perspective || from.fov >= std::numbers::pi || is_singular(world))
-      return leave_unread(model_, "cameras that are not perspective");
-    if (model_.camera) return;
+      return leave_unread(*model_, "cameras that are not perspective");
+    if (model_->camera) return;
     Camera camera;
     camera.position = dvec3(world[3]);
     camera.target = camera.position - glm::normalize(dvec3(world[2]));
@@ -266,7 +298,7 @@ class GltfReader {
     camera.fov = glm::degrees(from.fov);
     camera.near = from.near;
     camera.far = from.far;
-    model_.camera = camera;
+    model_->camera = camera;
   }
 
   void add_light(const Node& node, const dmat4& world) {
@@ -274,7 +306,7 @@ class GltfReader {
     light.position = dvec3(world[3]);
     const dvec3 direction = -dvec3(world[2]);
     if (glm::length(direction) > 0) light.direction = glm::normalize(direction);
-    model_.lights.push_back(light);
+    model_->lights.push_back(light);
   }
 
   JsonAt root_;
@@ -286,8 +318,9 @@ class GltfReader {
   std::vector<LightDescription> lights_;
   std::vector<Node> nodes_;
   std::vector<JsonAt> skins_;
-  std::vector<dmat4> worlds_;  // by node; filled when a skin needs them
-  Model model_;
+  std::vector<dmat4> worlds_;                 // by node; filled when a skin needs them
+  std::optional<GltfAnimations> animations_;  // read when they are first played
+  Model* model_ = nullptr;
 };
 
 nlohmann::json parse(const Source& source, std::string_view text) {
@@ -306,10 +339,19 @@ nlohmann::json parse(const Source& source, std::string_view text) {
 
 }  // namespace
 
-Model load_gltf(const Source& source, const ModelOptions& options) {
-  const GltfContainer container = open_container(source);
-  const nlohmann::json json = parse(source, container.json);
-  const JsonAt root(source, json, "");
+Model load_gltf(Source from, const ModelOptions& options) {
+  struct File {
+    Source source;
+    GltfContainer container;
+    nlohmann::json json;
+    std::optional<GltfReader> reader;  // of the others
+  };
+  const auto file = std::make_shared<File>();
+  file->source = std::move(from);
+  const Source& source = file->source;
+  file->container = open_container(source);
+  file->json = parse(source, file->container.json);
+  const JsonAt root(source, file->json, "");
   note_files(source, root);
   const std::string version = root.member("asset").member("version").text();
   if (!version.starts_with("2."))
@@ -317,9 +359,13 @@ Model load_gltf(const Source& source, const ModelOptions& options) {
   if (const auto least = root.member("asset").find("minVersion"))
     if (least->text() != "2.0") least->fail(fmt::format("glTF {} at least; 2.0 is read", least->text()));
   check_extensions(root);
-  Model model = GltfReader(source, container, root, options.crease_angle.value_or(0)).read();
-  find_unread(json, model);
+  file->reader.emplace(source, file->container, root, options.crease_angle.value_or(0));
+  Model model = file->reader->read();
+  find_unread(file->json, model);
   name_unread_extensions(root, model);
+  model.animations = animation_names(file->json);
+  if (!model.animations.empty())
+    model.pose = [file](const Playing& playing, Model& posed) { file->reader->pose(playing, posed); };
   return model;
 }
 

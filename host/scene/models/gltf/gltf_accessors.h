@@ -63,6 +63,8 @@ class GltfAccessors {
   /// is out of proportion to the file and its buffers, as when a small file references the same data over and
   /// over.
   void spend(std::size_t amount, const std::string& pointer);
+  /// For what takes the place of what was created.
+  void forget_spent() { spent_ = 0; }
 
  private:
   void read_buffer(const Source& source, const GltfContainer& container, const JsonAt& at, std::size_t index);

@@ -184,9 +184,19 @@ bool GltfMeshes::has_joints(std::size_t index) const {
 
 int GltfMeshes::use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints,
                             Model& model) {
-  const auto [found, added] = skinned_.try_emplace({index, skin}, -1);
-  if (added) found->second = add(index, joints, model);
-  return found->second;
+  Skinned& skinned = skinned_[{index, skin}];
+  if (!skinned.done && skinned.mesh < 0) skinned.mesh = add(index, joints, model);
+  if (const auto at = static_cast<std::size_t>(skinned.mesh); !skinned.done && skinned.mesh >= 0) {
+    model.meshes[at] = build(meshes_.at(index), joints, model);
+    if (at < model.origins.size()) model.origins[at] = dvec3(0);
+  }
+  skinned.done = true;
+  return skinned.mesh;
+}
+
+void GltfMeshes::skin_anew() {
+  accessors_.forget_spent();
+  for (auto& [key, skinned] : skinned_) skinned.done = false;
 }
 
 Mesh GltfMeshes::build(const Entry& entry, const std::vector<dmat4>& joints, Model& model) {

@@ -25,6 +25,8 @@ class GltfMeshes {
   bool has_joints(std::size_t index) const;
   /// use() for the mesh as `skin` deforms it, in world space; `joints` are world matrices.
   int use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints, Model& model);
+  /// From now on use_skinned() replaces the meshes that it has added.
+  void skin_anew();
 
  private:
   struct Primitive {
@@ -60,8 +62,12 @@ class GltfMeshes {
   double crease_degrees_;
   bool quantized_;  // KHR_mesh_quantization
   std::vector<Entry> meshes_;
-  std::map<std::pair<std::size_t, std::size_t>, int> skinned_;  // keyed by mesh and skin
-  std::size_t of_no_number_ = 0;                                // NaN attributes in the current mesh
+  struct Skinned {
+    int mesh = -1;
+    bool done = false;
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Skinned> skinned_;  // keyed by mesh and skin
+  std::size_t of_no_number_ = 0;                                    // NaN attributes in the current mesh
 };
 
 }  // namespace sundog::models

@@ -155,7 +155,6 @@ void name_unread_extensions(const JsonAt& root, Model& model) {
 void find_unread(const json& document, Model& model) {
   for (const json& material : items(document, "materials")) find_in_material(material, model);
   for (const json& mesh : items(document, "meshes")) find_in_mesh(mesh, model);
-  if (!items(document, "animations").empty()) leave_unread(model, "animations");
 }
 
 }  // namespace sundog::models
