@@ -1,6 +1,6 @@
 // One stage: what the camera sees first, for the extra images: depth, normal, position, albedo, object and
 // material; with FEATURE_AOVS also what a denoiser takes; with ALL_AOVS also the geometric normal, steps of
-// marching, coordinates, and which objects and materials cover the pixel, each with its share.
+// marching and coordinates.
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
@@ -15,7 +15,7 @@
 #define FEATURE_AOVS 0
 #endif
 
-#define AOV_VECTORS (ALL_AOVS ? 11u : FEATURE_AOVS ? 5u : 3u)
+#define AOV_VECTORS (ALL_AOVS ? 7u : FEATURE_AOVS ? 5u : 3u)
 
 #if FEATURE_AOVS
 #include "lib/pathtracer/features.cl"
@@ -37,35 +37,6 @@ static inline void write_features(const Scene* scene, MediaStack stack, REAL x, 
 #endif
 
 #if ALL_AOVS
-#define LOOKS_EDGE 4u  // rays a pixel, each way, that find what covers it
-#define LOOKS (LOOKS_EDGE * LOOKS_EDGE)
-#define RANKS 4u  // things a pixel that are kept, those that cover most of it first
-
-// Writes the RANKS of a lane's `ids` (-1: none), LOOKS of them, BATCH apart: (id, share) each, of equal
-// shares the smaller id first; (-1, 0) where there are no more.
-static inline void write_ranks(const int* ids, u32 lane, __global float* out) {
-  u32 last_count = LOOKS + 1u;
-  int last_id = -1;
-  for (u32 rank = 0; rank < RANKS; ++rank) {
-    u32 best_count = 0;
-    int best_id = -1;
-    for (u32 k = 0; k < LOOKS; ++k) {
-      const int id = ids[k * BATCH + lane];
-      u32 count = 0;
-      for (u32 j = 0; j < LOOKS; ++j) count += ids[j * BATCH + lane] == id ? 1u : 0u;
-      const bool fresh = count < last_count || (count == last_count && id > last_id);
-      if (id < 0 || !fresh || count < best_count || (count == best_count && id >= best_id)) continue;
-      best_count = count;
-      best_id = id;
-    }
-    out[2u * rank] = (float)best_id;
-    out[2u * rank + 1u] = (float)best_count / (float)LOOKS;
-    last_count = best_count;
-    last_id = best_id;
-    if (best_count == 0u) last_count = 0u;
-  }
-}
-
 // The steps that the ray of each lane alone marches.
 #if HAS_SDF
 static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK lanes) {
@@ -92,22 +63,6 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
 // The vectors behind the first five, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
 NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
                              const SurfaceInteractions* s, u32* counts, __global float4* aovs) {
-  int objects[LOOKS * BATCH], materials[LOOKS * BATCH];
-  for (u32 k = 0; k < LOOKS; ++k) {
-    const float across = ((float)(k % LOOKS_EDGE) + 0.5f) / (float)LOOKS_EDGE - 0.5f,
-                down = ((float)(k / LOOKS_EDGE) + 0.5f) / (float)LOOKS_EDGE - 0.5f;
-    const Rays camera = camera_rays(scene->info, x + across, y + down);
-    SceneRays rays = scene_rays(&camera, stack);
-    Encounters met;
-    start_marching(counts);
-    see_surfaces(scene, &rays, lanes, ALL_LANES, true, &met, counts);
-    const MASK found = lanes & hit_anything(&met.hit);
-    for (u32 i = 0; i < BATCH; ++i) {
-      const bool seen = MASK_LANE(found, i) != 0;
-      objects[k * BATCH + i] = seen ? (int)scene->instances[MASK_LANE(met.hit.instance, i)].object : -1;
-      materials[k * BATCH + i] = seen ? (int)MASK_LANE(met.face.material, i) : -1;
-    }
-  }
   const Rays camera = camera_rays(scene->info, x, y);
   const SceneRays middle = scene_rays(&camera, stack);
   const REAL steps = steps_alone(scene, &middle, lanes);
@@ -118,14 +73,34 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
     const float3 ng = seen ? get3(&s->ng, i) : (float3)(0.0f);
     out[5] = (float4)(ng, REAL_LANE(steps, i));
     out[6] = (float4)(seen ? REAL_LANE(s->at.u, i) : 0.0f, seen ? REAL_LANE(s->at.v, i) : 0.0f, 0.0f, 0.0f);
-    write_ranks(objects, i, (__global float*)(out + 7));
-    write_ranks(materials, i, (__global float*)(out + 9));
   }
 }
 #else
 static inline void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
                               const SurfaceInteractions* s, u32* counts, __global float4* aovs) {}
 #endif
+
+// see_surfaces() for camera rays in the middles of pixels, which pass surfaces that are cut away; s and bsdf
+// receive what they see. Returns the lanes of `lanes` that see anything.
+static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, Encounters* met,
+                               SurfaceInteractions* s, Bsdfs* bsdf, u32* counts) {
+  see_surfaces(scene, rays, lanes, ALL_LANES, true, met, counts);
+  for (;;) {
+    const MASK hit = lanes & hit_anything(&met->hit);
+    interact(scene, rays->o, rays->d, &met->hit, &met->face, hit, s);
+    set_footprints(scene, rays, met->hit.t, s);
+    note_depth(met, s);
+    add_parallax(scene, rays->d, hit, s);
+    add_relief(scene, rays->d, hit, s);
+    *bsdf = make_bsdfs(scene, s, met->before, met->after, hit);
+    if (!HAS_SHADOW_FILTERS) return hit;
+    const SpecularSplits split = bsdf_specular(scene, bsdf, negate3(rays->d), hit);
+    const MASK passing = cut_away(bsdf, &split, hit) & may_cross(rays, hit);
+    if (!any_lane(passing)) return hit;
+    continue_behind(scene->info, rays, &met->hit, met->face.entering, passing);
+    see_behind(scene, rays, passing, ALL_LANES, met, counts);
+  }
+}
 
 // One work-item of the kernel below: the pixels from `first` on.
 NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* restrict camera_media,
@@ -153,14 +128,8 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   SurfaceInteractions s;
-  see_surfaces(scene, &rays, lanes, ALL_LANES, true, &met, counts);
-  const MASK hit = lanes & hit_anything(&met.hit);
-  interact(scene, rays.o, rays.d, &met.hit, &met.face, hit, &s);
-  set_footprints(scene, &rays, met.hit.t, &s);
-  note_depth(&met, &s);
-  add_parallax(scene, rays.d, hit, &s);
-  add_relief(scene, rays.d, hit, &s);
-  const Bsdfs bsdf = make_bsdfs(scene, &s, met.before, met.after, hit);
+  Bsdfs bsdf;
+  const MASK hit = see_middles(scene, &rays, lanes, &met, &s, &bsdf, counts);
   const REAL3 albedo = albedo_of(&bsdf);
   const REAL sunk = ways_to_heights(scene, &s, rays.d, hit);
   const REAL3 world = add3(add3(along3(s.p, sunk, rays.d), all3(scene->info->origin_rest.xyz)),

@@ -71,6 +71,22 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   return begun.lanes;
 }
 
+// The surfaces that the paths of `lanes` have met cover their part of the pixels.
+#if HAS_MATTES
+static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
+                              const PathStates* paths, MASK lanes, __global float4* restrict film) {
+  for (u32 bits = lane_bits(lanes & MASK_OF(paths->matte != 0.0f)); bits; bits &= bits - 1u) {
+    const u32 lane = lowest_bit(bits);
+    add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane)),
+              MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
+              work->sign[lane] * REAL_LANE(paths->matte, lane));
+  }
+}
+#else
+static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
+                              const PathStates* paths, MASK lanes, __global float4* restrict film) {}
+#endif
+
 // One work-item of the kernel below: items [first, end).
 NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Launch* launch, u32 first,
                                u32 end, __global const u32* restrict pixels, __global float4* restrict film,
@@ -93,6 +109,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     note_own_rays(begun, counts);
     start_marching(counts);
     lanes = going & step_path(scene, &paths, &rays, !any_lane(lanes), counts, going);
+    add_mattes(scene, launch, &work, &paths, going, film);
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
     const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);

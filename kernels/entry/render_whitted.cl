@@ -21,6 +21,22 @@ static inline MASK start_rays(const Scene* scene, const Launch* launch, __global
   return begun.lanes;
 }
 
+// Where the tile's surfaces note what they cover of their pixels, of which each sample counts signs[lane].
+#if HAS_MATTES
+static inline void set_tile_sums(const Launch* launch, u32 item, const float* signs,
+                                 __global float4* restrict film, TileSamples* tile) {
+  tile->sums = sample_sums(launch, film, 0u);
+  for (u32 lane = 0; lane < BATCH; ++lane) {
+    const uint2 at = lane_pixel(launch, item, lane);
+    MASK_LANE(tile->place, lane) = (int)(at.y * launch->width + at.x);
+    REAL_LANE(tile->sign, lane) = signs[lane];
+  }
+}
+#else
+static inline void set_tile_sums(const Launch* launch, u32 item, const float* signs,
+                                 __global float4* restrict film, TileSamples* tile) {}
+#endif
+
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global const u32* restrict pixels, __global float4* restrict film,
@@ -38,6 +54,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     float signs[BATCH];
     TileSamples tile;
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
+    set_tile_sums(launch, item, signs, film, &tile);
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);

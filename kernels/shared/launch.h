@@ -8,6 +8,11 @@ SUNDOG_SHARED_BEGIN
 // A listed pixel (x, y) of the image is x | y << 16, or NO_PIXEL.
 #define NO_PIXEL 0xffffffffu
 
+// Sums over the samples of a pixel, in float4, on request: the objects that cover it, then the materials, as
+// pairs (id + 1, share), (0, 0) where there is none.
+#define MATTE_RANKS 6u
+#define MATTE_VECTORS 6u
+
 // 52 bytes.
 typedef struct Launch {
   u32 x0, y0, width, height;  // the rectangle, in image pixels

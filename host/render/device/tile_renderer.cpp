@@ -59,7 +59,9 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
   kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
   kernels.only_general = options.kernels == KernelChoice::general;
-  kernels.wanted_aovs = {aov_vectors(options.aovs) == all_aov_vectors, shows_features(options.aovs)};
+  const AovLayout layout = aov_layout(options.aovs);
+  kernels.wanted_aovs = {layout.surfaces == all_aov_vectors, shows_features(options.aovs)};
+  kernels.mattes = layout.mattes;
   kernels.counts_rays = counts_rays(options.aovs);
   kernels.notes.clear();
   return kernels;
@@ -89,13 +91,15 @@ TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const Ren
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       photons_(scene),
       sizer_(limits_of(device.info(), kernels_), asked_, tuning_, marches_),
-      watch_(watch) {}
+      watch_(watch),
+      layout_(aov_layout(options.aovs)) {}
 
 void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions& options,
                                 RenderTimes& times) {
   const Tuning tuning = tuning_of(options, device_.info());
   const bool same_tuning = tuning == tuning_, same_group = options.work_group == asked_;
   options_ = &options;
+  layout_ = aov_layout(options.aovs);
   marches_ = !scene.sdf_fields.empty();
   tuning_ = tuning;
   asked_ = options.work_group;
@@ -162,10 +166,18 @@ double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& 
   return clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
 }
 
-void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs) {
-  const std::size_t pixels = pixel_count(tile), vectors = pixels * aov_vectors(options_->aovs);
+// Puts `from`, `count` a pixel, into the pixels' `vectors` float4 from `first` on.
+static void put_vectors(std::span<const float4> from, std::size_t count, std::size_t first,
+                        std::size_t vectors, std::vector<float4>& aovs) {
+  for (std::size_t i = 0; count > 0 && i < from.size() / count; ++i)
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(count * i), count,
+                aovs.begin() + static_cast<std::ptrdiff_t>(vectors * i + first));
+}
+
+void TileRenderer::look_at_surfaces(const TileRequest& request, TileResult& result) {
+  const Tile& tile = result.tile;
+  const std::size_t pixels = pixel_count(tile), vectors = pixels * layout_.surfaces;
   if (aovs_.count < vectors) aovs_ = device_.make<float4>(vectors);
-  aovs.resize(vectors);
   if (pixels == 0) return;
   constexpr double expected = 3;  // unknown, so only minutes count as stuck
   const WatchedLaunch watched(watch_, expected, !aovs_launched_,
@@ -177,7 +189,9 @@ void TileRenderer::launch_aovs(const TileRequest& request, const Tile& tile, std
       request.pixels.empty() ? 0u : 1u);
   device_.finish();
   aovs_launched_ = true;
-  device_.read(aovs_, std::span<float4>(aovs));
+  std::vector<float4> surfaces(vectors);
+  device_.read(aovs_, std::span<float4>(surfaces));
+  put_vectors(surfaces, layout_.surfaces, 0, layout_.vectors(), result.aovs);
 }
 
 // Checks that every sample was finished, because a driver may end a kernel's loops early without an error.
@@ -191,7 +205,7 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
         std::count(first, first + static_cast<std::ptrdiff_t>(pixels), static_cast<u32>(NO_PIXEL)));
   }
   const auto wanted = static_cast<u32>(pixels * samples_of(asked));
-  const auto aovs = wants_aovs(asked) ? static_cast<u32>(pixels) : 0u;
+  const auto aovs = looks(asked) ? static_cast<u32>(pixels) : 0u;
   if (fault(value_of(device_.info().environment).faults, "cut",
             fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
     finished = 0;
@@ -229,10 +243,9 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
 // Writes the initial values of the tile's samples: zero, or a pass's earlier samples.
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
-  if (film_.count < pixels) {
-    film_ = device_.make<float4>(pixels);
-    weights_ = device_.make<float>(pixels);
-  }
+  if (weights_.count < pixels) weights_ = device_.make<float>(pixels);
+  const std::size_t sums = wants_aovs(request) ? layout_.sums() : 0;
+  if (film_.count < (1 + sums) * pixels) film_ = device_.make<float4>((1 + sums) * pixels);
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
   if (!request.pixels.empty()) device_.begin_write(pixels_, std::span<const u32>(request.pixels));
@@ -244,12 +257,33 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   result.rays.resize(counted);
   if (request.first_sample > 0) {  // kernels initialise the others to 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
+    if (sums > 0) write_sums(request);
     device_.begin_write(weights_, std::span<const float>(request.weights));
     if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));
   }
   static constexpr LaunchCounts none{};
   if (counters_.count == 0) counters_ = device_.make<u32>(none.size());
   device_.begin_write(counters_, std::span<const u32>(none));
+}
+
+void TileRenderer::write_sums(const TileRequest& request) {
+  const std::size_t pixels = request.sums.size(), count = layout_.sums(), vectors = layout_.vectors();
+  std::vector<float4> sums(count * pixels);
+  for (std::size_t i = 0; i < pixels; ++i)
+    std::copy_n(request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * i + layout_.surfaces), count,
+                sums.begin() + static_cast<std::ptrdiff_t>(count * i));
+  device_.write(film_, std::span<const float4>(sums), pixels);
+}
+
+void TileRenderer::read_aovs(const TileRequest& request, TileResult& result) {
+  const std::size_t pixels = pixel_count(result.tile), whole = pixel_count(request.tile);
+  result.aovs = request.aovs;
+  result.aovs.resize(layout_.vectors() * pixels);
+  if (looks(request)) look_at_surfaces(request, result);
+  if (layout_.sums() == 0 || samples_of(request) == 0 || pixels == 0) return;
+  std::vector<float4> sums(layout_.sums() * pixels);
+  device_.read(film_, std::span<float4>(sums), whole);
+  put_vectors(sums, layout_.sums(), layout_.surfaces, layout_.vectors(), result.aovs);
 }
 
 // Waits once for all arrays.
@@ -275,7 +309,7 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
   write_start(request, result);
   const unsigned samples = samples_of(request);
   if (samples > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
-  if (wants_aovs(request)) launch_aovs(request, result.tile, result.aovs);
+  if (wants_aovs(request)) read_aovs(request, result);
   read_result(samples, result);
   return result;
 }

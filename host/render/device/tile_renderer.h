@@ -65,7 +65,9 @@ class TileRenderer {
   void read_result(unsigned samples, TileResult& result);
   unsigned launch_samples(const TileRequest& request, const StopFlags& flags);
   double launch_integrator(const Launch& launch, const SizedLaunch& sized);
-  void launch_aovs(const TileRequest& request, const Tile& tile, std::vector<float4>& aovs);
+  void write_sums(const TileRequest& request);
+  void read_aovs(const TileRequest& request, TileResult& result);
+  void look_at_surfaces(const TileRequest& request, TileResult& result);
   void check_finished(const TileRequest& asked, const TileResult& made);
   unsigned samples_of(const TileRequest& request) const {
     return request.in_pass ? request.sample_count : samples_;
@@ -73,6 +75,8 @@ class TileRenderer {
   bool wants_aovs(const TileRequest& request) const {
     return request.in_pass ? request.surfaces : show_surfaces(options_->aovs);
   }
+  /// First samples look for the surfaces.
+  bool looks(const TileRequest& request) const { return wants_aovs(request) && request.first_sample == 0; }
 
   Device& device_;
   const RenderOptions* options_;
@@ -86,9 +90,10 @@ class TileRenderer {
   PhotonMaps photons_;
   LaunchSizer sizer_;
   LaunchWatch& watch_;
+  AovLayout layout_;  // of the options
   bool aovs_launched_ = false;
   Buffer<u32> pixels_;
-  Buffer<float4> film_;
+  Buffer<float4> film_;  // the sums of a tile's pixels, then those of its AOVs
   Buffer<float> weights_;
   Buffer<float4> aovs_;
   Buffer<u32> rays_;  // per pixel if requested, else one

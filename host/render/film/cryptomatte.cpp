@@ -30,14 +30,14 @@ std::vector<std::string> completed(std::vector<std::string> names, std::string_v
   return names;
 }
 
-/// Two of the four pairs as a layer; what covers nothing has neither id nor share.
+/// Two of the pairs as a layer; what covers nothing has neither id nor share.
 Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::string>& names) {
   std::vector<float> ids;
   for (const std::string& name : names) ids.push_back(std::bit_cast<float>(id_bits(name)));
   Image layer(pairs.width, pairs.height, 4);
   for (std::size_t pixel = 0; pixel < layer.data.size() / 4; ++pixel)
     for (std::size_t pair = 0; pair < 2; ++pair) {
-      const float* from = &pairs.data[8 * pixel + 2 * (first + pair)];
+      const float* from = &pairs.data[static_cast<std::size_t>(pairs.channels) * pixel + 2 * (first + pair)];
       if (!(from[0] >= 0) || !(from[1] > 0)) continue;
       layer.data[4 * pixel + 2 * pair] = ids[std::min(static_cast<std::size_t>(from[0]), ids.size() - 1)];
       layer.data[4 * pixel + 2 * pair + 1] = from[1];
@@ -59,8 +59,8 @@ void split(AovImages& aovs, const std::string& kind, const std::vector<std::stri
   const std::vector<std::string> names = completed(known, kind);
   const Image pairs = std::move(found->second);
   aovs.erase(found);
-  aovs[name + "00"] = layer_of(pairs, 0, names);
-  aovs[name + "01"] = layer_of(pairs, 2, names);
+  for (int layer = 0; layer < pairs.channels / 4; ++layer)
+    aovs[fmt::format("{}{:02}", name, layer)] = layer_of(pairs, static_cast<std::size_t>(2 * layer), names);
   const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", hash_name(name)));
   texts.emplace_back(key + "name", name);
   texts.emplace_back(key + "hash", "MurmurHash3_32");

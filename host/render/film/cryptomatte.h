@@ -17,9 +17,9 @@ std::uint32_t hash_name(std::string_view name);
 /// denormal.
 std::uint32_t id_bits(std::string_view name);
 
-/// Replaces each of the AOVs crypto_object and crypto_material (Film::develop_aov(): four pairs of an index
-/// and the share of the pixel that it covers) by two layers of two pairs, crypto_object00 and
-/// crypto_object01, whose ids are those of the names. Returns what an EXR's header says of them: hash,
+/// Replaces each of the AOVs crypto_object and crypto_material (Film::develop_aov(): pairs of an index and
+/// the share of the pixel that it covers) by layers of two pairs, crypto_object00, crypto_object01 and so on,
+/// whose ids are those of the names. Returns what an EXR's header says of them: hash,
 /// conversion, and a manifest of all names. What has no name is called "object 3" or "material 3" by its
 /// index.
 ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,

@@ -1,22 +1,23 @@
 #include "render/film/film.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/error.h"
 
 namespace sundog {
 
-Film::Film(int width_, int height_, bool with_aovs, std::size_t vectors_)
-    : width(width_), height(height_), vectors(vectors_) {
+Film::Film(int width_, int height_, bool with_aovs, AovLayout layout_)
+    : width(width_), height(height_), layout(layout_) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   sums.resize(pixels);
   weights.resize(pixels);
   done.resize(pixels);
-  if (with_aovs) aovs.resize(vectors * pixels);
+  if (with_aovs) aovs.resize(layout.vectors() * pixels);
 }
 
 Film Film::with_aovs(int width, int height, const std::vector<std::string>& names) {
-  Film film(width, height, show_surfaces(names), aov_vectors(names));
+  Film film(width, height, show_surfaces(names), aov_layout(names));
   if (counts_rays(names)) film.rays.resize(film.done.size());
   return film;
 }
@@ -51,7 +52,7 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
                         std::span<const u32> tile_rays) {
   copy_rows(*this, tile, 1, tile_sums, sums);
   copy_rows(*this, tile, 1, tile_weights, weights);
-  if (!tile_aovs.empty()) copy_rows(*this, tile, vectors, tile_aovs, aovs);
+  if (!tile_aovs.empty()) copy_rows(*this, tile, layout.vectors(), tile_aovs, aovs);
   if (!tile_rays.empty()) copy_rows(*this, tile, 1, tile_rays, rays);
   std::uint64_t fresh = 0;
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
@@ -77,18 +78,45 @@ Image Film::develop(int channels) const {
 
 namespace {
 
-/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on.
+/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on, of mattes among these.
 struct AovPlace {
   const char* name;
   std::size_t first, count;
+  bool of_mattes = false;
 };
+constexpr std::size_t matte_floats = 2 * MATTE_RANKS;
 
-constexpr AovPlace places[] = {
-    {"depth", 3, 1},           {"normal", 0, 3},        {"position", 4, 3},
-    {"albedo", 8, 3},          {"object", 7, 1},        {"material", 11, 1},
-    {feature_albedo, 12, 3},   {feature_normal, 16, 3}, {"geometric_normal", 20, 3},
-    {"march_steps", 23, 1},    {"uv", 24, 2},           {"crypto_object", 28, 8},
-    {"crypto_material", 36, 8}};
+constexpr AovPlace places[] = {{"depth", 3, 1},
+                               {"normal", 0, 3},
+                               {"position", 4, 3},
+                               {"albedo", 8, 3},
+                               {"object", 7, 1},
+                               {"material", 11, 1},
+                               {feature_albedo, 12, 3},
+                               {feature_normal, 16, 3},
+                               {"geometric_normal", 20, 3},
+                               {"march_steps", 23, 1},
+                               {"uv", 24, 2},
+                               {"crypto_object", 0, matte_floats, true},
+                               {"crypto_material", matte_floats, matte_floats, true}};
+
+/// A pixel's pairs of id + 1 and sum of shares become pairs of id (-1: none) and coverage, the greatest
+/// first, of equal ones the smaller id.
+void rank_mattes(float* pairs, float weight) {
+  struct Pair {
+    float id, share;
+  };
+  std::array<Pair, MATTE_RANKS> ranks;
+  for (std::size_t k = 0; k < ranks.size(); ++k)
+    ranks[k] = {pairs[2 * k] - 1, weight > 0 ? pairs[2 * k + 1] / weight : 0};
+  for (Pair& rank : ranks)
+    if (!(rank.id >= 0) || !(rank.share > 0)) rank = {-1, 0};
+  std::ranges::sort(ranks, [](const Pair& a, const Pair& b) {
+    return a.share != b.share ? a.share > b.share : a.id < b.id;
+  });
+  for (std::size_t k = 0; k < ranks.size(); ++k)
+    pairs[2 * k] = ranks[k].id, pairs[2 * k + 1] = ranks[k].share;
+}
 
 const AovPlace* find_place(const std::string& name) {
   const auto* place =
@@ -112,13 +140,16 @@ bool show_surfaces(const std::vector<std::string>& names) {
   return std::ranges::any_of(names, [](const std::string& name) { return find_place(name) != nullptr; });
 }
 
-std::size_t aov_vectors(const std::vector<std::string>& names) {
-  std::size_t vectors = few_aov_vectors;
-  for (const std::string& name : names)
-    if (const AovPlace* place = find_place(name))
-      for (const std::size_t more : {feature_aov_vectors, all_aov_vectors})
-        if (place->first >= 4 * vectors) vectors = more;
-  return vectors;
+AovLayout aov_layout(const std::vector<std::string>& names) {
+  AovLayout layout;
+  for (const std::string& name : names) {
+    const AovPlace* place = find_place(name);
+    if (!place) continue;
+    layout.mattes |= place->of_mattes;
+    for (const std::size_t more : {feature_aov_vectors, all_aov_vectors})
+      if (!place->of_mattes && place->first >= 4 * layout.surfaces) layout.surfaces = more;
+  }
+  return layout;
 }
 
 bool shows_features(const std::vector<std::string>& names) {
@@ -128,7 +159,7 @@ bool shows_features(const std::vector<std::string>& names) {
 bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }
 
 std::size_t film_bytes(const std::vector<std::string>& names) {
-  const std::size_t aovs = show_surfaces(names) ? sizeof(float4) * aov_vectors(names) : 0;
+  const std::size_t aovs = show_surfaces(names) ? sizeof(float4) * aov_layout(names).vectors() : 0;
   return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
 }
 
@@ -140,14 +171,17 @@ Image Film::develop_aov(const std::string& name) const {
     return image;
   }
   const AovPlace* place = find_place(name);
-  if (!place || aovs.empty() || place->first >= 4 * vectors)
+  if (!place || aovs.empty() || (place->of_mattes ? !layout.mattes : place->first >= 4 * layout.surfaces))
     throw UsageError("no AOV is called '" + name + "'");
   Image image(width, height, static_cast<int>(place->count));
   const auto* floats = reinterpret_cast<const float*>(aovs.data());
-  for (std::size_t i = 0; i < done.size(); ++i)
-    if (done[i])
-      std::copy_n(floats + 4 * vectors * i + place->first, place->count,
-                  image.data.begin() + static_cast<std::ptrdiff_t>(place->count * i));
+  const std::size_t first = place->first + (place->of_mattes ? 4 * layout.surfaces : 0);
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (!done[i]) continue;
+    float* values = image.data.data() + place->count * i;
+    std::copy_n(floats + 4 * layout.vectors() * i + first, place->count, values);
+    if (place->of_mattes) rank_mattes(values, weights[i]);
+  }
   return image;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "shared/launch.h"
 #include "shared/types.h"
 
 namespace sundog {
@@ -20,9 +21,18 @@ struct Tile {
   friend bool operator==(const Tile&, const Tile&) = default;
 };
 
-/// float4 a pixel that hold AOVs: what passes ask for, these with a denoiser's features, and all that there
-/// are (kernels/entry/aov.cl).
-constexpr std::size_t few_aov_vectors = 3, feature_aov_vectors = 5, all_aov_vectors = 11;
+/// float4 a pixel that hold AOVs of first surfaces: what passes ask for, these with a denoiser's features,
+/// and all that there are (kernels/entry/aov.cl).
+constexpr std::size_t few_aov_vectors = 3, feature_aov_vectors = 5, all_aov_vectors = 7;
+
+/// The float4 of a pixel's AOVs: first those of surfaces, then sums over the samples (shared/launch.h).
+struct AovLayout {
+  std::size_t surfaces = few_aov_vectors;
+  bool mattes = false;
+  std::size_t sums() const { return mattes ? MATTE_VECTORS : 0; }
+  std::size_t vectors() const { return surfaces + sums(); }
+};
+constexpr std::size_t most_aov_vectors = all_aov_vectors + MATTE_VECTORS;
 
 struct Color {
   float r = 0, g = 0, b = 0;
@@ -41,11 +51,11 @@ inline float seen_light(const Color& color) {
   return std::max(color.r + color.g + color.b, darkest);
 }
 
-/// width * height pixels, row 0 at the top. `aovs` holds `vectors` float4 a pixel when the frame has AOVs
-/// of surfaces, else nothing.
+/// width * height pixels, row 0 at the top. `aovs` holds the layout's float4 a pixel when the frame has AOVs,
+/// else nothing.
 struct Film {
   int width = 0, height = 0;
-  std::size_t vectors = few_aov_vectors;
+  AovLayout layout;
   std::vector<float4> sums;    // rgb and coverage
   std::vector<float> weights;  // samples that count
   std::vector<float4> aovs;
@@ -53,12 +63,12 @@ struct Film {
   std::vector<std::uint8_t> done;  // 1: the pixel has all its samples
 
   Film() = default;
-  Film(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors);
+  Film(int width, int height, bool with_aovs, AovLayout layout = {});
   /// One that holds what these AOVs want.
   static Film with_aovs(int width, int height, const std::vector<std::string>& names);
   bool is_done(const Tile& tile) const;
-  /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: `vectors`
-  /// times; they and the rays may be empty). Returns how many of them were not done before.
+  /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: the
+  /// layout's vectors times; they and the rays may be empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
                     std::span<const float4> tile_aovs, std::span<const u32> tile_rays = {});
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
@@ -82,11 +92,11 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
 /// The AOVs `render` can make.
 const std::vector<std::string>& aov_names();
 
-/// Whether they show the pixels' first surfaces. The others come of the samples.
+/// Whether they need `aovs` of a film. The others come of the samples' sums alone.
 bool show_surfaces(const std::vector<std::string>& names);
 
-/// The vectors a pixel that these AOVs want, where they show surfaces.
-std::size_t aov_vectors(const std::vector<std::string>& names);
+/// What a pixel holds for these AOVs.
+AovLayout aov_layout(const std::vector<std::string>& names);
 
 /// Those that a denoiser takes: albedo and normal as the pixels' samples see them.
 constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "denoise_normal";

@@ -22,7 +22,7 @@ std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.ao
 
 /// Floats of an AOV's image.
 std::uint64_t aov_floats(const std::string& name) {
-  if (name.starts_with("crypto_")) return 8;
+  if (name.starts_with("crypto_")) return 2 * MATTE_RANKS;
   if (name == "uv") return 2;
   return name == feature_albedo || name == feature_normal || name == "geometric_normal" ||
                  name == "variance" || name == "normal" || name == "position" || name == "albedo"

@@ -42,7 +42,8 @@ constexpr std::size_t sample_bytes = sizeof(float4) + sizeof(float) + 1;  // sum
 void check_memory(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
                   std::size_t file_bytes) {
   const auto pixels = static_cast<std::uintmax_t>(pass.width) * static_cast<std::uintmax_t>(pass.height);
-  const std::size_t a_pixel = sample_bytes + (pass.surfaces ? sizeof(float4) * film.film.vectors : 0);
+  const std::size_t a_pixel =
+      sample_bytes + (pass.surfaces ? sizeof(float4) * film.film.layout.vectors() : 0);
   if (pixels * a_pixel > file_bytes)
     throw SceneError(path.string(), "",
                      fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes; remove it to "
@@ -52,7 +53,7 @@ void check_memory(const std::filesystem::path& path, const GrowingFilm& film, co
 
 /// More than a checkpoint of that frame has: a list of pixels is padded to rows of whole blocks.
 std::uintmax_t most_bytes(const GrowingFilm& film) {
-  constexpr std::uintmax_t of_film = sample_bytes + sizeof(float4) * all_aov_vectors + sizeof(u32),
+  constexpr std::uintmax_t of_film = sample_bytes + sizeof(float4) * most_aov_vectors + sizeof(u32),
                            of_growth = 4 * sizeof(u32) + sizeof(PixelState) + sizeof(float4);
   constexpr std::uintmax_t more = std::uintmax_t{1} << 16;
   return (2 * of_film + of_growth) * (film.taken.size() + more);

@@ -71,9 +71,10 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
 /// Puts pixel `i` of a pass into its place `p`.
 void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
   Film& whole = film.film;
+  const std::size_t vectors = whole.layout.vectors();
   if (pass.surfaces && !whole.aovs.empty())
-    std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(made.vectors * i), made.vectors,
-                whole.aovs.begin() + static_cast<std::ptrdiff_t>(whole.vectors * p));
+    std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * i), vectors,
+                whole.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p));
   if (pass.sample_count > 0)
     add_samples(film, pass, made, i, p);
   else if (film.states[p] == PixelState::empty)
@@ -150,8 +151,8 @@ void write_variance_around(const GrowingFilm& film, std::size_t p, float* varian
 
 }  // namespace
 
-GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors, bool with_earlier)
-    : film(width, height, with_aovs, vectors) {
+GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, AovLayout layout, bool with_earlier)
+    : film(width, height, with_aovs, layout) {
   taken.resize(film.done.size());
   states.resize(film.done.size());
   earlier.resize(with_earlier ? film.done.size() : 0);
@@ -161,7 +162,7 @@ GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, std::size_t vect
 }
 
 Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
-  Film made(pass.width, pass.height, surfaces, film.film.vectors);
+  Film made(pass.width, pass.height, surfaces, film.film.layout);
   if (!film.film.rays.empty() || pass.costs) made.rays.resize(made.done.size());
   return made;
 }
@@ -207,7 +208,7 @@ void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
                         if (found >= 0) add_pixel(film, pass, made, i, static_cast<std::size_t>(found));
                       }
                     });
-  if (pass.surfaces)
+  if (pass.surfaces && pass.first_sample == 0)
     for (std::size_t i = 0; i < made.done.size(); ++i)
       film.surfaces_seen += made.done[i] && image_index(film, pass, i) >= 0;
   film.stage += complete;

@@ -17,7 +17,7 @@ struct Pass {
   int width = 0, height = 0;
   std::vector<u32> pixels;  // of the image, x | y << 16, or NO_PIXEL; empty: the image's own
   u32 first_sample = 0, sample_count = 0;
-  bool surfaces = false, costs = false;
+  bool surfaces = false, costs = false;  // `surfaces`: AOVs, of which first samples look for the surfaces
 };
 
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
@@ -72,8 +72,7 @@ struct GrowingFilm {
 
   GrowingFilm() = default;
   /// `with_earlier`: for pixel_errors(), develop_variance() and checkpoints.
-  GrowingFilm(int width, int height, bool with_aovs, std::size_t vectors = few_aov_vectors,
-              bool with_earlier = true);
+  GrowingFilm(int width, int height, bool with_aovs, AovLayout layout = {}, bool with_earlier = true);
 };
 
 /// An empty film of the pass's size, which holds what the frame's does.

@@ -97,7 +97,7 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
 
 /// Copies the pixels that are done.
 void add(Film& whole, const Film& part) {
-  const std::size_t aovs = whole.aovs.empty() ? 0 : whole.vectors;
+  const std::size_t aovs = whole.aovs.empty() ? 0 : whole.layout.vectors();
   for (std::size_t i = 0; i < part.done.size(); ++i) {
     if (!part.done[i]) continue;
     whole.sums[i] = part.sums[i];

@@ -125,8 +125,8 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
                      {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
   const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
-  bytes.reserve(bytes.size() + film.done.size() + done * (20 + (film.aovs.empty() ? 0 : 16 * film.vectors)) +
-                checksum_digits);
+  bytes.reserve(bytes.size() + film.done.size() +
+                done * (20 + (film.aovs.empty() ? 0 : 16 * film.layout.vectors())) + checksum_digits);
   bytes.append(reinterpret_cast<const char*>(film.done.data()), film.done.size());
   append_done(bytes, film.sums, film.done);
   append_done(bytes, film.weights, film.done);

@@ -69,6 +69,8 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
   request.sums.resize(pixels);
   request.weights.resize(pixels);
   request.rays.resize(film.film.rays.empty() ? 0 : pixels);
+  const std::size_t vectors = pass.surfaces ? film.film.layout.vectors() : 0;
+  request.aovs.resize(vectors * pixels);
   for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) {
     prefetch_sums(film, pass, i + pixels_ahead);
     const std::int64_t found = image_index(film, pass, i);
@@ -77,6 +79,8 @@ TileRequest request_of(Frame& frame, const Tile& tile) {
     request.sums[at] = film.film.sums[p];
     request.weights[at] = film.film.weights[p];
     if (!request.rays.empty()) request.rays[at] = film.film.rays[p];
+    std::copy_n(film.film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
+                request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * at));
   });
   return request;
 }

@@ -24,7 +24,8 @@ struct TileRequest {
   bool costs = false;                      // rays, at least of each work-item's pixels together
   std::vector<float4> sums;                // of each pixel's earlier samples; empty: none
   std::vector<float> weights;
-  std::vector<u32> rays;  // of each pixel so far, where they are counted
+  std::vector<u32> rays;     // of each pixel so far, where they are counted
+  std::vector<float4> aovs;  // of each pixel so far, where `surfaces` holds sums over samples
 };
 
 /// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped

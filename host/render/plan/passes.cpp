@@ -97,10 +97,12 @@ std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& 
   u32 next = std::min(2 * level, plan.samples);
   const bool adaptive = plan.settings.threshold > 0;
   if (adaptive && level < first_level(plan)) next = std::min(next, first_level(plan));
-  if (!adaptive || level < first_level(plan)) return whole_pass(film, level, next - level, false);
+  if (!adaptive || level < first_level(plan)) return whole_pass(film, level, next - level, plan.sums);
   const std::vector<u32> pixels = unconverged(film, plan, last, level, next - level);
   if (pixels.empty()) return std::nullopt;
-  return list_pass(pixels, level, next - level);
+  Pass pass = list_pass(pixels, level, next - level);
+  pass.surfaces = plan.sums;
+  return pass;
 }
 
 std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {

@@ -13,6 +13,7 @@ struct SamplingPlan {
   u32 samples = 1;        // maximum per pixel
   double noise = 0;       // the frame ends when its mean error is below; 0: never
   bool surfaces = false;  // AOVs are needed for every pixel
+  bool sums = false;      // and have sums over all of its samples
 };
 
 /// Whether a frame is rendered in passes.

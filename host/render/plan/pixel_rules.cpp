@@ -14,7 +14,8 @@ float contrast(const Color& a, const Color& b) {
 }
 
 bool same_surface(const Film& film, std::size_t a, std::size_t b, float least_cosine) {
-  const float4 *of_a = &film.aovs[film.vectors * a], *of_b = &film.aovs[film.vectors * b];
+  const std::size_t vectors = film.layout.vectors();
+  const float4 *of_a = &film.aovs[vectors * a], *of_b = &film.aovs[vectors * b];
   if (of_a[1].w != of_b[1].w || of_a[2].w != of_b[2].w) return false;
   if (of_a[1].w < 0) return true;  // both see the background
   constexpr float same_albedo = 0.02f;

@@ -110,6 +110,17 @@ std::vector<u32> near_surprises(const Grid& grid) {
   });
 }
 
+/// An interpolated pixel shows the same surface as its corners: one of them says what covers it.
+void take_sums(Film& film, std::size_t corner, std::size_t p) {
+  if (film.layout.sums() == 0) return;
+  const float share = film.sums[corner].w > 0 ? film.sums[p].w / film.sums[corner].w : 0;
+  float4* pixel = &film.aovs[film.layout.vectors() * p + film.layout.surfaces];
+  const float4* of = &film.aovs[film.layout.vectors() * corner + film.layout.surfaces];
+  // Of each pair the first is an id.
+  for (std::size_t k = 0; k < film.layout.sums(); ++k)
+    pixel[k] = {of[k].x, of[k].y * share, of[k].z, of[k].w * share};
+}
+
 /// Sets pixels without samples to the mean of those corners that have some.
 void interpolate(GrowingFilm& film, const Grid& grid) {
   for (int y = 0; y < grid.height; ++y)
@@ -124,16 +135,21 @@ void interpolate(GrowingFilm& film, const Grid& grid) {
         coverage += 0.25f * film.film.sums[corner].w / std::max(film.film.weights[corner], 1.0f);
       film.film.sums[p] = {color.r, color.g, color.b, coverage};
       film.film.weights[p] = 1;
+      take_sums(film.film, grid.corners(x, y)[0], p);
       film.film.done[p] = 1;
       film.states[p] = PixelState::interpolated;
     }
 }
 
+Pass first_samples(const std::vector<u32>& pixels, u32 samples, bool surfaces) {
+  Pass pass = list_pass(pixels, 0, samples);
+  pass.surfaces = surfaces;
+  return pass;
+}
+
 Pass corner_pass(const GrowingFilm& film, u32 samples) {
   const Grid grid{film, 0};
-  Pass pass = list_pass(pick_any(grid, [&](int x, int y) { return grid.is_corner(x, y); }), 0, samples);
-  pass.surfaces = true;
-  return pass;
+  return first_samples(pick_any(grid, [&](int x, int y) { return grid.is_corner(x, y); }), samples, true);
 }
 
 }  // namespace
@@ -152,22 +168,18 @@ std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan&
     const std::vector<u32> look = pick(grid, [&](int x, int y) {
       return unseen(grid.at(x, y)) && (plan.surfaces || grid.between_alike(x, y));
     });
-    if (!look.empty()) {
-      Pass pass = list_pass(look, 0, 0);
-      pass.surfaces = true;
-      return pass;
-    }
+    if (!look.empty()) return first_samples(look, 0, true);
   }
   if (film.step == 2) {
     ++film.step;
     const std::vector<u32> other = pick(grid, [&](int x, int y) {
       return !grid.between_alike(x, y) || (!unseen(grid.at(x, y)) && !fits_corners(grid, x, y));
     });
-    if (!other.empty()) return list_pass(other, 0, plan.samples);
+    if (!other.empty()) return first_samples(other, plan.samples, plan.sums);
   }
   ++film.step;
   const std::vector<u32> more = near_surprises(grid);
-  if (!more.empty()) return list_pass(more, 0, plan.samples);
+  if (!more.empty()) return first_samples(more, plan.samples, plan.sums);
   interpolate(film, grid);
   return std::nullopt;
 }

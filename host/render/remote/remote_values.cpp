@@ -52,13 +52,14 @@ PackedTile pack_request(const TileRequest& request) {
   packed.values = {{"tile", request.tile}};
   if (!request.in_pass) return packed;
   packed.values["pass"] = {{"pixels", request.pixels.size()}, {"sums", request.sums.size()},
-                           {"rays", request.rays.size()},     {"first", request.first_sample},
-                           {"count", request.sample_count},   {"surfaces", request.surfaces},
-                           {"costs", request.costs}};
+                           {"rays", request.rays.size()},     {"aovs", request.aovs.size()},
+                           {"first", request.first_sample},   {"count", request.sample_count},
+                           {"surfaces", request.surfaces},    {"costs", request.costs}};
   append(packed.data, request.pixels, request.pixels.size());
   append(packed.data, request.sums, request.sums.size());
   append(packed.data, request.weights, request.weights.size());
   append(packed.data, request.rays, request.rays.size());
+  append(packed.data, request.aovs, request.aovs.size());
   return packed;
 }
 
@@ -74,14 +75,17 @@ TileRequest unpack_request(const nlohmann::json& values, const std::string& data
   request.costs = pass.at("costs").get<bool>();
   const std::size_t all = pixel_count(request.tile);
   const std::size_t pixels = none_or_all(pass.at("pixels"), all), sums = none_or_all(pass.at("sums"), all),
-                    rays = none_or_all(pass.at("rays"), all);
-  if (data.size() != (pixels + rays) * sizeof(u32) + sums * (sizeof(float4) + sizeof(float)))
+                    rays = none_or_all(pass.at("rays"), all), aovs = pass.at("aovs").get<std::size_t>();
+  if (aovs > most_aov_vectors * all || (all > 0 && aovs % all != 0) ||
+      data.size() !=
+          (pixels + rays) * sizeof(u32) + sums * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4))
     throw DeviceError("a tile was asked for with too many or too few bytes");
   std::size_t at = 0;
   request.pixels = take<u32>(data, at, pixels);
   request.sums = take<float4>(data, at, sums);
   request.weights = take<float>(data, at, sums);
   request.rays = take<u32>(data, at, rays);
+  request.aovs = take<float4>(data, at, aovs);
   return request;
 }
 
@@ -108,7 +112,8 @@ TileResult unpack_tile(const nlohmann::json& values, const std::string& data, co
   const std::size_t pixels = pixel_count(result.tile);
   const bool surfaces = request.in_pass ? request.surfaces : show_surfaces(aov_names);
   const bool counted = counts_rays(aov_names) || (request.in_pass && request.costs);
-  const std::size_t aovs = none_or_all(values.at("aovs"), surfaces ? aov_vectors(aov_names) * pixels : 0),
+  const std::size_t aovs = none_or_all(values.at("aovs"),
+                                       surfaces ? aov_layout(aov_names).vectors() * pixels : 0),
                     rays = none_or_all(values.at("rays"), counted ? pixels : 0);
   if (data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4) + rays * sizeof(u32))
     throw DeviceError("a tile came with too many or too few bytes");

@@ -51,11 +51,12 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
                          const RenderOptions& options, std::uint64_t key, Film& film) {
   FramePasses passes;
   const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
-  passes.plan = {scene->sampling, scene->info.samples, options.noise, show_surfaces(options.aovs)};
+  passes.plan = {scene->sampling, scene->info.samples, options.noise, show_surfaces(options.aovs),
+                 aov_layout(options.aovs).sums() > 0};
   const bool with_earlier = options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
                             !checkpoint_path(options).empty();
   passes.film = GrowingFilm(width, height, show_surfaces(options.aovs) || needs_surfaces(scene->sampling),
-                            aov_vectors(options.aovs), with_earlier);
+                            aov_layout(options.aovs), with_earlier);
   if (counts_rays(options.aovs)) passes.film.film.rays.resize(passes.film.taken.size());
   passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
     return plan_tiles(options, of_pass, shares);

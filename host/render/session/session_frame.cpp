@@ -45,7 +45,7 @@ FramePasses passes_of(const FrameOrder& order, const RenderOptions& options) {
   const SceneInfo& info = order.scene->info;
   passes.plan = sampling_of(*order.scene);
   passes.film = GrowingFilm(static_cast<int>(info.width), static_cast<int>(info.height),
-                            needs_surfaces(order.scene->sampling), few_aov_vectors, false);
+                            needs_surfaces(order.scene->sampling), AovLayout(), false);
   std::vector<double> estimates;
   for (const auto& server : order.servers) estimates.push_back(server->info().estimate);
   passes.tiles = [options, estimates](const Film& film) { return plan_tiles(options, film, estimates); };

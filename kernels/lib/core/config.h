@@ -81,6 +81,11 @@
 #define HAS_RAY_COUNTS 0
 #endif
 
+// Whether the integrator notes which objects and materials cover its pixels.
+#ifndef HAS_MATTES
+#define HAS_MATTES 0
+#endif
+
 // Whether rays carry the pixel's cone, for texture filtering.
 #define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
 

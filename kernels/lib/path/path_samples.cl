@@ -11,6 +11,11 @@ typedef struct TileSamples {
   u32 seed;
 #endif
   u32 sample;
+#if HAS_MATTES
+  __global float4* sums;  // of the launch's pixels, see sample_sums()
+  MASK place;             // of the tile's pixels among those
+  REAL sign;              // what their samples count
+#endif
 } TileSamples;
 
 #if HAS_RANDOM

@@ -2,6 +2,7 @@
 #ifndef SUNDOG_LIB_TILE_CL
 #define SUNDOG_LIB_TILE_CL
 #include "lib/core/lanes.h"
+#include "lib/path/mattes.cl"
 #include "shared/launch.h"
 #include "shared/scene.h"
 
@@ -84,6 +85,7 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
       const u32 pixel = pixel_of_tile(launch, corner, lane);
       film[pixel] = (float4)(0.0f);
       weights[pixel] = 0.0f;
+      clear_sample_sums(launch, film, pixel);
       if (launch->counts_rays) rays[pixel] = 0u;
     }
     return;
@@ -94,6 +96,7 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
     const u32 pixel = at.y * launch->width + at.x;
     film[pixel] = (float4)(0.0f);
     weights[pixel] = 0.0f;
+    clear_sample_sums(launch, film, pixel);
     if (launch->counts_rays) rays[pixel] = 0u;
   }
 }

@@ -169,13 +169,11 @@ static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK act
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
-// next_surfaces() including reliefs: moves them to their next visible surfaces. The rays of `camera` pass
-// objects that are hidden from them.
-static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
-                                Encounters* met, u32* counts) {
-  MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);
-  waiting |= pass_hidden(scene, rays, met, active & ~waiting & camera);
-  while ((HAS_MEDIA || HAS_EMISSION) && any_lane(waiting)) {
+// Moves rays that wait behind surfaces which they do not see to their next visible ones. Those of `camera`
+// pass objects that are hidden from them.
+static inline void see_behind(const Scene* scene, SceneRays* rays, MASK waiting, MASK camera, Encounters* met,
+                              u32* counts) {
+  while (any_lane(waiting)) {
     Encounters next;
     nearest_hits(scene, rays, waiting, false, &next.hit, counts);
     enter_reliefs(scene, rays, waiting, &next, counts);
@@ -184,6 +182,14 @@ static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active
     const MASK unseen = cross_unseen(scene, rays, met, waiting, counts);
     waiting = unseen | pass_hidden(scene, rays, met, waiting & ~unseen & camera);
   }
+}
+
+// next_surfaces() including reliefs: moves the lanes of `active` to their next visible surfaces.
+static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
+                                Encounters* met, u32* counts) {
+  MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);
+  waiting |= pass_hidden(scene, rays, met, active & ~waiting & camera);
+  if (HAS_MEDIA || HAS_EMISSION) see_behind(scene, rays, waiting, camera, met, counts);
 }
 
 #endif

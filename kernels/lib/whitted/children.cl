@@ -11,10 +11,29 @@
 #include "lib/shade/relief_hits.cl"
 #include "lib/shade/rough.cl"
 
+// The surfaces of `lanes` cover so many times (1 or -1) the part of the pixels that the rays, those that run
+// straight on from the camera, have of the light behind the scene.
+#if HAS_MATTES
+static inline void add_mattes(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
+                              const SurfaceInteractions* s, MASK lanes, float times) {
+  const REAL3 t = paths->throughput;
+  const REAL passed = (t.x + t.y + t.z) * (times / 3.0f);
+  for (u32 bits = lane_bits(lanes & MASK_OF((paths->depth & TURNED) == 0)); bits; bits &= bits - 1u) {
+    const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
+    add_matte(scene, tile->sums + (u32)MASK_LANE(tile->place, pixel) * SAMPLE_VECTORS,
+              MASK_LANE(s->instance, i), MASK_LANE(s->material, i),
+              REAL_LANE(tile->sign, pixel) * REAL_LANE(passed, i));
+  }
+}
+#else
+static inline void add_mattes(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
+                              const SurfaceInteractions* s, MASK lanes, float times) {}
+#endif
+
 #if HAS_SECONDARY
 // Puts children on the stack, those of `lanes` that are not too weak, nor too deep, nor without room; each
-// case is counted.
-NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack, const SceneRays* rays,
+// case is counted. Returns those that it put there.
+NEVER_INLINE MASK spawn(__global const SceneInfo* restrict info, RayStack* stack, const SceneRays* rays,
                         const WaitingRays* paths, MASK lanes, u32 kind, u32* counts) {
   const REAL weight = greatest3(paths->throughput);
   const MASK some = lanes & MASK_OF(weight > 0.0f);
@@ -28,10 +47,11 @@ NEVER_INLINE void spawn(__global const SceneInfo* restrict info, RayStack* stack
     counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
     bits &= bits - 1u;
   }
-  if (!bits) return;
+  if (!bits) return NO_LANES;
   counts[kind] += popcount(bits);
   note_rays(paths->pixel, lanes_of(bits), counts);
   push_rays(stack, rays, paths, lanes_of(bits));
+  return lanes_of(bits);
 }
 
 // What rays meet at surfaces: rough ones have facets there, others are their own.
@@ -117,7 +137,8 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   const MASK bends = MASK_OF(split.eta != 1.0f);
   cross_further(rays, &child, free);
   state.depth = select(paths->depth + 1, (paths->depth + 1) | TURNED, bends) + free;
-  spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
+  const MASK gone = spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
+  add_mattes(scene, tile, &state, s, gone, -1.0f);
   return nothing;
 }
 #else

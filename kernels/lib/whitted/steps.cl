@@ -71,6 +71,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
                                  WaitingRays* paths, MASK lanes, MASK unseen, MASK fresh,
                                  const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
                                  float4* radiance, u32* counts) {
+  const WaitingRays arriving = *paths;
   REAL3 seen = see_glow(rays, paths);
   paths->throughput = multiply3(paths->throughput, met->absorbed);
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
@@ -79,6 +80,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   seen = select3(seen, add3(seen, see_background(scene, rays, paths, ended & ~hit, radiance)), ended & ~hit);
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
+    add_mattes(scene, tile, &arriving, &at->s, hit & fresh, 1.0f);
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
     if (HAS_EMISSION) seen = add3(seen, see_emission(scene, paths, &at->s, &at->bsdf, hit));
     const MASK nothing =

@@ -80,6 +80,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
 ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, UNIFORM bool coherent,
                             UNIFORM u32* counts) {
   Encounter met;
+  if (HAS_MATTES) path->matte = 0.0f;
   const BegunRay begun = begun_ray_of(ray);
   bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
@@ -127,6 +128,11 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
       light += kept_hero(scene, &at, &lobes.split, path, gather_photons(scene, path, ray, &at, &lobes));
   }
   path->radiance += light;
-  if (deep && !free) return false;
-  return scatter(scene, &met, &at, &lobes, free, path, ray, counts);
+  if (deep && !free) {
+    note_matte(path, &at.s, false);
+    return false;
+  }
+  const bool going = scatter(scene, &met, &at, &lobes, free, path, ray, counts);
+  note_matte(path, &at.s, going);
+  return going;
 }

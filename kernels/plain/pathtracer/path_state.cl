@@ -24,6 +24,9 @@ typedef struct PathState {
   SampledWavelengths wavelengths;
   HAVING(HAS_CAUSTICS) int gathered;           // GATHERED_*
   HAVING(HAS_CAUSTICS) float3 narrow;          // the part of the throughput by narrow lobes of what gathered
+  HAVING(HAS_MATTES) float clear;              // of the background, straight on, behind its last surface
+  HAVING(HAS_MATTES) float matte;              // what the last surface took of that
+  HAVING(HAS_MATTES) int instance, material;   // of that surface
   HAVING(HAS_SCATTERING) Scattered scattered;  // the density is then of the place there and of the direction
 } PathState;
 
@@ -47,8 +50,25 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   path.at = *at;
   path.wavelengths = choose_wavelengths(scene, at);
   if (HAS_SCATTERING) path.scattered.is = false;
+  if (HAS_MATTES) {
+    path.clear = 1.0f;
+    path.matte = 0.0f;
+    path.instance = 0;
+    path.material = 0;
+  }
   forget_gathered(&path);
   return path;
+}
+
+// The surface covers what does not go further straight on. `going`: the path continues.
+static inline void note_matte(PathState* path, const SurfaceInteraction* s, bool going) {
+  if (HAS_MATTES) {
+    const float clear = going && path->straight ? spectrum_mean(path->throughput) : 0.0f;
+    path->matte = path->clear - clear;
+    path->clear = clear;
+    path->instance = s->instance;
+    path->material = s->material;
+  }
 }
 
 // The alpha of the path's sample: 1, or the part of the background that it has lost on a straight way there.

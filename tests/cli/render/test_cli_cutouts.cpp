@@ -1,0 +1,95 @@
+// What the picture sees, every AOV sees: through what is cut away, and behind one-sided faces.
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/image_io.h"
+#include "catch.h"
+#include "cli_scene.h"
+#include "render/film/cryptomatte.h"
+
+using namespace sundog;
+
+namespace {
+
+/// In the left half a screen that is cut away, in the right half one that is seen from its missing side; a
+/// wall is behind the upper half of both.
+constexpr const char* screens = R"({
+  "camera": {"position": [0, 0, 10], "target": [0, 0, 0], "fov": 20},
+  "image": {"width": 24, "height": 16},
+  "render": {"samples": 4},
+  "lights": [{"type": "point", "position": [0, 3, 9]}],
+  "materials": {
+    "hole": {"color": [1, 0, 0], "opacity": 0},
+    "front": {"color": [1, 0, 0], "sides": "front"},
+    "white": {"color": [0.75, 0.5, 0.25], "diffuse": 1, "ambient": 0}
+  },
+  "objects": [
+    {"name": "hole", "type": "rectangle", "size": [9, 9], "center": [-4.5, 0, 2], "normal": [0, 0, 1],
+     "material": "hole"},
+    {"name": "back", "type": "rectangle", "size": [9, 9], "center": [4.5, 0, 2], "normal": [0, 0, -1],
+     "material": "front"},
+    {"name": "wall", "type": "box", "min": [-9, 0, -2], "max": [9, 9, -1], "material": "white"}
+  ]
+})";
+
+}  // namespace
+
+TEST_CASE("AOVs, mattes, alpha and the denoiser's features see through what is cut away") {
+  const CliFolder folder;
+  const std::string scene = folder.write("screens.json", screens).string();
+  for (const char* integrator : {"whitted", "path"}) {
+    CAPTURE(integrator);
+    std::vector<std::string> command{"render",  scene,          "-o",       folder.file("a.exr"), "--float",
+                                     "--quiet", "--integrator", integrator, "--device",           "0:0"};
+    for (const char* name :
+         {"depth", "object", "material", "normal", "albedo", "position", "denoise_albedo", "crypto_object"})
+      command.insert(command.end(), {"--aov", name});
+    const CommandResult result = run_sundog(command);
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const AovImages aovs = read_aovs(folder / "a.exr");
+    const Image picture = read_image(folder / "a.exr");
+    const auto at = [&](const char* name, int x, int y, int c = 0) { return aovs.at(name).pixel(x, y)[c]; };
+    for (const int x : {4, 19}) {
+      CAPTURE(x);
+      CHECK(at("object", x, 3) == 2);
+      CHECK(at("material", x, 3) == 2);
+      CHECK(at("depth", x, 3) == Approx(11));
+      CHECK(at("position", x, 3, 2) == Approx(-1));
+      CHECK(at("normal", x, 3, 2) == Approx(1));
+      CHECK(at("albedo", x, 3) == Approx(0.75));
+      CHECK(at("denoise_albedo", x, 3, 1) == Approx(0.5));
+      CHECK(at("crypto_object00", x, 3) == std::bit_cast<float>(id_bits("wall")));
+      CHECK(at("crypto_object00", x, 3, 1) == Approx(1));
+      CHECK(picture.pixel(x, 3)[3] == 1);
+      CHECK(at("object", x, 12) == -1);
+      CHECK(std::isinf(at("depth", x, 12)));
+      CHECK(at("denoise_albedo", x, 12) == 0);
+      CHECK(at("crypto_object00", x, 12, 1) == 0);
+      CHECK(picture.pixel(x, 12)[3] == 0);
+    }
+  }
+}
+
+TEST_CASE("--subsample keeps what stands behind a cut-out in the middle of a single pixel") {
+  const CliFolder folder;
+  nlohmann::json scene = nlohmann::json::parse(screens);
+  scene["render"]["samples"] = 1;
+  // A pixel is 20 tan(10 degrees) / 16 wide at z = 0; these are smaller, in middles of pixels in odd places.
+  const double pixel = 20 * std::tan(0.17453292519943295) / 16;
+  for (const int x : {3, 19})
+    scene["objects"].push_back({{"type", "sphere"},
+                                {"radius", 0.3 * pixel},
+                                {"center", {(x + 0.5 - 12) * pixel, (8 - 12.5 - 1) * pixel, 0}},
+                                {"material", "white"}});
+  const std::string file = folder.write("dots.json", scene.dump()).string();
+  const CommandResult result =
+      run_sundog({"render", file, "-o", folder.file("a.exr"), "--subsample", "--quiet"});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  const Image picture = read_image(folder / "a.exr");
+  CHECK(picture.pixel(3, 13)[3] == 1);
+  CHECK(picture.pixel(19, 13)[3] == 1);
+  CHECK(picture.pixel(5, 13)[3] == 0);
+}
