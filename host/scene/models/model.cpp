@@ -55,7 +55,7 @@ std::string unread_text(const std::vector<std::string>& features) {
 }
 
 Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
-  if (source.bytes.empty()) throw SceneError(path.string(), "", "the file is empty");
+  if (source.bytes.empty()) models::fail(source, "", "the file is empty");
   if (extension == ".obj") return models::load_obj(source, options);
   if (extension == ".ply") return models::load_ply(source, options);
   if (extension == ".stl") return models::load_stl(source, options);
