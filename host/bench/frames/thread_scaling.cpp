@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "bench/frames/frame_runner.h"
 #include "bench/plain/whitted.h"
+#include "bench/runs/ratio.h"
 
 namespace sundog {
 namespace {
@@ -116,14 +117,15 @@ const Subject* ThreadTimes::find(int size, unsigned threads) const {
   return nullptr;
 }
 
-/// How many times as fast as one thread; where the least count is greater, that one counts as ideal.
+/// How many times as fast as one thread, with the interval of pairs of runs in turn; where the least count is
+/// greater, that one counts as ideal.
 std::optional<Spread> ThreadTimes::speed_up(int size, unsigned count) const {
   const Subject *one = find(size, plan_.counts.front()), *many = find(size, count);
   if (!one || !many) return {};
-  const Spread seconds = many->seconds();
-  const Interval interval = median_interval(seconds);
-  const double base = plan_.counts.front() * one->seconds().median;
-  return Spread{base / seconds.median, base / interval.high, base / interval.low};
+  const double base = plan_.counts.front(), value = base * one->seconds().median / many->seconds().median;
+  const Ratio pairs = paired_ratio(one->runs, many->runs);
+  if (!pairs.is_known()) return Spread{value, value, value};
+  return Spread{value, std::min(value, base / pairs.high), std::max(value, base / pairs.low)};
 }
 
 /// A row a size and a column a count, of what `cell` makes of them.

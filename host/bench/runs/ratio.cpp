@@ -34,7 +34,9 @@ Interval wide_range(const Calls& calls) {
 }  // namespace
 
 const char* Ratio::verdict() const {
-  return !is_known() || (low <= 1 && high >= 1) ? "not told apart" : high < 1 ? "faster" : "slower";
+  return !is_known() || !is_enough || (low <= 1 && high >= 1) ? "not told apart"
+         : high < 1                                           ? "faster"
+                                                              : "slower";
 }
 
 Ratio paired_ratio(const std::vector<Run>& base, const std::vector<Run>& other) {
@@ -45,9 +47,7 @@ Ratio paired_ratio(const std::vector<Run>& base, const std::vector<Run>& other) 
   if (ratios.empty()) return {};
   const Spread found = spread(ratios);
   const Interval interval = median_interval(found);
-  if (ratios.size() < fewest)
-    return {found.median, std::min(1.0, interval.low), std::max(1.0, interval.high)};
-  return {found.median, interval.low, interval.high};
+  return {found.median, interval.low, interval.high, ratios.size() >= fewest};
 }
 
 Ratio ratio_of_calls(const Calls& base, const Calls& other) {

@@ -9,6 +9,7 @@ namespace sundog {
 /// How many times the time of `base` another way takes, with bounds that hold it with 95 % confidence.
 struct Ratio {
   double value = 0, low = 0, high = 0;
+  bool is_enough = true;  // runs for an interval of 95 %, and so for a verdict
 
   bool is_known() const { return value > 0; }
   /// Of the other way: "faster", "slower" or "not told apart".

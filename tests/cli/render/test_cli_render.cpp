@@ -213,6 +213,9 @@ TEST_CASE("the times of --stats add up to the total") {
   CHECK(sum == Approx(stats["seconds"]["total"].get<double>()));
   CHECK(stats["kernels_cached"].is_boolean());
   CHECK(stats["peak_memory"].get<std::uint64_t>() > (1u << 20));
+  // Joules, or why there are none.
+  const json& energy = stats["energy"];
+  CHECK(energy["joules"].is_null() == energy["counted_by"].get<std::string>().starts_with("not known: "));
   REQUIRE(stats["devices"].size() == 1);
   const json& device = stats["devices"][0];
   CHECK(device["tiles"] > 0);
