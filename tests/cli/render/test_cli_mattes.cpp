@@ -65,8 +65,7 @@ TEST_CASE("coverages of objects and of materials sum to alpha, through lens, mot
       {}, {"--filter", "gaussian"}, {"--adaptive", "0.05", "--samples", "64"}};
   for (const char* integrator : {"whitted", "path"})
     for (std::vector<std::string> way : ways) {
-      if (!way.empty()) CAPTURE(way[0]);
-      CAPTURE(integrator);
+      CAPTURE(integrator, way);
       way.insert(way.end(), {"--integrator", integrator});
       folder.render(way);
       const AovImages aovs = read_aovs(folder / "a.exr");
