@@ -170,6 +170,7 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
   const bool glass = opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
   MaterialDescription out;
   out.name = m.name;
+  if (m.diffuse) out.ambient *= *m.diffuse / out.diffuse;  // without Ka: of Kd's colour
   out.ambient = m.ambient.value_or(out.ambient);
   out.diffuse = m.diffuse.value_or(out.diffuse);
   out.specular = m.specular.value_or(out.specular);

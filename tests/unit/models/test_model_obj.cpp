@@ -229,6 +229,11 @@ TEST_CASE("MTL's opaque materials become phong", "[models]") {
   CHECK(m.transmission == dvec3(0));
 }
 
+TEST_CASE("a material without Ka reflects ambient light in the colour of Kd", "[models]") {
+  CHECK(material_of("Kd .8 0 .4").ambient == dvec3(.1, 0, .05));
+  CHECK(material_of("Ks .5").ambient == MaterialDescription().ambient);
+}
+
 TEST_CASE("MTL's illumination 3 mirrors with Ks", "[models]") {
   CHECK(material_of("Ks .5 .6 2\nillum 3").reflection == dvec3(.5, .6, 1));
 }
