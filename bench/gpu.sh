@@ -1,107 +1,195 @@
 #!/bin/bash
-# All that is worth knowing of sundog on one device, most of all a GPU, by one command:
-#   bench/gpu.sh [--device SPEC] [--quick] OUT_DIR MODEL...
-# What the device is; of each kernel its group sizes, memory, registers and spills, and the build logs; rays a second
-# by kind with both tracers; times by work-group size; the same rays through Embree on the host's cores and
-# through tinybvh's OpenCL kernels, where these programs were built (cmake -DSUNDOG_TINYBVH=CHECKOUT). On
-# NVIDIA's devices kernels and rays once more with registers limited to 128 and 64. Each part leaves a table (.txt), figures
-# (.json) and what it said on the way (.log) in OUT_DIR; one that fails does not keep the others from running.
-# SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.
-# SUNDOG_BUILD: the folder with the programs (build/release). GPU_PART_LIMIT: seconds a part may take (900).
+# All that is worth knowing of sundog on one device, most of all a GPU, by one command and within eight minutes:
+#   bench/gpu.sh [--device SPEC] [--seconds N] [--quick] OUT_DIR [MODEL...]
+# From a clone it runs build/release/sundog (or that of the folder SUNDOG_BUILD), from a bundle the bundle's. In this order: the devices;
+# `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); builds of kernels, cold and warm; `bench rays`
+# of three models, or of MODEL..., by each way through a node (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers
+# too; samples a second of six scenes; times by work-group size; registers, memory and build logs of every kernel; watts and joules where
+# nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
+# OUT_DIR as soon as it is there, and summary.txt names it; one that fails does not keep the others from running, and those that would begin
+# after N seconds (480) are left out. SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.
 set -u
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*/*}
 programs=${SUNDOG_BUILD:-$root/build/release}
-limit=${GPU_PART_LIMIT:-900}
+[[ -x $root/bin/sundog && -x $root/sundog ]] && programs=$root
+sundog=$programs/sundog
 device=gpu
+seconds=480
 quick=
 while [[ ${1-} == --* ]]; do
   case $1 in
     --device) device=${2:?--device: wanted a SPEC}; shift 2 ;;
+    --seconds) seconds=${2:?--seconds: wanted a number}; shift 2 ;;
     --quick) quick=1; shift ;;
-    *) echo "gpu.sh: $1: wanted --device SPEC or --quick" >&2; exit 2 ;;
+    *) echo "gpu.sh: $1: wanted --device SPEC, --seconds N or --quick" >&2; exit 2 ;;
   esac
 done
-if [[ $# -lt 2 ]]; then
-  echo "usage: gpu.sh [--device SPEC] [--quick] OUT_DIR MODEL..." >&2
+if [[ $# -lt 1 ]]; then
+  echo "usage: gpu.sh [--device SPEC] [--seconds N] [--quick] OUT_DIR [MODEL...]" >&2
   exit 2
 fi
 out=$1
 shift
 mkdir -p -- "$out/build_logs" || exit 1
 out=$(readlink -f -- "$out")
-
-bench=() rays=() groups=() peers=()
+scenes=$root/scenes
+models=("$@")
+[[ $# -gt 0 ]] || models=("$scenes"/sundog/spruce_{needles,snow}.obj "$scenes/relief/ball.obj")
+frame_scenes=(spheres hollow_ice mandelbulb cornell_path glass_path frosted_panes)
+frame=(--size 1024x1024 --samples 64)
+small=64x64 bench=() rays=(--rays 1024) groups=()
 if [[ $quick ]]; then
-  bench=(--repeat 1)
-  rays=(--rays 32)
-  groups=(--rays 16 --kernel occluded_rays)
-  peers=(--repeats 1 --size 32)
+  frame_scenes=(spheres cornell_path)
+  frame=(--size 16x16 --samples 1)
+  small=8x8 bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays)
 fi
 here=() failed=() missing=()
 
-# part NAME COMMAND...: runs it with its table to NAME.txt and the rest to NAME.log.
-part() {
-  local name=$1
-  shift
-  echo "gpu.sh: $name" >&2
-  if timeout "$limit" "$@" >"$out/$name.txt" 2>"$out/$name.log"; then
-    here+=("$name")
-  else
-    local status=$?
-    local why
-    why=$(tail -n 1 "$out/$name.log")
-    [[ $status == 124 ]] && why="took longer than $limit s"
-    failed+=("$name (status $status): $why")
-  fi
+summarize() {
+  {
+    [[ ${#here[@]} -gt 0 ]] && printf 'there:   %s\n' "${here[@]}"
+    [[ ${#failed[@]} -gt 0 ]] && printf 'failed:  %s\n' "${failed[@]}"
+    [[ ${#missing[@]} -gt 0 ]] && printf 'missing: %s\n' "${missing[@]}"
+    echo "build logs: $(find "$out/build_logs" -type f | wc -l) in build_logs"
+  } >"$out/summary.txt"
 }
 
-sundog=$programs/sundog
-part devices "$sundog" devices
-"$sundog" devices --json >"$out/devices.json" 2>>"$out/devices.log"
-command -v nvidia-smi >/dev/null && part nvidia-smi nvidia-smi -q
+# part NAME SECONDS COMMAND...: runs it for so long at most (with --quick while there is time), with its table to NAME.txt and the rest to NAME.log.
+part() {
+  local name=$1 most=$((seconds - SECONDS)) pid watch status
+  [[ $quick ]] || most=$(($2 < most ? $2 : most))
+  shift 2
+  if ((most <= 0)); then
+    missing+=("$name: the $seconds seconds were over")
+    summarize
+    return
+  fi
+  echo "gpu.sh: $name" >&2
+  set -m  # a process group, so that all of it can be ended
+  "$@" >"$out/$name.txt" 2>"$out/$name.log" &
+  pid=$!
+  (sleep "$most" && touch "$out/$name.late" && kill -- "-$pid") >/dev/null 2>&1 &
+  watch=$!
+  set +m
+  wait "$pid" 2>/dev/null
+  status=$?
+  kill -- "-$watch" 2>/dev/null
+  wait "$watch" 2>/dev/null
+  if [[ $status == 0 ]]; then
+    here+=("$name")
+  else
+    local why
+    why=$(tail -n 1 "$out/$name.log")
+    [[ -e $out/$name.late ]] && why="took longer than $most s"
+    failed+=("$name (status $status): $why")
+  fi
+  rm -f "$out/$name.late"
+  summarize
+}
 
-for model in "$@"; do
+# Of a file of --stats: some of its seconds.
+stat_of() { sed -n "/\"seconds\": {/,/}/s/^ *\"$2\": \([0-9.e+-]*\),*\$/\1/p" "$1" | head -n 1; }
+is_there() { grep -qs "\"platform_name\": *\"$1" "$out/devices.json"; }
+
+devices() {
+  "$sundog" devices --json >"$out/devices.json" && "$sundog" devices
+}
+pictures() {
+  local scene name wrong=0 all=("$scenes"/*.json)
+  mkdir -p "$out/pictures"
+  [[ $quick ]] && all=("${frame_scenes[@]/%/.json}") && all=("${all[@]/#/$scenes/}")
+  for scene in "${all[@]}"; do
+    name=$(basename -- "$scene" .json)
+    [[ $name == scene.schema ]] && continue
+    if ! "$sundog" render "$scene" --device "$device" --size "$small" -q -o "$out/pictures/$name.png"; then
+      echo "$name: not drawn"
+      wrong=1
+    elif [[ -e $root/pictures/$name.png && ! $quick ]]; then
+      echo "$name: $("$sundog" compare "$out/pictures/$name.png" "$root/pictures/$name.png" --tolerance 0.02 | grep over)"
+    else
+      echo "$name: drawn"
+    fi
+  done
+  return $wrong
+}
+builds() {
+  local name run cache
+  cache=$(mktemp -d)
+  for name in "${frame_scenes[@]}"; do
+    for run in cold warm; do
+      CUDA_CACHE_DISABLE=1 XDG_CACHE_HOME=$cache "$sundog" render "$scenes/$name.json" --device "$device" --size 8x8 --samples 1 -q \
+        --stats "$out/builds-$name-$run.json" -o "$cache/picture.png" || { rm -rf "$cache"; return 1; }
+      echo "$name $run: $(stat_of "$out/builds-$name-$run.json" build_kernels) s for kernels, $(stat_of "$out/builds-$name-$run.json" total) s in all"
+    done
+  done
+  rm -rf "$cache"
+}
+frames() {
+  local name run
+  for name in "${frame_scenes[@]}"; do
+    for run in 1 2 3; do  # the first one builds
+      "$sundog" render "$scenes/$name.json" --device "$device" "${frame[@]}" -q --stats "$out/frame-$name-$run.json" -o "$out/frame-$name.png" ||
+        return 1
+    done
+    for run in 2 3; do
+      echo "$name: $(stat_of "$out/frame-$name-$run.json" render) s, $(
+        awk -v pixels="${frame[1]}" -v samples="${frame[3]}" -v seconds="$(stat_of "$out/frame-$name-$run.json" render)" \
+          'BEGIN { split(pixels, side, "x"); printf "%.2f", side[1] * side[2] * samples / seconds / 1e6 }') Msamples/s"
+    done
+  done
+}
+watts() {  # of the device beside the frames, and joules
+  awk -F, '{ sum += $2; if (NR == 1) first = $1; last = $1; if ($2 > most) most = $2 }
+    END { if (!NR) exit 1; printf "mean %.1f W, most %.1f W, %d readings, one in 100 ms: %.0f J\n", sum / NR, most, NR, sum / 10 }' "$out/power.csv"
+}
+
+summarize
+part devices 60 devices
+command -v nvidia-smi >/dev/null && part nvidia-smi 20 nvidia-smi -q
+[[ $quick ]] || part check 150 "$sundog" check --timeout 120 --device "$device"
+part pictures 150 pictures
+part builds 120 builds
+for model in "${models[@]}"; do
   name=$(basename -- "$model")
   name=${name%.gz}
   name=${name%.*}
-  for tracer in compact wide; do
-    common=("$model" --device "$device" --set "/render/tracer=$tracer")
-    SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels-$tracer" \
-      "$sundog" bench kernels "${common[@]}" --json "$out/$name-kernels-$tracer.json"
-    part "$name-rays-$tracer" \
-      "$sundog" bench rays "${common[@]}" "${bench[@]}" "${rays[@]}" --json "$out/$name-rays-$tracer.json"
-    if grep -q '"platform_name": *"NVIDIA' "$out/devices.json" && [[ $tracer == compact ]]; then
-      for registers in 128 64; do
-        export SUNDOG_BUILD_OPTIONS=-cl-nv-maxrregcount=$registers
-        SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels-$tracer-$registers" \
-          "$sundog" bench kernels "${common[@]}" --json "$out/$name-kernels-$tracer-$registers.json"
-        part "$name-rays-$tracer-$registers" "$sundog" bench rays "${common[@]}" "${bench[@]}" "${rays[@]}" \
-          --json "$out/$name-rays-$tracer-$registers.json"
-        unset SUNDOG_BUILD_OPTIONS
-      done
+  ways=(0 1 2 wide)
+  is_there NVIDIA && ways+=(registers-64)
+  for way in "${ways[@]}"; do
+    options="-DNODE_LOOP=$way" tracer=compact
+    [[ $way == registers-64 ]] && options=-cl-nv-maxrregcount=64
+    [[ $way == wide ]] && options='' tracer=wide
+    SUNDOG_BUILD_OPTIONS=$options part "$name-rays-$way" 60 "$sundog" bench rays "$model" --device "$device" --set "/render/tracer=$tracer" \
+      "${bench[@]}" "${rays[@]}" --json "$out/$name-rays-$way.json"
+  done
+done
+if command -v nvidia-smi >/dev/null; then
+  nvidia-smi --query-gpu=timestamp,power.draw --format=csv,noheader,nounits -lms 100 >"$out/power.csv" 2>/dev/null &
+  power=$!
+fi
+part frames 120 frames
+[[ ${power-} ]] && kill "$power"
+part workgroup 60 "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" \
+  --json "$out/workgroup.json" --html "$out/workgroup.html"
+for name in "${frame_scenes[@]}"; do
+  SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels" 60 "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
+    --set /render/tracer=compact --json "$out/$name-kernels.json"
+done
+if [[ -s $out/power.csv ]]; then part joules 10 watts; else missing+=("joules: nvidia-smi reads no watts here"); fi
+for model in "${models[@]}"; do
+  for peer in embree tinybvh; do
+    name=$(basename -- "${model%.gz}")
+    name=${name%.*}-$peer
+    if [[ -x $programs/${peer}_rays ]]; then
+      threads=()
+      [[ $peer == embree ]] && threads=(--threads "$(nproc)" --wall)
+      part "$name" 60 "$programs/${peer}_rays" "$model" --device "$device" "${threads[@]}" ${quick:+--repeats 1 --size 32} --json "$out/$name.json"
+    else
+      missing+=("$name: $programs/${peer}_rays was not built (docs/benchmarks.md)")
     fi
   done
-  part "$name-workgroup" "$sundog" bench workgroup "$model" --device "$device" "${bench[@]}" "${groups[@]}" \
-    --json "$out/$name-workgroup.json" --html "$out/$name-workgroup.html"
-  if [[ -x $programs/embree_rays ]]; then
-    part "$name-embree" "$programs/embree_rays" "$model" --device "$device" --threads "$(nproc)" --wall \
-      "${peers[@]}" --json "$out/$name-embree.json"
-  else
-    missing+=("$name-embree: $programs/embree_rays was not built (libembree-dev, target embree_rays)")
-  fi
-  if [[ -x $programs/tinybvh_rays ]]; then
-    part "$name-tinybvh" "$programs/tinybvh_rays" "$model" --device "$device" "${peers[@]}" \
-      --json "$out/$name-tinybvh.json"
-  else
-    missing+=("$name-tinybvh: $programs/tinybvh_rays was not built (cmake --preset release -DSUNDOG_TINYBVH=CHECKOUT)")
-  fi
 done
-
-{
-  printf 'there:   %s\n' "${here[@]}"
-  [[ ${#failed[@]} -gt 0 ]] && printf 'failed:  %s\n' "${failed[@]}"
-  [[ ${#missing[@]} -gt 0 ]] && printf 'missing: %s\n' "${missing[@]}"
-  echo "build logs: $(find "$out/build_logs" -type f | wc -l) in build_logs"
-} | tee "$out/summary.txt"
+summarize
+cat "$out/summary.txt"
 [[ ${#failed[@]} -eq 0 ]]

@@ -25,12 +25,36 @@ const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
 
 // General kernels have room for rays of this many levels and for the BVHs of most scenes; drafts for the
 // maximum depth and any BVH.
-constexpr unsigned general_depth = 12, general_bvh_stack = 64, draft_depth = 32, draft_bvh_stack = 128;
+constexpr unsigned general_depth = 12, general_bvh_stack = 64, general_bvh_levels = 32, draft_depth = 32,
+                   draft_bvh_stack = 128, draft_bvh_levels = 64;
 
 /// Waiting shadow rays per surface: one per light, within limits, and rounded up so that similar scenes share
 /// kernels.
 unsigned light_room(const CompiledScene& scene) {
   return std::clamp(std::bit_ceil(scene.info.light_count), 2u, 16u);
+}
+
+/// Nodes on the longest way from `root` to a leaf.
+u32 levels(const std::vector<Bvh8Node>& nodes, u32 root) {
+  u32 below = 0;
+  for (u32 slot = 0; slot < BVH_WIDTH && (nodes[root].valid >> slot & 1u); ++slot)
+    if (const u32 child = nodes[root].child[slot]; !(child & BVH_LEAF))
+      below = std::max(below, levels(nodes, child));
+  return below + 1;
+}
+
+/// Entries of the compact tracer's stack (kernels/lib/trace/single.cl): one a level of the scene's BVH and of
+/// the deepest mesh's, a leaf's other instances, and four for the ray in world space.
+unsigned waiting_levels(const CompiledScene& scene) {
+  constexpr unsigned instances_and_ray = 5;
+  std::set<u32> meshes;
+  for (const Instance& instance : scene.instances)
+    if (instance.shape == SHAPE_MESH) meshes.insert(instance.root);
+  u32 deepest = 0;
+  for (const u32 root : meshes) deepest = std::max(deepest, levels(scene.nodes, root));
+  const u32 root = scene.info.tlas_root;
+  return (scene.info.bounded_count == 0 || (root & BVH_LEAF) ? 0 : levels(scene.nodes, root)) + deepest +
+         instances_and_ray;
 }
 
 /// Rays marched together: all of a work-item's, if vectors of that size exist.
@@ -91,7 +115,8 @@ bool is_mask(const std::string& definition) {
 }
 
 bool is_room(const std::string& definition) {
-  static const std::set<std::string> rooms{"BVH_STACK", "LIGHT_ROOM", "RAY_STACK", "TEXTURE_STACK"};
+  static const std::set<std::string> rooms{"BVH_LEVELS", "BVH_STACK", "LIGHT_ROOM", "RAY_STACK",
+                                           "TEXTURE_STACK"};
   return rooms.contains(definition);
 }
 
@@ -102,6 +127,8 @@ KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, c
   deep.features = scene.features;
   deep.features.secondary_rays = true;
   deep.info = scene.info;
+  deep.nodes = scene.nodes;
+  deep.instances = scene.instances;
   deep.info.max_depth = std::max(scene.info.max_depth, depth);
   deep.integrator = scene.integrator;
   deep.tracer = scene.tracer;
@@ -112,8 +139,9 @@ KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, c
 }
 
 void widen(KernelConfig& config, const char* room, unsigned least) {
-  std::string& value = config.defines.at(room);
-  if (std::stoul(value) < least) value = std::to_string(least);
+  const auto found = config.defines.find(room);
+  if (found != config.defines.end() && std::stoul(found->second) < least)
+    found->second = std::to_string(least);
 }
 
 }  // namespace
@@ -165,6 +193,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
     if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
   }
   widen(config, "BVH_STACK", general_bvh_stack);
+  widen(config, "BVH_LEVELS", general_bvh_levels);
   return config;
 }
 
@@ -175,6 +204,7 @@ KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, 
     if (is_mask(name)) value = "65535";
   }
   widen(config, "BVH_STACK", draft_bvh_stack);
+  widen(config, "BVH_LEVELS", draft_bvh_levels);
   widen(config, "TEXTURE_STACK", MOST_TEXTURE_STACK);
   config.defines["SDF_FLAGS"] = all_field_flags;
   config.generated[fields_file] = interpreting_source;
@@ -243,6 +273,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   }
   // Rounded up so that similar scenes share kernels.
   define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
+  if (!vectors) define("BVH_LEVELS", (waiting_levels(scene) + 7u) / 8u * 8u);
   define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);

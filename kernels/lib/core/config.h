@@ -33,7 +33,14 @@
 // its work-groups), but a function once, and separates the private arrays of a kernel for each work-item of a
 // group, but not those of a function. Such a function must not call get_global_id(), or PoCL inlines it. Also
 // for functions with several callers, whose copies would compile longer than calls take.
+// On GPUs (host/device/device_rules.cpp) neither applies, and a call passes its structs, and the scene's
+// pointers, through memory: everything is inlined.
+#ifdef DEVICE_INLINES_ALL
+#define NEVER_INLINE ALWAYS_INLINE
+#define inline inline __attribute__((always_inline))
+#else
 #define NEVER_INLINE static __attribute__((noinline))
+#endif
 
 // Rays per work-item: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on GPU-class ones.
 #ifndef TILE_W
@@ -70,6 +77,10 @@
 // Waiting nodes of a traversal; the host computes the number.
 #ifndef BVH_STACK
 #define BVH_STACK 128
+#endif
+// Waiting groups of children on the compact tracer's way to a leaf (single.cl); the host computes the number.
+#ifndef BVH_LEVELS
+#define BVH_LEVELS 64
 #endif
 // Maximum number of invisible interfaces (overruled by priority) between two visible ones.
 #ifndef MAX_CROSSINGS

@@ -249,48 +249,4 @@ static inline void order_pair(u32* a, u32* b) {
   *b = high;
 }
 
-// Pushes the crossed children (at least one), farthest first, and returns the nearest one's word. A key packs
-// the entry distance and the slot.
-ALWAYS_INLINE u32 push_children(__global const BvhNode* node, u32 crossed, const u32* keys, u32* stack,
-                                float* stack_t, u32* top) {
-  u32 first = lowest_bit(crossed);
-  crossed &= crossed - 1u;
-  if (!crossed) return child_word(node, first);
-  u32 a = keys[first], b = keys[lowest_bit(crossed)];
-  crossed &= crossed - 1u;
-  order_pair(&a, &b);
-  u32 at = *top;
-  if (crossed) {
-    u32 c = keys[lowest_bit(crossed)];
-    crossed &= crossed - 1u;
-    order_pair(&b, &c);
-    order_pair(&a, &b);
-    // Four or more are rare: insert into the stack.
-    const u32 base = at;
-    stack[at] = child_word(node, c & KEY_SLOT);
-    stack_t[at] = as_float(c & ~KEY_SLOT);
-    ++at;
-    while (crossed) {
-      u32 next = keys[lowest_bit(crossed)];
-      crossed &= crossed - 1u;
-      order_pair(&b, &next);
-      order_pair(&a, &b);
-      const float t = as_float(next & ~KEY_SLOT);
-      u32 to = at;
-      while (to > base && stack_t[to - 1u] < t) {
-        stack[to] = stack[to - 1u];
-        stack_t[to] = stack_t[to - 1u];
-        --to;
-      }
-      stack[to] = child_word(node, next & KEY_SLOT);
-      stack_t[to] = t;
-      ++at;
-    }
-  }
-  stack[at] = child_word(node, b & KEY_SLOT);
-  stack_t[at] = as_float(b & ~KEY_SLOT);
-  *top = at + 1u;
-  return child_word(node, a & KEY_SLOT);
-}
-
 #endif

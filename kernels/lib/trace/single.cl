@@ -1,4 +1,5 @@
-// Traces one ray through the two-level BVH, on devices without lists (walk.cl).
+// Traces one ray through both levels of the BVH, on devices without lists (walk.cl): one loop, and a stack of
+// eight bytes a level, because a GPU keeps the stack in memory and pays for every register.
 #ifndef SUNDOG_LIB_SINGLE_CL
 #define SUNDOG_LIB_SINGLE_CL
 #include "lib/core/config.h"
@@ -22,99 +23,204 @@ static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d
   if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
 }
 
-// Nearest hit in one mesh BVH, or with `any` the first found; o, d in object space. Uses the stack from
-// `stack` on. The hit's prim is for finish_triangle.
-static inline void trace_mesh(const Scene* scene, u32 root, const SlabRay* slab_ray,
-                              const ShearRay* shear_ray, float t_min, u32 instance, bool any, u32* stack,
-                              float* stack_t, Hit* found) {
-  // Local copies stay in registers.
-  const SlabRay slabs = *slab_ray;
-  const ShearRay shear = *shear_ray;
-  Hit hit = *found;
-  u32 top = 0, word = root;
+#if !WIDE_VECTORS
+// A ray in the space in which it is traced. Tests of boxes and triangles make their other values from it,
+// which costs less than keeping them in registers.
+typedef struct LeanRay {
+  float3 o, d, rcp;  // rcp: safe_reciprocal(d)
+} LeanRay;
+
+static inline LeanRay lean_ray(float3 o, float3 d) {
+  const LeanRay ray = {o, d, safe_reciprocal(d)};
+  return ray;
+}
+
+// An entry of the stack: a node and the slots of its waiting children, nearest first, three bits each below a
+// final 1. Or, by the second number, WAITING_WORD: a word to visit; WAITING_RAY: the ray in world space lies
+// in the three entries below.
+#define WAITING_WORD 0u
+#define WAITING_RAY 0xFFFFFFFFu
+#define NO_CHILDREN 1u
+
+// How a node's eight boxes are tested. 0: unrolled. 1: unrolled, the node read 16 bytes at a time. 2: four at
+// a time in a loop, for fewer registers.
+#ifndef NODE_LOOP
+#define NODE_LOOP 0
+#endif
+
+// The children that the ray enters in [t_min, t_max], as a list of slots.
+ALWAYS_INLINE u32 crossed_children(__global const BvhNode* node, const LeanRay* ray, float t_min,
+                                   float t_max) {
+#if NODE_LOOP == 1
+  __global const uint4* pieces = (__global const uint4*)node;
+  const uint4 head = pieces[0], a = pieces[2], b = pieces[3], c = pieces[4], d = pieces[5];
+  const u32 planes[12] = {a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, d.x, d.y};
+  const float3 origin = as_float3(head.xyz);
+  const u32 scale = head.w;
+#else
+  __global const u32* planes = node->quantized;
+  const float3 origin = (float3)(node->origin[0], node->origin[1], node->origin[2]);
+  const u32 scale = node->scale;
+#endif
+  const float3 rcp_near = ray->rcp * NEARER, rcp_far = ray->rcp * FARTHER, away = origin - ray->o;
+  const float3 step = grid_step(scale), step_near = step * rcp_near, step_far = step * rcp_far;
+  float3 near_from = away * rcp_near, far_from = away * rcp_far;
+  const float3 slack = along_face(rcp_near);
+  near_from -= fma(fabs(near_from), (float3)(3.6e-7f), slack);
+  far_from += fma(fabs(far_from), (float3)(3.6e-7f), slack);
+  const u32 count = scale >> 24;
+  const bool nx = ray->rcp.x < 0.0f, ny = ray->rcp.y < 0.0f, nz = ray->rcp.z < 0.0f;
+  u32 keys[8] = {0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu,
+                 0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu};
+#if NODE_LOOP == 2
+#pragma unroll 1
+  for (u32 half_node = 0; half_node * 4u < count; ++half_node) {
+#else
+#pragma unroll
+  for (u32 half_node = 0; half_node < 2u; ++half_node) {
+#endif
+    const u32 lx = planes[half_node], ly = planes[2u + half_node], lz = planes[4u + half_node],
+              ux = planes[6u + half_node], uy = planes[8u + half_node], uz = planes[10u + half_node];
+    const u32 near_x = nx ? ux : lx, far_x = nx ? lx : ux, near_y = ny ? uy : ly, far_y = ny ? ly : uy,
+              near_z = nz ? uz : lz, far_z = nz ? lz : uz;
+#pragma unroll
+    for (u32 i = 0; i < 4u; ++i) {
+      const u32 at = i * 8u, slot = half_node * 4u + i;
+      const int near =
+          max(max(as_int(fma((float)(near_x >> at & 0xFFu), step_near.x, near_from.x)),
+                  as_int(fma((float)(near_y >> at & 0xFFu), step_near.y, near_from.y))),
+              max(as_int(fma((float)(near_z >> at & 0xFFu), step_near.z, near_from.z)), as_int(t_min)));
+      const int far =
+          min(min(as_int(fma((float)(far_x >> at & 0xFFu), step_far.x, far_from.x)),
+                  as_int(fma((float)(far_y >> at & 0xFFu), step_far.y, far_from.y))),
+              min(as_int(fma((float)(far_z >> at & 0xFFu), step_far.z, far_from.z)), as_int(t_max)));
+      keys[i + 4u] = keys[i];
+      keys[i] = near <= far && slot < count ? ((u32)near & ~KEY_SLOT) | slot : 0xFFFFFFFFu;
+    }
+  }
+  // Batcher's network of 19.
+#define ORDER(a, b) order_pair(&keys[a], &keys[b])
+  ORDER(0, 1), ORDER(2, 3), ORDER(4, 5), ORDER(6, 7), ORDER(0, 2), ORDER(1, 3), ORDER(4, 6), ORDER(5, 7),
+      ORDER(1, 2), ORDER(5, 6), ORDER(0, 4), ORDER(1, 5), ORDER(2, 6), ORDER(3, 7), ORDER(2, 4), ORDER(3, 5),
+      ORDER(1, 2), ORDER(3, 4), ORDER(5, 6);
+#undef ORDER
+  u32 list = NO_CHILDREN;
+#pragma unroll
+  for (u32 i = 8; i > 0u; --i)
+    if (keys[i - 1u] != 0xFFFFFFFFu) list = list << 3 | (keys[i - 1u] & KEY_SLOT);
+  return list;
+}
+
+// The distance in the child's key, computed again.
+ALWAYS_INLINE float entry_distance(__global const BvhNode* node, u32 slot, const LeanRay* ray, float t_min) {
+  const float3 rcp_near = ray->rcp * NEARER;
+  const float3 away = (float3)(node->origin[0], node->origin[1], node->origin[2]) - ray->o;
+  const float3 step_near = grid_step(node->scale) * rcp_near;
+  float3 near_from = away * rcp_near;
+  near_from -= fma(fabs(near_from), (float3)(3.6e-7f), along_face(rcp_near));
+  const int near = max(
+      max(grid_distance(node, ray->rcp.x < 0.0f ? 24u : 0u, slot, step_near.x, near_from.x),
+          grid_distance(node, ray->rcp.y < 0.0f ? 32u : 8u, slot, step_near.y, near_from.y)),
+      max(grid_distance(node, ray->rcp.z < 0.0f ? 40u : 16u, slot, step_near.z, near_from.z), as_int(t_min)));
+  return as_float((u32)near & ~KEY_SLOT);
+}
+
+// Takes the next word to visit from the stack, and the ray in world space when its mesh is done. False: none.
+ALWAYS_INLINE bool next_word(const Scene* scene, float t_min, float t_max, uint2* stack, u32* top,
+                             LeanRay* ray, u32* mesh, u32* word) {
+  while (*top) {
+    const uint2 next = stack[*top - 1u];
+    if (next.y == WAITING_RAY) {
+      *top -= 4u;
+      const float2 a = as_float2(stack[*top]), b = as_float2(stack[*top + 1u]),
+                   c = as_float2(stack[*top + 2u]);
+      *ray = lean_ray((float3)(a, b.x), (float3)(b.y, c));
+      *mesh = NO_INSTANCE;
+      continue;
+    }
+    if (next.y == WAITING_WORD) {
+      --*top;
+      *word = next.x;
+      return true;
+    }
+    __global const BvhNode* node = node_at(scene->nodes, next.x);
+    const u32 slot = next.y & KEY_SLOT, rest = next.y >> 3;
+    const bool beyond = entry_distance(node, slot, ray, t_min) > t_max;
+    if (beyond || rest == NO_CHILDREN)
+      --*top;
+    else
+      stack[*top - 1u].y = rest;
+    if (beyond) continue;
+    *word = child_word(node, slot);
+    return true;
+  }
+  return false;
+}
+
+// Puts the ray on the stack and takes it into the mesh of the instance.
+ALWAYS_INLINE void enter_mesh(const Scene* scene, u32 index, float time, uint2* stack, u32* top,
+                              LeanRay* ray) {
+  stack[*top] = as_uint2(ray->o.xy);
+  stack[*top + 1u] = as_uint2((float2)(ray->o.z, ray->d.x));
+  stack[*top + 2u] = as_uint2(ray->d.yz);
+  stack[*top + 3u] = (uint2)(0u, WAITING_RAY);
+  *top += 4u;
+  __global const Instance* instance = scene->instances + index;
+  if (!(instance->flags & INSTANCE_IDENTITY))
+    *ray = lean_ray(object_point(instance, still_point(scene, index, ray->o, time)),
+                    object_vector(instance, still_vector(scene, index, ray->d, time)));
+}
+
+// Traces the bounded instances below `word` of the scene BVH, and their meshes' BVHs, in one loop. A hit's
+// prim is for finish_triangle.
+static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, float time,
+                                 bool any, Hit* found) {
+  uint2 stack[BVH_LEVELS];
+  LeanRay ray = lean_ray(o, d);
+  Hit hit = *found;                 // a copy stays in registers
+  u32 top = 0, mesh = NO_INSTANCE;  // the mesh that the ray is in
   for (;;) {
-    if (word & BVH_LEAF) {
-      const u32 first = word & BVH_FIRST_MASK,
-                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) closest_in_block(scene->blocks, i, &shear, t_min, instance, &hit);
-      if (any && hit.instance == instance) break;
-    } else {
-      u32 keys[8];
-      const u32 crossed = cross_children(node_at(scene->nodes, word), &slabs, t_min, hit.t, keys);
-      if (crossed) {
-        word = push_children(node_at(scene->nodes, word), crossed, keys, stack, stack_t, &top);
+    if (!(word & BVH_LEAF)) {
+      __global const BvhNode* node = node_at(scene->nodes, word);
+      const u32 list = crossed_children(node, &ray, t_min, hit.t);
+      if (list != NO_CHILDREN) {
+        if (list >> 3 != NO_CHILDREN) stack[top++] = (uint2)(word, list >> 3);
+        word = child_word(node, list & KEY_SLOT);
         continue;
       }
-    }
-    bool more = false;
-    while (top) {
-      --top;
-      if (!(stack_t[top] > hit.t)) {
-        more = true;
-        break;
+    } else if (HAS_MESH && mesh != NO_INSTANCE) {
+      const u32 first = word & BVH_FIRST_MASK,
+                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
+      const ShearRay shear = make_shear_ray(ray.o, ray.d);
+#pragma unroll 1
+      for (u32 i = first; i <= last; ++i) closest_in_block(scene->blocks, i, &shear, t_min, mesh, &hit);
+      if (any && hit.instance == mesh) break;
+    } else {
+      const u32 index = word & BVH_FIRST_MASK, more = (word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK;
+      if (more) stack[top++] = (uint2)(BVH_LEAF | (more - 1u) << BVH_LEAF_SHIFT | (index + 1u), WAITING_WORD);
+      if (HAS_MESH && scene->instances[index].shape == SHAPE_MESH) {
+        enter_mesh(scene, index, time, stack, &top, &ray);
+        mesh = index;
+        word = scene->instances[index].root;
+        continue;
       }
+      trace_solid(scene, index, ray.o, ray.d, t_min, time, &hit);
+      if (any && hit.instance != NO_INSTANCE) break;
     }
-    if (!more) break;
-    word = stack[top];
+    if (!next_word(scene, t_min, hit.t, stack, &top, &ray, &mesh, &word)) break;
   }
   *found = hit;
 }
-
-// Tests one instance in (t_min, hit->t]; world-space ray.
-static inline void trace_instance(const Scene* scene, u32 index, float3 o, float3 d, float t_min, float time,
-                                  bool any, u32* stack, float* stack_t, Hit* hit) {
-  __global const Instance* instance = scene->instances + index;
-  if (HAS_MESH && instance->shape == SHAPE_MESH) {
-    float3 oo = o, dd = d;
-    if (!(instance->flags & INSTANCE_IDENTITY)) {
-      oo = object_point(instance, still_point(scene, index, o, time));
-      dd = object_vector(instance, still_vector(scene, index, d, time));
-    }
-    const SlabRay slabs = make_slab_ray(oo, dd);
-    const ShearRay shear = make_shear_ray(oo, dd);
-    trace_mesh(scene, instance->root, &slabs, &shear, t_min, index, any, stack, stack_t, hit);
-    return;
-  }
-  trace_solid(scene, index, o, d, t_min, time, hit);
-}
-
-// Traces the bounded instances below `word` of the scene BVH.
-static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 d, float t_min, float time,
-                                 bool any, Hit* hit) {
-  u32 stack[BVH_STACK];
-  float stack_t[BVH_STACK];
-  const SlabRay slabs = make_slab_ray(o, d);
-  u32 top = 0;
-  for (;;) {
-    if (word & BVH_LEAF) {
-      const u32 first = word & BVH_FIRST_MASK,
-                last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-      for (u32 i = first; i <= last; ++i) {
-        trace_instance(scene, i, o, d, t_min, time, any, stack + top, stack_t + top, hit);
-        if (any && hit->instance != NO_INSTANCE) return;
-      }
-    } else {
-      u32 keys[8];
-      const u32 crossed = cross_children(node_at(scene->nodes, word), &slabs, t_min, hit->t, keys);
-      if (crossed) {
-        word = push_children(node_at(scene->nodes, word), crossed, keys, stack, stack_t, &top);
-        continue;
-      }
-    }
-    do {
-      if (!top) return;
-      --top;
-    } while (stack_t[top] > hit->t);
-    word = stack[top];
-  }
-}
+#endif
 
 // Traces all bounded instances. A single one is a leaf without a tree, so that instances are traced in one
 // place, of which some compilers make copies.
 static inline void trace_instances(const Scene* scene, float3 o, float3 d, float t_min, float time, bool any,
                                    Hit* hit) {
+#if !WIDE_VECTORS  // which has no tree here
   if (scene->info->bounded_count == 0u) return;
   trace_bounded(scene, scene->info->tlas_root, o, d, t_min, time, any, hit);
+#endif
 }
 
 #endif
