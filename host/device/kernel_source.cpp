@@ -1,11 +1,13 @@
 // Include expansion. Within the #if branches under which a file was included, it is not included again; after
-// them, the compiler may not have seen it, so it is expanded anew, and its own guard keeps it single.
+// them, the compiler may not have seen it, so it is expanded anew, and a guard about it keeps it single.
 #include "device/kernel_source.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <mutex>
 #include <set>
 #include <sstream>
 
@@ -39,20 +41,6 @@ std::string included_path(const Directive& directive) {
   return directive.rest.substr(1, directive.rest.find('"', 1) - 1);
 }
 
-/// Whether the file's first two directives are `#ifndef X` and `#define X`.
-bool has_include_guard(const std::string& text) {
-  std::istringstream in(text);
-  std::string line, guard;
-  while (std::getline(in, line)) {
-    const Directive directive = parse_directive(line);
-    if (directive.word.empty()) continue;
-    if (!guard.empty()) return directive.word == "define" && directive.rest == guard;
-    if (directive.word != "ifndef") return false;
-    guard = directive.rest;
-  }
-  return false;
-}
-
 std::string guard_name(const std::string& path) {
   std::string name = "SUNDOG_INCLUDED_" + path;
   std::replace_if(name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
@@ -65,13 +53,11 @@ class Expander {
       : generated_(generated), folder_(folder) {}
 
   void expand(const std::string& path) {
-    const std::string text = spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
-    const bool guarded = has_include_guard(text);
+    const std::string text = spmd::is_plain(path) ? in_lanes(path) : file_text(path);
     open_.push_back(path);
-    if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
-    out += fmt::format("#line 1 \"{}\"\n", path);
-    expand_lines(path, text, guarded ? 1 : 0);
-    if (!guarded) out += "#endif\n";
+    out += fmt::format("#ifndef {0}\n#define {0}\n#line 1 \"{1}\"\n", guard_name(path), path);
+    expand_lines(path, text);
+    out += "#endif\n";
     open_.pop_back();
     seen_.back().insert(path);
   }
@@ -79,23 +65,35 @@ class Expander {
   std::string out;
 
  private:
-  spmd::ReadFile read() const {
-    return [this](const std::string& path) { return file_text(path); };
+  /// Embedded files are the same in all programs: a process translates each once.
+  std::string in_lanes(const std::string& path) const {
+    const auto read = [this](const std::string& file) { return file_text(file); };
+    const bool are_embedded = folder_.empty() && std::ranges::all_of(generated_, [](const auto& file) {
+                                return file.first.starts_with("generated/");
+                              });
+    if (!are_embedded) return spmd::in_lanes(path, read, true);
+    static std::mutex mutex;
+    static std::map<std::string, std::string> made;
+    const std::scoped_lock lock(mutex);
+    std::string& text = made[path];
+    if (text.empty()) text = spmd::in_lanes(path, read, true);
+    return text;
   }
   std::string file_text(const std::string& path) const {
     if (const auto found = generated_.find(path); found != generated_.end()) return found->second;
     return embedded_kernel(path, folder_);
   }
 
-  void expand_lines(const std::string& path, const std::string& text, int guard_depth) {
+  void expand_lines(const std::string& path, const std::string& text) {
     std::istringstream in(text);
     std::string line;
-    int depth = 0;
     for (int number = 1; std::getline(in, line); ++number) {
       const Directive directive = parse_directive(line);
-      follow_conditional(directive.word, guard_depth, depth);
+      follow_conditional(directive.word);
       const std::string target = included_path(directive);
-      if (target.empty()) {
+      if (directive.word == "pragma" && directive.rest == "once") {
+        out += "\n";  // compilers warn of it in what they take for the main file
+      } else if (target.empty()) {
         out += line + "\n";
       } else if (is_seen(target)) {
         out += "\n";
@@ -106,14 +104,11 @@ class Expander {
     }
   }
 
-  /// Enters and leaves branches of an #if. A guard around a file does not count: everything after it has been
-  /// seen.
-  void follow_conditional(const std::string& word, int guard_depth, int& depth) {
+  /// Enters and leaves branches of an #if.
+  void follow_conditional(const std::string& word) {
     const bool begins = word.starts_with("if"), turns = word.starts_with("el"), ends = word == "endif";
-    if ((turns || ends) && depth > guard_depth) seen_.pop_back();
-    if (begins) ++depth;
-    if ((begins || turns) && depth > guard_depth) seen_.emplace_back();
-    if (ends) --depth;
+    if ((turns || ends) && seen_.size() > 1) seen_.pop_back();
+    if (begins || turns) seen_.emplace_back();
   }
 
   bool is_seen(const std::string& path) const {

@@ -1,7 +1,6 @@
 // Tests one ray against the eight children of a BVH node. Slabs are widened to be conservative (Ize 2013), so
 // results do not depend on the order of visits.
-#ifndef SUNDOG_LIB_NODES_CL
-#define SUNDOG_LIB_NODES_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 #include "lib/core/masks.cl"
@@ -292,5 +291,3 @@ ALWAYS_INLINE u32 push_children(__global const BvhNode* node, u32 crossed, const
   *top = at + 1u;
   return child_word(node, a & KEY_SLOT);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Traces one ray through the two-level BVH, on devices without lists (walk.cl).
-#ifndef SUNDOG_LIB_SINGLE_CL
-#define SUNDOG_LIB_SINGLE_CL
+#pragma once
 #include "lib/core/config.h"
 #if !WALKS_IN_TURN
 #include "lib/core/motion.cl"
@@ -116,7 +115,5 @@ static inline void trace_instances(const Scene* scene, float3 o, float3 d, float
   if (scene->info->bounded_count == 0u) return;
   trace_bounded(scene, scene->info->tlas_root, o, d, t_min, time, any, hit);
 }
-
-#endif
 
 #endif
