@@ -22,7 +22,7 @@ for file in $(cd kernels && find plain -name '*.cl'); do
   SUNDOG_KERNEL_DIR=$PWD/kernels "${SUNDOG:-build/release/sundog}" kernels "$file" --lines >"$made/$file"
 done
 check() {  # FILE OPTION...
-  "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Werror -I"$made" -Ikernels \
+  "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Wno-pragma-once-outside-header -Werror -I"$made" -Ikernels \
     "${@:2}" "$1" || failed=1
 }
 for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0 $all" \

@@ -18,7 +18,7 @@ struct LobeTables {
 /// transmitted energy of white dielectrics by 1 - 1 / eta, side (thinner medium first), alpha and cosine.
 /// Symmetric factors fail for these: they divide light arbitrarily between the sides, and rough glass would
 /// reflect a twentieth of what it should. Instead, multiple scattering is a separate lobe
-/// (kernels/lib/shade/microfacets.cl): GLASS_THROUGH holds its share that enters the thicker medium,
+/// (kernels/plain/shade/lobes/ggx.cl): GLASS_THROUGH holds its share that enters the thicker medium,
 /// GLASS_LOST the mean energy lost at the first facet.
 std::vector<float> make_lobe_energy(LobeTables wanted);
 

@@ -1,5 +1,5 @@
 // Include expansion. Within the #if branches under which a file was included, it is not included again; after
-// them, the compiler may not have seen it, so it is expanded anew, and its own guard keeps it single.
+// them, the compiler may not have seen it, so it is expanded anew, and a guard about it keeps it single.
 #include "device/kernel_source.h"
 
 #include <fmt/format.h>
@@ -39,20 +39,6 @@ std::string included_path(const Directive& directive) {
   return directive.rest.substr(1, directive.rest.find('"', 1) - 1);
 }
 
-/// Whether the file's first two directives are `#ifndef X` and `#define X`.
-bool has_include_guard(const std::string& text) {
-  std::istringstream in(text);
-  std::string line, guard;
-  while (std::getline(in, line)) {
-    const Directive directive = parse_directive(line);
-    if (directive.word.empty()) continue;
-    if (!guard.empty()) return directive.word == "define" && directive.rest == guard;
-    if (directive.word != "ifndef") return false;
-    guard = directive.rest;
-  }
-  return false;
-}
-
 std::string guard_name(const std::string& path) {
   std::string name = "SUNDOG_INCLUDED_" + path;
   std::replace_if(name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
@@ -74,12 +60,10 @@ class Expander {
   void expand(const std::string& path) {
     const std::string text =
         in_lanes_ && spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
-    const bool guarded = has_include_guard(text);
     open_.push_back(path);
-    if (!guarded) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_name(path));
-    out += fmt::format("#line 1 \"{}\"\n", path);
-    expand_lines(path, text, guarded ? 1 : 0);
-    if (!guarded) out += "#endif\n";
+    out += fmt::format("#ifndef {0}\n#define {0}\n#line 1 \"{1}\"\n", guard_name(path), path);
+    expand_lines(path, text);
+    out += "#endif\n";
     open_.pop_back();
     seen_.back().insert(path);
   }
@@ -92,15 +76,16 @@ class Expander {
     return embedded_kernel(path, folder_);
   }
 
-  void expand_lines(const std::string& path, const std::string& text, int guard_depth) {
+  void expand_lines(const std::string& path, const std::string& text) {
     std::istringstream in(text);
     std::string line;
-    int depth = 0;
     for (int number = 1; std::getline(in, line); ++number) {
       const Directive directive = parse_directive(line);
-      follow_conditional(directive.word, guard_depth, depth);
+      follow_conditional(directive.word);
       const std::string target = included_path(directive);
-      if (target.empty()) {
+      if (directive.word == "pragma" && directive.rest == "once") {
+        out += "\n";  // compilers warn of it in what they take for the main file
+      } else if (target.empty()) {
         out += line + "\n";
       } else if (is_seen(target)) {
         out += "\n";
@@ -111,14 +96,11 @@ class Expander {
     }
   }
 
-  /// Enters and leaves branches of an #if. A guard around a file does not count: everything after it has been
-  /// seen.
-  void follow_conditional(const std::string& word, int guard_depth, int& depth) {
+  /// Enters and leaves branches of an #if.
+  void follow_conditional(const std::string& word) {
     const bool begins = word.starts_with("if"), turns = word.starts_with("el"), ends = word == "endif";
-    if ((turns || ends) && depth > guard_depth) seen_.pop_back();
-    if (begins) ++depth;
-    if ((begins || turns) && depth > guard_depth) seen_.emplace_back();
-    if (ends) --depth;
+    if ((turns || ends) && seen_.size() > 1) seen_.pop_back();
+    if (begins || turns) seen_.emplace_back();
   }
 
   bool is_seen(const std::string& path) const {

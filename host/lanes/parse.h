@@ -3,7 +3,8 @@
 //   UNIFORM T x               one value for all lanes; for a parameter or a member
 //   EACH_ALIKE(T, x, value) s runs s for each distinct value of `value`, in the lanes that have it
 //   any(c)                    whether c holds in some lane
-//   if (HAS_X && ...)         features are taken out by the preprocessor; HAVING(HAS_X) T m; for members
+//   if (HAS_X && ...)         features are taken out by the preprocessor; HAVING(HAS_X) T m; for members,
+//   HAVING(HAS_X) T f(...) for functions, HAVING(HAS_X); for those of a file from there on
 // In interfaces, to what is written by hand:
 //   T f(..., HERE, ...)       f takes the mask of the lanes that are there, in that place; calls leave it out
 //   CALLED(name) T f(...)     its name there; UNIFORM T f(...): it gives one value for all lanes

@@ -108,6 +108,11 @@ void Parser::skip_declaration() {
 void Parser::plain_declaration() {
   if (at("typedef")) return type_definition();
   if (at("LANE_VECTOR")) return vector_definition();
+  if (at("HAVING") && word(4).is(";")) {
+    features_[place().file] = word(2).text;
+    at_ += 5;
+    return;
+  }
   if (at("enum")) {
     enumeration();
     return want(";");
@@ -302,6 +307,7 @@ Type Parser::lengthened(Type type) {
 
 void Parser::function() {
   Function f;
+  f.feature = features_[place().file];
   for (;; ++at_) {
     if (at("inline"))
       f.is_inline = true;

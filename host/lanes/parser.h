@@ -84,7 +84,8 @@ class Parser {
   std::map<std::string, Type> types_;
   std::map<std::string, Type> constants_;
   std::vector<std::map<std::string, const Variable*>> scopes_;
-  const Function* function_ = nullptr;  // the function being parsed
+  std::map<const std::string*, std::string> features_;  // of files: HAVING(HAS_X);
+  const Function* function_ = nullptr;                  // the function being parsed
 };
 
 /// The precedence of a binary operator, 0 for other tokens.

@@ -160,8 +160,10 @@ std::string Writer::simple(const Expression& e) {
 std::string Writer::under(const std::string& mask, const Write& write) {
   const std::string outer = mask_;
   mask_ = fresh("m");
+  const std::size_t at = out_.size();
   line(fmt::format("const MASK {} = {} & {};", mask_, outer, mask));
   std::string text = write();
+  if (!mentions(text, mask_)) drop_unused(at, mask_);
   mask_ = outer;
   return text;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "lanes/writer.h"
 
@@ -272,6 +273,20 @@ std::string Writer::scatter(const Expression& to, const std::string& value) {
   return "";
 }
 
+bool mentions(const std::string& text, const std::string& name) {
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+    if (at + name.size() == text.size() || !std::isdigit(static_cast<unsigned char>(text[at + name.size()])))
+      return true;
+  return false;
+}
+
+/// Takes the line out that declares the mask `name`, unless a line behind it uses that.
+void Writer::drop_unused(std::size_t line_at, const std::string& name) {
+  const auto place = out_.begin() + static_cast<std::ptrdiff_t>(line_at);
+  if (std::none_of(place + 1, out_.end(), [&](const Line& l) { return mentions(l.text, name); }))
+    out_.erase(place);
+}
+
 void Writer::inside(Frame frame, const std::string& mask, const Statement& s) {
   const std::string outer = mask_;
   const bool is_round = frame.kind == Frame::Kind::round;
@@ -321,9 +336,7 @@ void Writer::branch(const Statement& s) {
     line(weight(part) > cheap || has_loop(part) ? fmt::format("if (any_lane({})) {{", mask) : "{");
     inside({Frame::Kind::branch, &s, static_cast<int>(i), true, leaves ? "" : name}, mask, part);
     line("}");
-    const bool used = std::any_of(out_.begin() + static_cast<std::ptrdiff_t>(at) + 1, out_.end(),
-                                  [&](const Line& l) { return l.text.find(mask) != std::string::npos; });
-    if (!used) out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(at));
+    drop_unused(at, mask);
   }
   if (exits_of(s).any() && alive() != mask_) line(fmt::format("{} &= {};", mask_, alive()));
 }

@@ -87,6 +87,7 @@ class Writer {
   void branch(const Statement& s);
   void feature_branch(const Statement& s);
   void inside(Frame frame, const std::string& mask, const Statement& s);
+  void drop_unused(std::size_t line_at, const std::string& name);
   void leave(const Statement& s);
   void give(const Statement& s);
   void each_alike(const Statement& s);
@@ -127,5 +128,7 @@ struct Exits {
 };
 Exits exits_of(const Statement& s);
 bool has_loop(const Statement& s);
+/// Whether `text` has `name`, which ends in a number.
+bool mentions(const std::string& text, const std::string& name);
 
 }  // namespace sundog::spmd

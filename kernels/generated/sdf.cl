@@ -1,6 +1,5 @@
 // The fields of a scene that has none. The host writes this file anew for a scene with fields.
-#ifndef SUNDOG_GENERATED_SDF_CL
-#define SUNDOG_GENERATED_SDF_CL
+#pragma once
 #include "lib/sdf/sample.h"
 
 static inline REAL sdf_distance(u32 field, REAL3 p, MASK active, __global const float* restrict q) {
@@ -15,5 +14,3 @@ static inline SdfSample sdf_sample(u32 field, REAL3 p, __global const float* res
   SdfSample s = {(REAL)(INFINITY), p, (REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f), (REAL)(0.0f)};
   return s;
 }
-
-#endif

@@ -4,6 +4,7 @@
 #include "shared/scene.h"
 
 CALLED(dot3) float dot(float3 a, float3 b);
+CALLED(cross3) float3 cross(float3 a, float3 b);
 CALLED(greatest3) float greatest(float3 a);
 CALLED(length3) float length(float3 a);
 CALLED(along3) float3 along(float3 a, float s, float3 b);  // a + s b
@@ -17,10 +18,12 @@ float nonzero(float a);  // to divide by
 
 float real_rsqrt(float a);
 float3 safe_unit3(float3 a);
+float3 renormalized3(float3 a);
 
 // Directions about an axis: at a cosine and a sine, or a cosine alone; `turn`: a part of a circle.
 float3 direction_at(float3 axis, float cosine, float sine, float turn);
 float3 direction_about(float3 axis, float cosine, float turn);
+void tangent_frame(float3 n, float3* s, float3* t);
 float real_acos(float x);
 void sincos_of_turn(float turn, float* sine, float* cosine);
 void place_in_disk(float u_x, float u_y, float* x, float* y);

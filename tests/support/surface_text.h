@@ -4,7 +4,8 @@
 
 /// Bsdfs make_surface(materials, n, before, after): its normal is n, between two media.
 inline const std::string surface_text = R"(
-#include "lib/shade/bsdf_sample.cl"
+#include "lib/shade/bsdf.cl"
+#include "plain/shade/lobes.cl"
 Bsdfs make_surface(__global const Material* materials, REAL3 n, int before, int after) {
   const REAL3 none = real3(0.0f, 0.0f, 0.0f);
   Bsdfs bsdf = {n, n, none, all3(materials[0].diffuse.xyz), 0, (int)materials[0].flags, before, after};

@@ -1,4 +1,4 @@
-// See albedos.h. The lobes are those of kernels/lib/shade/layer_lobes.cl.
+// See albedos.h. The lobes are those of kernels/plain/shade/layer_lobes.cl.
 #include "compile/layers/albedos.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-// See facets.h. The lobe is that of kernels/lib/shade/layer_lobes.cl.
+// See facets.h. The lobe is that of kernels/plain/shade/layer_lobes.cl.
 #include "compile/layers/facets.h"
 
 #include <tbb/parallel_for.h>

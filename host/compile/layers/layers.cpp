@@ -1,4 +1,4 @@
-// See layers.h. The lobes are those of kernels/lib/shade/layer_lobes.cl.
+// See layers.h. The lobes are those of kernels/plain/shade/layer_lobes.cl.
 #include "compile/layers/layers.h"
 
 #include <algorithm>

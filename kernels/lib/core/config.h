@@ -1,8 +1,7 @@
 // Constants that specialise kernels to a device, with defaults, and derived constants of a scene's features
 // (shared/features.h, shared/shapes.h; HAS_MESH, HAS_SPHERE, ...: it has that shape; HAS_BVH: rays traverse a
 // BVH). The host's KernelConfig writes the -D options. Thresholds of a method stand beside the method.
-#ifndef SUNDOG_LIB_CONFIG_H
-#define SUNDOG_LIB_CONFIG_H
+#pragma once
 #include "shared/shapes.h"
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -57,6 +56,9 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
+// Of lobes that surfaces of every scene may have (shared/lobes.h).
+#define HAS_SURFACES 1
+
 // Whether rays are traced at all, not only marched through fields.
 #define HAS_TRACED (HAS_MESH || HAS_SOLID)
 
@@ -110,5 +112,3 @@
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define HAS_CROSSINGS (HAS_MEDIA || HAS_SHADOW_FILTERS)
-
-#endif

@@ -1,6 +1,5 @@
 // Adds a work-item's ray counts to the launch's with integer atomics, so the order does not matter.
-#ifndef SUNDOG_LIB_COUNTERS_CL
-#define SUNDOG_LIB_COUNTERS_CL
+#pragma once
 #include "shared/scene.h"
 
 // The block of counters that the item uses.
@@ -19,5 +18,3 @@ static inline void add_counts(__global u32* restrict counters, const u32* counts
 static inline void add_finished(__global u32* restrict counters, u32 amount, u32 step) {
   for (u32 i = 0; i <= step; i += step) atomic_add(counters + COUNT_FINISHED, amount);
 }
-
-#endif

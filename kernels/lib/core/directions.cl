@@ -1,6 +1,5 @@
 // Directions about an axis and points in a disk, one per lane.
-#ifndef SUNDOG_LIB_DIRECTIONS_CL
-#define SUNDOG_LIB_DIRECTIONS_CL
+#pragma once
 #include "lib/core/lanes.h"
 
 // Sine and cosine of a fraction `turn` of a circle, both to 1.2e-7 (polynomials at Chebyshev nodes). Unlike
@@ -64,5 +63,3 @@ static inline void place_in_disk(REAL u_x, REAL u_y, REAL* x, REAL* y) {
   *x = r * cosine;
   *y = r * sine;
 }
-
-#endif

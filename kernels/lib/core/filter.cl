@@ -1,6 +1,5 @@
 // Reconstruction filters: offsets of camera samples from pixel centres (shared/filter.h).
-#ifndef SUNDOG_LIB_FILTER_CL
-#define SUNDOG_LIB_FILTER_CL
+#pragma once
 #include "shared/filter.h"
 #include "shared/types.h"
 
@@ -26,5 +25,3 @@ static inline float filter_place(__global const float* restrict table, u32 sampl
   }
   return sign;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Eight-lane helpers: masks and ordering of floats.
-#ifndef SUNDOG_LIB_MASKS_CL
-#define SUNDOG_LIB_MASKS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "shared/types.h"
 
@@ -27,5 +26,3 @@ static inline u32 lowest_bit(u32 mask) {
 // Not fmin and fmax, whose handling of NaN costs instructions.
 static inline float8 least8(float8 a, float8 b) { return select(b, a, a < b); }
 static inline float8 greatest8(float8 a, float8 b) { return select(b, a, a > b); }
-
-#endif

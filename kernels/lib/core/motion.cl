@@ -2,8 +2,7 @@
 // The ray is transformed to when the shutter opened: shifted by the object's row of the table `moves` times
 // t, then rotated and scaled about points by its rows of `turns`. The object's transform and bounds are
 // unchanged.
-#ifndef SUNDOG_LIB_MOTION_CL
-#define SUNDOG_LIB_MOTION_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 #include "lib/core/turns.cl"
@@ -63,6 +62,4 @@ static inline float3 moved_normal(const Scene* scene, u32 index, float3 n, float
 static inline REAL3 moved_vectors(const Scene* scene, u32 index, REAL3 a, REAL time) { return a; }
 static inline REAL moved_size(const Scene* scene, u32 index, REAL time) { return (REAL)(1.0f); }
 static inline float moved_extent(const Scene* scene, u32 index) { return 0.0f; }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Snell and Fresnel for smooth interfaces and unpolarised light, one ray per lane.
-#ifndef SUNDOG_LIB_OPTICS_CL
-#define SUNDOG_LIB_OPTICS_CL
+#pragma once
 #include "lib/core/lanes.h"
 
 // Cosine of the refracted angle, 0 under total internal reflection. `eta` is the transmitted over the
@@ -27,5 +26,3 @@ static inline REAL3 reflect_direction(REAL3 d, REAL3 n) {
 static inline REAL3 refract_direction(REAL3 d, REAL3 n, REAL cos_i, REAL cos_t, REAL eta) {
   return renormalized3(along3(scale3(d, 1.0f / eta), cos_i / eta - cos_t, n));
 }
-
-#endif

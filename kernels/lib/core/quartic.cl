@@ -2,8 +2,7 @@
 // derivatives (Yuksel 2022, "High-Performance Polynomial Root Finding for Graphics"): a polynomial is
 // monotone between neighbouring extrema, so every root is bracketed and none is missed, except double roots
 // within rounding.
-#ifndef SUNDOG_LIB_QUARTIC_CL
-#define SUNDOG_LIB_QUARTIC_CL
+#pragma once
 #include "lib/core/config.h"
 #include "shared/types.h"
 
@@ -69,5 +68,3 @@ static inline u32 quartic_roots(float a2, float a1, float a0, float low, float h
   for (u32 i = 0; i < found; ++i) roots[i] = all[i];
   return found;
 }
-
-#endif

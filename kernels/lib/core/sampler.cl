@@ -1,6 +1,5 @@
 // Sample values of one sample: pure functions of pixel, sample and dimension (listed in shared/sampler.h).
-#ifndef SUNDOG_LIB_SAMPLER_CL
-#define SUNDOG_LIB_SAMPLER_CL
+#pragma once
 #include "shared/sampler.h"
 #include "shared/types.h"
 
@@ -33,5 +32,3 @@ static inline float2 place_in_grid(uint2 pixel, u32 sample, u32 samples, u32 fra
       sample, samples,
       (float2)(unit_float(hash_u32(seed + 2u * sample)), unit_float(hash_u32(seed + 2u * sample + 1u))));
 }
-
-#endif

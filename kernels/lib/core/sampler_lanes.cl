@@ -1,7 +1,6 @@
 // The sample values of shared/sampler.h for one pixel sample per lane, with the same bits. Pure functions of
 // pixel, sample and dimension.
-#ifndef SUNDOG_LIB_SAMPLER_LANES_CL
-#define SUNDOG_LIB_SAMPLER_LANES_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/sampler.cl"
 
@@ -166,5 +165,3 @@ static inline void places_in_pixels(const LaneSamples* at, MASK lanes, u32 sampl
     pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), false, u, v);
   }
 }
-
-#endif

@@ -2,8 +2,7 @@
 // parameters, since OpenCL C 1.2 allows no pointers in a struct argument, and collects them in a Scene for
 // its callees:
 //   __kernel void f(SCENE_PARAMETERS, ...) { const Scene scene = SCENE_OF_PARAMETERS; ... }
-#ifndef SUNDOG_LIB_TABLES_H
-#define SUNDOG_LIB_TABLES_H
+#pragma once
 #include "shared/scene_tables.h"
 
 #define SCENE_MEMBER(type, host_type, name, label) __global const type* restrict name;
@@ -23,6 +22,4 @@ typedef struct Scene {
 #define FETCH_ROW(row) __builtin_prefetch((const void*)(ulong)(row))
 #else
 #define FETCH_ROW(row)
-#endif
-
 #endif

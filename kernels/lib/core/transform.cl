@@ -1,6 +1,5 @@
 // Rays and normals between world and object space.
-#ifndef SUNDOG_LIB_TRANSFORM_CL
-#define SUNDOG_LIB_TRANSFORM_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "shared/bvh.h"
 
@@ -67,5 +66,3 @@ static inline float3 world_normal(__global const Instance* instance, float3 n) {
   return (float3)(fma(r0.x, n.x, fma(r1.x, n.y, r2.x * n.z)), fma(r0.y, n.x, fma(r1.y, n.y, r2.y * n.z)),
                   fma(r0.z, n.x, fma(r1.z, n.y, r2.z * n.z)));
 }
-
-#endif

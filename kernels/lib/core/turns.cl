@@ -1,7 +1,6 @@
 // Rotation and scaling of instances about points while the shutter is open, backward to when it opened and
 // forward from then; one row of `turns` at a time.
-#ifndef SUNDOG_LIB_TURNS_CL
-#define SUNDOG_LIB_TURNS_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "shared/bvh.h"
 
@@ -105,6 +104,4 @@ static inline REAL turned_size(__global const Turn* turns, float4 moves, REAL ti
 static inline float turned_extent(__global const Turn* turns, float4 moves) {
   return moves.w > 0.0f ? turns[first_turn(moves)].turn.w : 0.0f;
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Where lights are, and places on those with an extent.
-#ifndef SUNDOG_LIB_AREA_LIGHT_CL
-#define SUNDOG_LIB_AREA_LIGHT_CL
+#pragma once
 #include "lib/core/tables.h"
 
 // The part of the way to a light that shadow rays go, since the light's own surface lies at its end.
@@ -34,5 +33,3 @@ static inline float3 place_on_light(__global const Light* light, float c, float 
   *area = 4.0f * M_PI_F * light->edge_u.w * light->edge_u.w;
   return corner + light->edge_u.w * *n;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // One light of many for a point, by the tree over the lights with an extent: at each node a child is chosen
 // by its power over the square of its distance (the idea of Conty Estevez and Kulla 2018, "Importance
 // Sampling of Many Lights with Adaptive Tree Splitting", without directions).
-#ifndef SUNDOG_LIB_CHOOSE_LIGHT_CL
-#define SUNDOG_LIB_CHOOSE_LIGHT_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
@@ -69,6 +68,4 @@ static inline REAL light_probabilities(const Scene* scene, u32 leaf, REAL3 p, MA
     REAL_LANE(probability, lowest_bit(bits)) = light_probability(scene, leaf, get3(&p, lowest_bit(bits)));
   return probability;
 }
-#endif
-
 #endif

@@ -1,8 +1,7 @@
 // Light of the lights with an extent that surfaces see whole or behind solids alone, without rays that go
 // through the scene: a shaft says what may stand before the light (trace/shaft.cl). Where nothing does, the
 // diffuse term is exact and highlights are sampled; else samples are tried against the solids in the shafts.
-#ifndef SUNDOG_LIB_DIRECT_LIGHT_CL
-#define SUNDOG_LIB_DIRECT_LIGHT_CL
+#pragma once
 #include "lib/light/light.cl"
 #include "lib/light/seen_light.cl"
 #include "lib/light/shadow_rays.cl"
@@ -81,7 +80,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
     if (!any_lane(facing)) continue;
     const REAL weight = light_weight(&sample, facing) / (float)way->rays;
     const REAL3 possible =
-        multiply3(scale3(sample.radiance, weight), bsdf_eval(scene, bsdf, wo, sample.wi, facing));
+        multiply3(scale3(sample.radiance, weight), local_light(scene, bsdf, wo, sample.wi, NO_LANES, facing));
     MASK lit = facing & MASK_OF(greatest3(possible) >= FLT_MIN);
     const MASK asking = lit & soft;
     if (any_lane(asking)) {
@@ -170,6 +169,4 @@ static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const 
                              MASK* casting, float4* radiance, u32* counts) {
   return true;
 }
-#endif
-
 #endif

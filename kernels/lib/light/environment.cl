@@ -1,6 +1,5 @@
 // Light from infinitely far away: the environment's picture and suns. A direction a lane.
-#ifndef SUNDOG_LIB_ENVIRONMENT_CL
-#define SUNDOG_LIB_ENVIRONMENT_CL
+#pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
 #include "lib/path/camera.cl"
@@ -279,5 +278,3 @@ static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK camera, MASK lan
   }
   return light;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // What fields do to light besides stopping it: soft shadows.
-#ifndef SUNDOG_LIB_FIELD_LIGHT_CL
-#define SUNDOG_LIB_FIELD_LIGHT_CL
+#pragma once
 #include "lib/path/scene_ray.cl"
 #if HAS_SDF
 #include "lib/path/fields.cl"
@@ -34,6 +33,4 @@ NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK a
 static inline REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   return (REAL)(1.0f);
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Crevices of fields that ambient light does not reach.
-#ifndef SUNDOG_LIB_FIELD_OPENNESS_CL
-#define SUNDOG_LIB_FIELD_OPENNESS_CL
+#pragma once
 #include "lib/path/scene_ray.cl"
 #if HAS_SDF
 #include "lib/path/fields.cl"
@@ -30,6 +29,4 @@ NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, cons
 static inline REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
   return (REAL)(1.0f);
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Where light comes from: the scene's lights, and what glows by itself. A point or a ray a lane.
-#ifndef SUNDOG_LIB_LIGHT_CL
-#define SUNDOG_LIB_LIGHT_CL
+#pragma once
 #include "lib/core/tables.h"
 #include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
@@ -14,5 +13,3 @@ static inline bool rays_meet(const Scene* scene, u32 index) {
   if (light->kind == LIGHT_SUN) return light->direction.w > 0.0f;
   return light->kind >= LIGHT_RECTANGLE && light->position.w == 0.0f;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Shadows of reliefs below surfaces: on themselves (Brawley and Tatarchuk 2004, as in lib/shade/parallax.cl),
 // and on what stands among them. A surface a lane.
-#ifndef SUNDOG_LIB_RELIEF_SHADOW_CL
-#define SUNDOG_LIB_RELIEF_SHADOW_CL
+#pragma once
 #include "lib/shade/relief_hits.cl"
 
 #if HAS_PARALLAX
@@ -63,7 +62,7 @@ NEVER_INLINE REAL walls_visibility(const Scene* scene, const SceneRays* rays, co
   lanes = has_parallax(scene, &top, lanes);
   if (!any_lane(lanes)) return one;
   interact(scene, from_light.o, from_light.d, &hits, &faces, lanes, &top);
-  set_footprint(s->footprint, &top);
+  top.footprint = s->footprint;
   add_parallax(scene, from_light.d, lanes, &top);
   const REAL depth = relief_depths(scene, &top, lanes);
   const REAL reached = (top.sunk + PARALLAX_BIAS) * ways_through(&top, wi, depth);
@@ -77,6 +76,4 @@ static inline REAL walls_visibility(const Scene* scene, const SceneRays* rays, c
                                     REAL3 wi, MASK lanes, u32* counts) {
   return (REAL)(1.0f);
 }
-#endif
-
 #endif

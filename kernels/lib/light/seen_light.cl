@@ -1,7 +1,6 @@
 // A light with an extent as points see it: the corners of what holds it, and the irradiance of one that
 // nothing hides. A point a lane.
-#ifndef SUNDOG_LIB_SEEN_LIGHT_CL
-#define SUNDOG_LIB_SEEN_LIGHT_CL
+#pragma once
 #include "lib/core/directions.cl"
 #include "lib/light/area_light.cl"
 
@@ -152,5 +151,3 @@ static inline MASK cosine_of_rectangle(__global const Light* light, const SeenLi
   *integral = select(*integral, from_afar, far);
   return known | far;
 }
-
-#endif

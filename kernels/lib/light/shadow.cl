@@ -1,14 +1,12 @@
 // How much of a light reaches the points of a batch. Media absorb. Opaque scenes end at the first occluder;
 // else transmissive things are filters: each interface lets its transmission through (1 - F of a dielectric,
 // on the straight line).
-#ifndef SUNDOG_LIB_SHADOW_CL
-#define SUNDOG_LIB_SHADOW_CL
+#pragma once
 #include "lib/core/optics.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/layer_sample.cl"
-#include "lib/shade/maps.cl"
+#include "plain/shade/layers.cl"
 
 #define MAX_FILTERS 64
 
@@ -34,7 +32,6 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
 #if HAS_MAPS
 NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                   const Faces* faces, MASK lanes, REAL3 plain) {
-  REAL3 transmission = plain;
   SurfaceInteractions s;
   s.p = along3(rays->o, hits->t, rays->d);
   s.ng = safe_unit3(faces->outward);
@@ -43,40 +40,13 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   s.material = faces->material;
   locate(scene, hits, lanes, &s);
   set_footprints(scene, rays, hits->t, &s);
-  TexturePoints at;
-  texture_points(scene, &s, lanes, &at);
-  u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
-    const MASK mine = take_alike(s.material, &left, &index);
-    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
-    SlotValues values;
-    read_slots(scene, maps, 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY | BASE_SLOTS, &at, mine, &values);
-    map_term(maps, &values, MAP_TRANSMISSION, mine, &transmission);
-    stop_at_base(scene, index, maps, &values, mine, &transmission);
-    REAL opacity = opacity_of(maps, &values);
-    if (scene->materials[index].flags & MATERIAL_ONE_SIDED)
-      opacity = select((REAL)(0.0f), opacity, SHADOWS_AS_PATHS ? faces->entering : ~faces->entering);
-    const REAL behind = 1.0f - opacity;
-    transmission =
-        select3(transmission, add3(scale3(transmission, opacity), real3(behind, behind, behind)), mine);
-  }
-  return transmission;
+  return mapped_filter(scene, &s, SHADOWS_AS_PATHS ? faces->entering : ~faces->entering, plain, lanes);
 }
 #else
 static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                    const Faces* faces, MASK lanes, REAL3 plain) {
   return plain;
 }
-#endif
-
-// Sets the part of light that the thin walls of an index among the surfaces of `lanes` let through.
-#if HAS_THIN_WALLS
-static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {
-  const REAL cosine = real_min(fabs(dot3(safe_unit3(faces->outward), wi)), (REAL)(1.0f));
-  *kept = 1.0f - reflected_by_walls(scene, faces->material, faces->flags, cosine, 1.0f - *kept, lanes);
-}
-#else
-static inline void pass_walls(const Scene* scene, const Faces* faces, REAL3 wi, MASK lanes, REAL* kept) {}
 #endif
 
 // What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
@@ -90,14 +60,7 @@ NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, co
   set_footprints(scene, rays, hits->t, &s);
   const Bsdfs bsdf = make_bsdfs(scene, &s, NO_LANES, NO_LANES, lanes);
   const REAL c = real_clamp(-dot3(bsdf.ns, rays->d), (REAL)(0.0f), (REAL)(1.0f));
-  REAL3 passed = through;
-  u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
-    const MASK mine = take_alike(faces->material, &left, &index);
-    const REAL3 by_layers = left_by_layers(scene, scene->layers + index, &bsdf, c, -c, mine);
-    passed = select3(passed, left_where_there(&bsdf, through, by_layers), mine);
-  }
-  return passed;
+  return passed_by_layers(scene, &bsdf, c, through, lanes);
 }
 static inline void pass_layers(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                const Faces* faces, MASK lanes, REAL3* passed) {
@@ -127,7 +90,10 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
   *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
   REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);
-  pass_walls(scene, faces, rays->d, dielectric, &kept);
+  if (HAS_THIN_WALLS) {
+    const REAL cosine = real_min(fabs(dot3(safe_unit3(faces->outward), rays->d)), (REAL)(1.0f));
+    kept = 1.0f - reflected_by_walls(scene, faces->material, faces->flags, cosine, 1.0f - kept, dielectric);
+  }
   *through = select3(*through, scale3(*through, kept), dielectric);
 }
 
@@ -268,6 +234,4 @@ static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 se
   }
   return select3(all3((float3)(0.0f)), light, arriving);
 }
-#endif
-
 #endif

@@ -1,54 +1,15 @@
 // Shadow rays from surfaces to the lights, left on a stack with the light that each would bring.
-#ifndef SUNDOG_LIB_SHADOW_RAYS_CL
-#define SUNDOG_LIB_SHADOW_RAYS_CL
+#pragma once
 #include "lib/light/choose_light.cl"
 #include "lib/light/field_light.cl"
 #include "lib/light/light.cl"
 #include "lib/light/relief_shadow.cl"
+#include "lib/light/shading.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/path/ray_stack.cl"
-#include "lib/path/segment.cl"
-#include "lib/shade/bsdf.cl"
-#include "lib/shade/layers.cl"
 #include "lib/shade/relief.cl"
-
-// What surfaces and the rays that met them are, for all that is done there.
-typedef struct Shading {
-  SurfaceInteractions s;
-  Bsdfs bsdf;
-} Shading;
-
-// A shading normal may mirror the viewer's direction below the face, where lobes about that are lost and the
-// surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
-// reflected_direction().
-#if SHADOWS_AS_PATHS && (HAS_LAYERS || HAS_ROUGH)
-#define GLOSSY (HAS_ROUGH ? MATERIAL_LAYERED | MATERIAL_REFLECTS : MATERIAL_LAYERED)
-static inline void bend_normals(REAL3 d, MASK lanes, SurfaceInteractions* s) {
-  const REAL3 mirrored = reflect_direction(d, s->ns);
-  const REAL height = dot3(s->ng, mirrored), least = real_min(-0.9f * dot3(s->ng, d), (REAL)(0.01f));
-  const MASK low = lanes & MASK_OF((s->flags & (int)GLOSSY) != 0) & MASK_OF(height < least);
-  if (!any_lane(low)) return;
-  const REAL3 flat = safe_unit3(along3(mirrored, -height, s->ng));
-  const REAL3 lifted = along3(scale3(flat, real_sqrt(1.0f - least * least)), least, s->ng);
-  s->ns = select3(s->ns, safe_unit3(subtract3(lifted, d)), low);
-}
-#else
-static inline void bend_normals(REAL3 d, MASK lanes, SurfaceInteractions* s) {}
-#endif
-
-// The surfaces of `lanes` and what they do to light.
-static inline void shade_hits(const Scene* scene, const SceneRays* rays, const Encounters* met, MASK lanes,
-                              Shading* at) {
-  interact(scene, rays->o, rays->d, &met->hit, &met->face, lanes, &at->s);
-  at->s.offset = offset_beyond(met, at->s.offset);
-  note_depth(met, &at->s);
-  set_footprints(scene, rays, met->hit.t, &at->s);
-  add_parallax(scene, rays->d, lanes, &at->s);
-  add_relief(scene, rays->d, lanes, &at->s);
-  bend_normals(rays->d, lanes, &at->s);
-  at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
-}
+#include "plain/shade/local_light.cl"
 
 #if HAS_LIGHT_TREE
 // A way to one of the lights of the tree for each point, for which it stands with all its light. Other rays
@@ -117,8 +78,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   const MASK facing = lanes & MASK_OF(dot3(s->ns, light.wi) > 0.0f);
   if (!any_lane(facing)) return;
   const REAL3 wo = negate3(rays->d);
-  REAL3 possible = bsdf_eval(scene, &at->bsdf, wo, light.wi, facing);
-  possible = multiply3(light.radiance, layered_light(scene, &at->bsdf, wo, light.wi, met, facing, possible));
+  REAL3 possible = multiply3(light.radiance, local_light(scene, &at->bsdf, wo, light.wi, met, facing));
   if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
   if (HAS_PARALLAX) {
     possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
@@ -145,5 +105,3 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));
   push_shadows(stack, &to_light, &weights, lit);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The pinhole camera and the background.
-#ifndef SUNDOG_LIB_CAMERA_CL
-#define SUNDOG_LIB_CAMERA_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
@@ -64,5 +63,3 @@ static inline REAL3 background_along(__global const SceneInfo* restrict info, RE
   const REAL s = real_clamp(fma(sine, (REAL)(0.5f), (REAL)(0.5f)), (REAL)(0.0f), (REAL)(1.0f));
   return along3(all3(bottom), s, all3(info->background_top.xyz - bottom));
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Starts samples of pixels, one pixel per lane: positions in the image, and camera rays.
-#ifndef SUNDOG_LIB_CAMERA_SAMPLES_CL
-#define SUNDOG_LIB_CAMERA_SAMPLES_CL
+#pragma once
 #include "lib/core/filter.cl"
 #include "lib/path/lens.cl"
 #include "lib/path/scene_ray.cl"
@@ -27,5 +26,3 @@ static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun
   const Rays camera = sampled_camera_rays(scene->info, &places);
   return scene_rays(&camera, around);
 }
-
-#endif

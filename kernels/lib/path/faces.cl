@@ -1,7 +1,6 @@
 // The side and material that rays hit, without shading: all that interfaces and shadow rays need. One ray per
 // lane.
-#ifndef SUNDOG_LIB_FACES_CL
-#define SUNDOG_LIB_FACES_CL
+#pragma once
 #include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
@@ -53,5 +52,3 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
   faces.entering = MASK_OF(dot3(faces.outward, d) < 0.0f);
   return faces;
 }
-
-#endif

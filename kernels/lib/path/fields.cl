@@ -1,7 +1,6 @@
 // Distance fields among the scene's other objects: marches a batch of world-space rays through each field, up
 // to the nearest known hit. Instances [instance_count, field_end) place the fields.
-#ifndef SUNDOG_LIB_FIELDS_CL
-#define SUNDOG_LIB_FIELDS_CL
+#pragma once
 #include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
@@ -236,5 +235,4 @@ static inline void start_marching(u32* counts) { counts[COUNT_MARCH_LEFT] = MARC
 static inline void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
                                 u32* counts) {}
 static inline void start_marching(u32* counts) {}
-#endif
 #endif

@@ -1,6 +1,5 @@
 // Camera rays of a sample, with a lens and a moving camera if the scene has these.
-#ifndef SUNDOG_LIB_LENS_CL
-#define SUNDOG_LIB_LENS_CL
+#pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/camera.cl"
@@ -110,5 +109,3 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
   set_ray_times(sampled_time(samples), &rays);
   return rays;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Which objects and materials cover a pixel, each with the sum of what it covers of the pixel's samples. A
 // surface covers the part of the light from behind the scene that goes no further straight on, so that the
 // shares of a pixel sum to its alpha.
-#ifndef SUNDOG_LIB_MATTES_CL
-#define SUNDOG_LIB_MATTES_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 #include "shared/launch.h"
@@ -48,4 +47,3 @@ static inline void add_matte(const Scene* scene, __global float4* sums, int inst
 }
 #endif
 
-#endif

@@ -1,8 +1,7 @@
 // The stack of media that travels with a ray. Where solids overlap, the medium of highest priority applies;
 // among equal priorities, the last entered (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced
 // Images").
-#ifndef SUNDOG_LIB_MEDIA_CL
-#define SUNDOG_LIB_MEDIA_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
@@ -79,5 +78,3 @@ static inline REAL relative_index(__global const Medium* restrict media, MASK be
   if (!HAS_MEDIA) return (REAL)(1.0f);
   return refraction_index(media, after, lanes) / refraction_index(media, before, lanes);
 }
-
-#endif

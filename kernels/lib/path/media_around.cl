@@ -1,6 +1,5 @@
 // Finds the media that contain a place by following a line from it to the outside.
-#ifndef SUNDOG_LIB_MEDIA_AROUND_CL
-#define SUNDOG_LIB_MEDIA_AROUND_CL
+#pragma once
 #include "lib/path/segment.cl"
 
 // The line leaves `medium`: one that it entered, or one that contains the camera. Of the latter, media left
@@ -73,5 +72,3 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
   }
   return holding;
 }
-
-#endif

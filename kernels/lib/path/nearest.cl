@@ -1,7 +1,6 @@
 // Nearest hits of a batch among everything in the scene: first instances and planes by the tracer, then
 // fields by marching up to those hits.
-#ifndef SUNDOG_LIB_NEAREST_CL
-#define SUNDOG_LIB_NEAREST_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/tables.h"
 #include "lib/path/fields.cl"
@@ -50,6 +49,4 @@ static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, b
   if (any) active &= ~hit_anything(hits);
   if (HAS_SDF && any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Random numbers along rays: by each ray's pixel, sample and position in the ray tree.
-#ifndef SUNDOG_LIB_PATH_SAMPLES_CL
-#define SUNDOG_LIB_PATH_SAMPLES_CL
+#pragma once
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/ray_stack.cl"
 
@@ -80,6 +79,4 @@ static inline void bounce_numbers(const TileSamples* tile, const WaitingRays* pa
                                   u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   *u_x = *u_y = (REAL)(0.5f);
 }
-#endif
-
 #endif

@@ -1,8 +1,7 @@
 // Counts camera, reflected, refracted and shadow rays of pixels, on request. With RAYS_BY_LANE they are
 // counted per pixel of a work-item, after the launch's counters; else for all its pixels together, as the
 // first one's.
-#ifndef SUNDOG_LIB_RAY_COUNTS_CL
-#define SUNDOG_LIB_RAY_COUNTS_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/path/tile.cl"
 
@@ -54,6 +53,4 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
     rays[at.y * launch->width + at.x] +=
         counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
 }
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 // Waiting rays with their contributions to pixels. Arrays by member, so that a batch is pushed and popped in
 // whole vectors.
-#ifndef SUNDOG_LIB_RAY_STACK_CL
-#define SUNDOG_LIB_RAY_STACK_CL
+#pragma once
 #include "lib/path/scene_ray.cl"
 
 // Data of rays besides their geometry.
@@ -137,5 +136,3 @@ static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* ra
     radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i);
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Rays on their way through the scene, a ray a lane (plain/path/scene_ray.cl), and their media.
-#ifndef SUNDOG_LIB_SCENE_RAY_CL
-#define SUNDOG_LIB_SCENE_RAY_CL
+#pragma once
 #include "lib/core/tables.h"
 #include "lib/path/camera.cl"
 #include "lib/path/media.cl"
@@ -35,5 +34,3 @@ static inline MASK current_media(__global const Medium* restrict media, const Sc
   }
   return current;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Moves a batch of rays from their starts to the next visible surfaces: crosses interfaces overruled by
 // priority, maintains the media stack and accumulates absorption.
-#ifndef SUNDOG_LIB_SEGMENT_CL
-#define SUNDOG_LIB_SEGMENT_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/path/faces.cl"
 #include "lib/path/media.cl"
@@ -286,6 +285,4 @@ static inline void enter_behind(const Encounters* met, const SceneRays* rays, MA
     set_media(child, i, crossed);
   }
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // The pixels of a work-item's lanes, and storage of their samples.
-#ifndef SUNDOG_LIB_TILE_CL
-#define SUNDOG_LIB_TILE_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/path/mattes.cl"
 #include "shared/launch.h"
@@ -143,5 +142,3 @@ static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const
     weights[pixel] += REAL_LANE(share, lane);
   }
 }
-
-#endif

@@ -2,8 +2,7 @@
 // from the media before to the media behind, with a single reflection and refraction. Crossed one by one, the
 // next ray would start beyond faces that it has not hit yet, or be reflected by a nonexistent gap. The host
 // marks the instances that may touch others.
-#ifndef SUNDOG_LIB_TOUCHING_CL
-#define SUNDOG_LIB_TOUCHING_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/path/faces.cl"
 #include "lib/path/media.cl"
@@ -299,6 +298,4 @@ static inline MASK may_touch(__global const Instance* restrict instances, const 
 static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   return NO_LANES;
 }
-#endif
-
 #endif

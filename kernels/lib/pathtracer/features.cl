@@ -1,6 +1,5 @@
 // The mean of the features of a pixel's samples (plain/pathtracer/features.cl). A pixel a lane.
-#ifndef SUNDOG_LIB_FEATURES_CL
-#define SUNDOG_LIB_FEATURES_CL
+#pragma once
 #include "lib/path/camera_samples.cl"
 #include "lib/pathtracer/steps.cl"
 #include "plain/pathtracer/features.cl"
@@ -43,5 +42,3 @@ NEVER_INLINE Features mean_features(const Scene* scene, MediaStack around, MASK 
       real3(real_max(sum.albedo.x, zero), real_max(sum.albedo.y, zero), real_max(sum.albedo.z, zero)), lanes);
   return sum;
 }
-
-#endif

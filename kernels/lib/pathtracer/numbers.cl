@@ -1,7 +1,6 @@
 // Random numbers of paths and photons, four dimensions at a time: one function that is called, because
 // compilers would repeat it in each place.
-#ifndef SUNDOG_LIB_PATH_NUMBERS_CL
-#define SUNDOG_LIB_PATH_NUMBERS_CL
+#pragma once
 #include "lib/core/sampler_lanes.cl"
 
 // chosen_lanes().
@@ -11,5 +10,3 @@ NEVER_INLINE FourNumbers wanted_lanes(const LaneSamples* at, MASK dimension, boo
 static inline FourNumbers sample_lanes(const LaneSamples* at, MASK dimension) {
   return wanted_lanes(at, dimension, true, true);
 }
-
-#endif

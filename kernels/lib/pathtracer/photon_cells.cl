@@ -1,6 +1,5 @@
 // The cubes that photons are found by.
-#ifndef SUNDOG_LIB_PHOTON_CELLS_CL
-#define SUNDOG_LIB_PHOTON_CELLS_CL
+#pragma once
 #include "lib/core/sampler.cl"
 #include "shared/photons.h"
 
@@ -42,5 +41,3 @@ static inline float3 unpack_direction(float2 v) {
   const float3 d = (float3)(side.x, side.y, z);
   return d * rsqrt(dot(d, d));
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Photons about the surfaces of paths, within a radius: of each lane one after the other.
-#ifndef SUNDOG_LIB_PHOTON_SEARCH_CL
-#define SUNDOG_LIB_PHOTON_SEARCH_CL
+#pragma once
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/scene_ray.cl"
 #include "lib/pathtracer/photon_cells.cl"
@@ -116,6 +115,4 @@ static inline MASK next_photon(const Scene* scene, PhotonSearches* searches, MAS
   }
   return found;
 }
-#endif
-
 #endif

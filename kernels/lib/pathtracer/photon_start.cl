@@ -1,8 +1,7 @@
 // How photons leave the lights: towards the balls about what mirrors and bends light. A photon's density is
 // that of all balls together, so that one that might have been sent to several counts for each (the balance
 // heuristic of Veach and Guibas 1995 with one sample).
-#ifndef SUNDOG_LIB_PHOTON_START_CL
-#define SUNDOG_LIB_PHOTON_START_CL
+#pragma once
 #include "lib/core/directions.cl"
 #include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
@@ -231,5 +230,3 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.lanes = lanes & MASK_OF(greatest3(starts.flux) > 0.0f) & MASK_OF(greatest3(starts.flux) < INFINITY);
   return starts;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The vector that plain/pathtracer/spectrum.cl calls SampledSpectrum.
-#ifndef SUNDOG_LIB_SAMPLED_SPECTRUM_CL
-#define SUNDOG_LIB_SAMPLED_SPECTRUM_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/pathtracer/numbers.cl"
 #include "lib/shade/dispersion.cl"
@@ -17,5 +16,3 @@ typedef REAL3 SampledSpectrum;
 #define spectrum_add OF_SPECTRUM(add)
 #define spectrum_multiply OF_SPECTRUM(multiply)
 #define spectrum_scale OF_SPECTRUM(scale)
-
-#endif

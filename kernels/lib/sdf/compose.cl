@@ -1,7 +1,6 @@
 // Combinations of distance fields. Each operation preserves bounds: if its operands never exceed the distance
 // to their surfaces, neither does the result.
-#ifndef SUNDOG_LIB_SDF_COMPOSE_CL
-#define SUNDOG_LIB_SDF_COMPOSE_CL
+#pragma once
 #include "lib/sdf/sample.h"
 
 // Table of a transformed field: rows of the rotation's transpose, offset, scale and inverse scale.
@@ -93,5 +92,3 @@ static inline SdfSample shell_sample(SdfSample s, SCALAR amount) {
   shell.distance -= 0.5f * amount;
   return shell;
 }
-
-#endif

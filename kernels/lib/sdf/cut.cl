@@ -1,6 +1,5 @@
 // The interval of a field: a box, optionally a sphere, that bounds the march and cuts the surface.
-#ifndef SUNDOG_LIB_SDF_CUT_CL
-#define SUNDOG_LIB_SDF_CUT_CL
+#pragma once
 #include "lib/sdf/sample.h"
 
 // Clips to one slab. A parallel ray is always or never inside (avoids 0 times infinity).
@@ -48,5 +47,3 @@ static inline REAL3 cut_normal(__global const SdfField* restrict field, REAL3 p)
       subtract3(p, real3((REAL)(field->sphere.x), (REAL)(field->sphere.y), (REAL)(field->sphere.z)));
   return select3(n, unit3(radial), MASK_OF(length3(radial) - field->sphere.w > fmax(x, fmax(y, z))));
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Formulas in double precision, for views so near that floats cannot distinguish the pixels' points. From
 // here to lib/sdf/deep_end.h the names of lib/core/lanes.h mean lanes of doubles; on a device without doubles
 // they keep their meaning, and such views are coarse.
-#ifndef SUNDOG_LIB_SDF_DEEP_BEGIN_H
-#define SUNDOG_LIB_SDF_DEEP_BEGIN_H
+#pragma once
 #include "lib/core/lanes.h"
 #include "shared/sdf.h"
 
@@ -121,5 +120,3 @@ static inline int deep_any_lane(DEEP_MASK m) { return any_lane(DEEP_TO_MASK(m));
 #endif
 
 #define SdfSample DeepSample
-
-#endif

@@ -1,6 +1,5 @@
 // Ends lib/sdf/deep_begin.h.
-#ifndef SUNDOG_LIB_SDF_DEEP_END_H
-#define SUNDOG_LIB_SDF_DEEP_END_H
+#pragma once
 
 #undef SdfSample
 #ifdef cl_khr_fp64
@@ -51,5 +50,3 @@ static inline SdfSample shallow_sample(DeepSample s) {
       DEEP_TO(s.axis),     DEEP_TO(s.iterations)};
   return r;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Interprets the fields of any scene by programs in their parameter table (host/compile/fields/
 // field_program.h). Draws after an edit of a formula until its own kernel is built; replaces
 // generated/sdf.cl, with the same bits.
-#ifndef SUNDOG_GENERATED_SDF_CL
-#define SUNDOG_GENERATED_SDF_CL
+#pragma once
 #include "lib/sdf/compose.cl"
 #include "shared/field_ops.h"
 
@@ -167,5 +166,3 @@ static inline REAL sdf_near(u32 field, REAL3 p, MASK active, __global const floa
   REAL r[FIELD_REGISTERS];
   return r[run_field(field, sdf_uneven(field, q) ? 3u : 1u, p, active, q, r)];
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Light estimated from a field: ambient occlusion and soft shadows (A. Evans 2006; I. Quilez, Soft shadows in
 // raymarched SDFs, 2010).
-#ifndef SUNDOG_LIB_SDF_LIGHT_CL
-#define SUNDOG_LIB_SDF_LIGHT_CL
+#pragma once
 #include "lib/sdf/march.cl"
 
 // Distance of p from the surface, for occlusion.
@@ -49,5 +48,3 @@ static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3
   }
   return clamp(open, (REAL)(0.0f), (REAL)(1.0f));
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Sphere tracing (Hart 1996) of LANES rays at once, in field space. Over-relaxed steps are reverted if the
 // two empty spheres do not touch (Keinert et al. 2014), so a step never exceeds what the field's bound proves
 // empty.
-#ifndef SUNDOG_LIB_SDF_MARCH_CL
-#define SUNDOG_LIB_SDF_MARCH_CL
+#pragma once
 // First, because fields in doubles rename what the files below define.
 #include "lib/sdf/near.cl"
 
@@ -229,5 +228,3 @@ static inline MarchHits march_rays(const Scene* scene, u32 index, const MarchRay
   }
   return hits;
 }
-
-#endif

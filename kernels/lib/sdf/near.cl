@@ -1,7 +1,6 @@
 // The generated fields, with a default for scenes without uneven fields: estimates that are distances
 // everywhere need no separate distance near the surface.
-#ifndef SUNDOG_LIB_SDF_NEAR_CL
-#define SUNDOG_LIB_SDF_NEAR_CL
+#pragma once
 #include "generated/sdf.cl"
 
 #ifndef SDF_HAS_NEAR
@@ -11,6 +10,4 @@ static inline bool sdf_uneven(u32 field, __global const float* restrict q) { ret
 static inline REAL sdf_near(u32 field, REAL3 p, MASK active, __global const float* restrict q) {
   return sdf_distance(field, p, active, q);
 }
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // Results of generated code at a point of a field, and their helpers.
-#ifndef SUNDOG_LIB_SDF_SAMPLE_H
-#define SUNDOG_LIB_SDF_SAMPLE_H
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
@@ -99,5 +98,3 @@ static inline SdfSample select_sample(SdfSample a, SdfSample b, MASK m) {
   r.iterations = select(a.iterations, b.iterations, m);
   return r;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Shading data of a marched hit: normal and orbit colour.
-#ifndef SUNDOG_LIB_SDF_SURFACE_CL
-#define SUNDOG_LIB_SDF_SURFACE_CL
+#pragma once
 #include "lib/sdf/march.cl"
 
 // The palette at `trap`, linear between stops and cyclic.
@@ -90,5 +89,3 @@ static inline REAL3 sdf_color(const Scene* scene, u32 index, REAL3 p) {
   called_sample(scene, index, &p, &s);
   return palette_color(scene, field, trap_value(field->color_by, s, trap_place(scene, index, p)));
 }
-
-#endif

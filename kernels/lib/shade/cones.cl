@@ -1,8 +1,7 @@
 // Changes of pixel cones by reflection and refraction: by the curvature of surfaces (Akenine-Moeller and
 // others 2021, "Improved Shader and Texture Level of Detail Using Ray Cones") and, at interfaces, by the
 // refraction of neighbouring rays. Behind its focus a cone's width is negative.
-#ifndef SUNDOG_LIB_CONES_CL
-#define SUNDOG_LIB_CONES_CL
+#pragma once
 #include "lib/shade/bsdf.cl"
 
 #if HAS_CONES && HAS_SECONDARY
@@ -67,6 +66,4 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
 static inline void spread_reflected(REAL curvature, SceneRays* child) {}
 static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
                                       SceneRays* child) {}
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 // Wavelength-dependent refractive indices; a wavelength is a (fractional) row of the table `spectra`. One
 // surface per lane.
-#ifndef SUNDOG_LIB_DISPERSION_CL
-#define SUNDOG_LIB_DISPERSION_CL
+#pragma once
 #include "lib/path/media.cl"
 #include "shared/spectra.h"
 
@@ -46,6 +45,4 @@ static inline MASK disperses(const Scene* scene, MASK before, MASK after, MASK l
 static inline REAL relative_index_at(const Scene* scene, MASK before, MASK after, REAL row, MASK lanes) {
   return index_at(scene, after, row, lanes) / index_at(scene, before, row, lanes);
 }
-#endif
-
 #endif

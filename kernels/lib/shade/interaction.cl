@@ -1,6 +1,5 @@
 // Converts raw hits to shading data: position, surface, side, and surface coordinates. One ray per lane.
-#ifndef SUNDOG_LIB_INTERACTION_CL
-#define SUNDOG_LIB_INTERACTION_CL
+#pragma once
 #include "lib/path/faces.cl"
 #include "lib/path/scene_ray.cl"
 #include "lib/shade/parametrize.cl"
@@ -42,21 +41,18 @@ typedef struct SurfaceInteractions {
 #endif
 } SurfaceInteractions;
 
-// World points p on such surfaces of instance `index`, in its own space.
+static inline REAL time_of(const SurfaceInteractions* s) {
 #if HAS_OBJECT_MOTION
-static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) { s->time = hits->time; }
-static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
-  return object_points(scene->instances + index, still_points(scene, index, p, s->time));
-}
-static inline REAL time_of(const SurfaceInteractions* s) { return s->time; }
+  return s->time;
 #else
-static inline void set_surface_times(const Hits* hits, SurfaceInteractions* s) {}
-static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
-  return object_points(scene->instances + index, p);
-}
-static inline REAL time_of(const SurfaceInteractions* s) { return (REAL)(0.0f); }
+  return (REAL)(0.0f);
 #endif
+}
 
+// World points p on such surfaces of instance `index`, in its own space.
+static inline REAL3 points_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 p) {
+  return object_points(scene->instances + index, still_points(scene, index, p, time_of(s)));
+}
 // World directions along such surfaces in the space of instance `index`, and its normals in the world.
 static inline REAL3 vectors_of(const Scene* scene, u32 index, const SurfaceInteractions* s, REAL3 a) {
   return object_vectors(scene->instances + index, still_vectors(scene, index, a, time_of(s)));
@@ -134,50 +130,22 @@ NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, c
   const REAL3 p = along3(field_points(instance, *o), t, object_vectors(instance, *d));
   return sdf_color(scene, instance->root, p);
 }
-#else
-static inline REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, const REAL3* d, REAL t) {
-  return all3((float3)(1.0f));
-}
-#endif
-
-// Members of interactions that need a feature; empty without it.
-#if HAS_UV
-static inline void set_coordinates(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
-  find_coordinates(scene, hits, &s->p, lanes, &s->at);
-}
-#else
-static inline void set_coordinates(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
-}
-#endif
-
-#if HAS_MAPS
-static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {
-  s->prim = hits->prim;
-  s->b = hits->u;
-  s->c = hits->v;
-}
-static inline void set_footprint(REAL width, SurfaceInteractions* s) { s->footprint = width; }
-#else
-static inline void keep_place(const Hits* hits, SurfaceInteractions* s) {}
-static inline void set_footprint(REAL width, SurfaceInteractions* s) {}
-#endif
-
-#if HAS_PARALLAX
-static inline void start_on_top(SurfaceInteractions* s) {
-  s->shift = all3((float3)(0.0f));
-  s->sunk = (REAL)(0.0f);
-  s->below = (REAL)(0.0f);
-  s->top = all3((float3)(0.0f));
-}
-#else
-static inline void start_on_top(SurfaceInteractions* s) {}
 #endif
 
 // Sets texture data of the hits of `lanes`, at the points s->p.
 static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
-  set_coordinates(scene, hits, lanes, s);
-  keep_place(hits, s);
-  start_on_top(s);
+#if HAS_UV
+  find_coordinates(scene, hits, &s->p, lanes, &s->at);
+#endif
+#if HAS_MAPS
+  s->prim = hits->prim;
+  s->b = hits->u;
+  s->c = hits->v;
+#endif
+#if HAS_PARALLAX
+  s->shift = s->top = all3((float3)(0.0f));
+  s->sunk = s->below = (REAL)(0.0f);
+#endif
 }
 
 // Vertex colours apply if the material says so, field colours always.
@@ -197,7 +165,9 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   s->flags = faces->flags;
   s->medium = faces->medium;
   s->entering = faces->entering;
-  set_surface_times(hits, s);
+#if HAS_OBJECT_MOTION
+  s->time = hits->time;
+#endif
   REAL extent = (REAL)(0.0f), turned = extent, rounding = extent;
   REAL3 color = white;
   MASK on_field = NO_LANES;
@@ -214,11 +184,13 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
       const REAL3 ns = shading_normals(scene, index, hits, mine, &color, &extent);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
     }
-    if (HAS_SDF && instance->shape == SHAPE_SDF) {
+#if HAS_SDF
+    if (instance->shape == SHAPE_SDF) {
       const REAL3 still = still_origins(hits, index, o), way = still_directions(hits, index, d);
       color = select3(color, field_colors(scene, index, &still, &way, hits->t), mine);
       on_field |= mine;
     }
+#endif
   }
   s->color = select3(white, color, has_color(faces, on_field));
   rounding = real_max(rounding, extent * greatest_size(hits->ng));
@@ -228,28 +200,16 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
 
 // Sets the surfaces' footprints: the longer axis of the ellipse in which the pixel's cone meets the surface
 // (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for Real-Time Ray Tracing").
+static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
+#if HAS_CONES || HAS_CHECKER
+  const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
+#endif
 #if HAS_CONES
-static inline REAL cone_widths(const SceneRays* rays, REAL t) {
-  return fabs(fma(t, rays->cone_spread, rays->cone_width));
-}
-#else
-static inline REAL cone_widths(const SceneRays* rays, REAL t) { return (REAL)(0.0f); }
+  s->footprint = fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine;
+#elif HAS_MAPS
+  s->footprint = (REAL)(0.0f);
 #endif
 #if HAS_CHECKER
-static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) { s->camera_footprint = width; }
-#else
-static inline void set_camera_footprint(REAL width, SurfaceInteractions* s) {}
+  s->camera_footprint = t * sample_spread(scene->info) / cosine;
 #endif
-#if HAS_CONES || HAS_CHECKER
-static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
-  const REAL cosine = real_max(fabs(dot3(s->ng, rays->d)), (REAL)(0.01f));
-  set_footprint(cone_widths(rays, t) / cosine, s);
-  set_camera_footprint(t * sample_spread(scene->info) / cosine, s);
 }
-#else
-static inline void set_footprints(const Scene* scene, const SceneRays* rays, REAL t, SurfaceInteractions* s) {
-  set_footprint((REAL)(0.0f), s);
-}
-#endif
-
-#endif

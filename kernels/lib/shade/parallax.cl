@@ -1,8 +1,7 @@
 // Parallax: rays continue below a surface until they hit its height map, and heights occlude light (Brawley
 // and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct Bump Mapping Using
 // Reverse Height Map Tracing"). The surface itself is at height 1. One surface per lane.
-#ifndef SUNDOG_LIB_PARALLAX_CL
-#define SUNDOG_LIB_PARALLAX_CL
+#pragma once
 #include "lib/shade/maps.cl"
 
 #if HAS_PARALLAX
@@ -146,6 +145,4 @@ NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceI
 }
 #else
 static inline void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
-#endif
-
 #endif

@@ -10,8 +10,7 @@
 //   box, round box  each face from outside: u to the right, v upwards, [0, 1]
 //   mesh            the vertices' u and v; without them as a field
 //   field           u = v = 0, dpdu and dpdv any directions in the surface
-#ifndef SUNDOG_LIB_PARAMETRIZE_CL
-#define SUNDOG_LIB_PARAMETRIZE_CL
+#pragma once
 #include "lib/core/motion.cl"
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
@@ -100,6 +99,4 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
     at->length = select(at->length, real_sqrt(length3(cross3(dpdu, dpdv))), mine);
   }
 }
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 // Procedural patterns: each gives a number t that mixes two colours, from the position q in pattern units and
 // the footprint w, above a cell's size of which a pattern becomes its mean. One point per lane.
-#ifndef SUNDOG_LIB_PATTERNS_CL
-#define SUNDOG_LIB_PATTERNS_CL
+#pragma once
 #include "lib/core/lanes.h"
 
 #if LANES == 1
@@ -162,5 +161,3 @@ static inline REAL wood_pattern(REAL3 q, REAL w, u32 octaves, float gain, float 
   const REAL seen = real_clamp(2.0f - 2.0f * w, (REAL)(0.0f), (REAL)(1.0f));
   return fma(seen, t - 0.36f, (REAL)(0.36f));
 }
-
-#endif

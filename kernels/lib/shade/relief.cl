@@ -1,8 +1,7 @@
 // Relief that is not in the geometry: shading normals from normal maps (in the tangent space of Mikkelsen
 // 2008, which bakers use) and from heights (Blinn 1978, as a surface gradient: Mikkelsen 2010, "Bump Mapping
 // Unparametrized Surfaces on the GPU"). One surface per lane.
-#ifndef SUNDOG_LIB_RELIEF_CL
-#define SUNDOG_LIB_RELIEF_CL
+#pragma once
 #include "lib/shade/maps.cl"
 
 #if HAS_RELIEF
@@ -172,6 +171,4 @@ static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
 #else
 static inline void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) { return (REAL)(1.0f); }
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 // Objects in the relief of another surface: rays that have hit a surface with heights below it continue to
 // these heights, and hits on the way come first. One ray per lane.
-#ifndef SUNDOG_LIB_RELIEF_HITS_CL
-#define SUNDOG_LIB_RELIEF_HITS_CL
+#pragma once
 #include "lib/path/segment.cl"
 #include "lib/shade/parallax.cl"
 
@@ -192,4 +191,3 @@ static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active
   if (HAS_MEDIA || HAS_EMISSION) see_behind(scene, rays, waiting, camera, met, counts);
 }
 
-#endif

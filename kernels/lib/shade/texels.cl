@@ -1,7 +1,6 @@
 // Samples images: fetches, decodes and filters texels of tiled mip levels (Williams 1983, "Pyramidal
 // Parametrics"), without the device's image support. One point per lane, all in one image.
-#ifndef SUNDOG_LIB_TEXELS_CL
-#define SUNDOG_LIB_TEXELS_CL
+#pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
@@ -198,6 +197,4 @@ NEVER_INLINE REAL4 sample_image(const Scene* scene, __global const TextureNode* 
     value = mix4(value, filter_cells(scene, flags, &cells[1], two), select((REAL)(0.0f), between, two));
   return value;
 }
-#endif
-
 #endif

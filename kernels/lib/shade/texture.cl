@@ -1,6 +1,5 @@
 // Evaluates textures at surface points, node by node (shared/textures.h). One point per lane.
-#ifndef SUNDOG_LIB_TEXTURE_CL
-#define SUNDOG_LIB_TEXTURE_CL
+#pragma once
 #include "lib/core/transform.cl"
 #include "lib/shade/parametrize.cl"
 #include "lib/shade/patterns.cl"
@@ -298,6 +297,4 @@ static inline REAL4 value_of_texture(const Scene* scene, u32 first, const Textur
   return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
 }
 #endif
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 // The box and the round box: ray intersection, coordinates of a surface point p, and curvature there.
-#ifndef SUNDOG_LIB_BOXES_CL
-#define SUNDOG_LIB_BOXES_CL
+#pragma once
 #include "lib/solids/spans.cl"
 #include "lib/solids/surface_points.cl"
 
@@ -172,5 +171,3 @@ static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK
 }
 // Of the faces; edges count as flat.
 static inline REAL curvature_of_round_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
-
-#endif

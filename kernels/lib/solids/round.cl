@@ -1,7 +1,6 @@
 // The sphere, planar solids and solids of revolution about y: ray intersection, coordinates of a surface
 // point p and the mean curvature there (shared/shapes.h).
-#ifndef SUNDOG_LIB_ROUND_CL
-#define SUNDOG_LIB_ROUND_CL
+#pragma once
 #include "lib/solids/spans.cl"
 #include "lib/solids/surface_points.cl"
 
@@ -155,5 +154,3 @@ static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part
 static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }
-
-#endif

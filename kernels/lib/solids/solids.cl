@@ -1,8 +1,7 @@
 // The exact solids in object space, one ray or point per lane. Each row of shared/shapes.h has three
 // functions: closest_in_NAME() offers hits, nearest t in (t_min, t_max] with the outward normal (directions
 // need not be unit); points_on_NAME() gives coordinates, curvature_of_NAME() the mean curvature of a point.
-#ifndef SUNDOG_LIB_SOLIDS_CL
-#define SUNDOG_LIB_SOLIDS_CL
+#pragma once
 #include "lib/solids/boxes.cl"
 #include "lib/solids/round.cl"
 #include "lib/solids/torus.cl"
@@ -40,5 +39,3 @@ static inline REAL solid_curvatures(u32 shape, float4 parameters, REAL3 p, MASK 
 #undef CURVATURES
   return (REAL)(0.0f);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Entries and exits of lines, and the nearest hit so far on a solid, one ray per lane.
-#ifndef SUNDOG_LIB_SPANS_CL
-#define SUNDOG_LIB_SPANS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 
@@ -68,5 +67,3 @@ static inline Span round_span(REAL3 o, REAL3 d, float r) {
   span.leave = real_max(t0, t1);
   return span;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Coordinates on surfaces of revolution and other shared functions, one point per lane.
-#ifndef SUNDOG_LIB_SURFACE_POINTS_CL
-#define SUNDOG_LIB_SURFACE_POINTS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 
@@ -47,5 +46,3 @@ static inline SurfacePoints select_points(SurfacePoints a, SurfacePoints b, MASK
                             select3(a.dpdv, b.dpdv, m)};
   return at;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Intersects one ray with a torus about the y axis: (|p|^2 + 1 - r^2)^2 = 4 (x^2 + z^2), major radius 1,
 // minor radius r. The extrema of the quartic isolate all four roots.
-#ifndef SUNDOG_LIB_TORUS_CL
-#define SUNDOG_LIB_TORUS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/quartic.cl"
 #include "lib/solids/spans.cl"
@@ -85,5 +84,3 @@ static inline REAL curvature_of_torus(float4 parameters, REAL3 p, MASK part) {
   const REAL radius = radius_about_y(p);
   return 0.5f * (1.0f / parameters.x + (radius - 1.0f) / (parameters.x * nonzero(radius)));
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Rays of a batch prepared for tests of boxes and triangles: the members of SlabRay and ShearRay, to the bit,
 // one ray per lane. A test reads its ray from the arrays, which costs no more than a structure of that ray
 // would.
-#ifndef SUNDOG_LIB_AIMED_RAYS_CL
-#define SUNDOG_LIB_AIMED_RAYS_CL
+#pragma once
 #include "lib/core/config.h"
 #if WALKS_IN_TURN
 #include "lib/core/lanes.h"
@@ -133,7 +132,5 @@ ALWAYS_INLINE ShearRay get_shear(const PreparedRays* rays, u32 i) {
   ray.sz = REAL_LANE(rays->sz, i);
   return ray;
 }
-
-#endif
 
 #endif

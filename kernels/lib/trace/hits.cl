@@ -1,6 +1,5 @@
 // Hits of a batch, one ray per lane, and tests of exact solids.
-#ifndef SUNDOG_LIB_HITS_CL
-#define SUNDOG_LIB_HITS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"
@@ -197,5 +196,3 @@ NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 fi
   solid.t = number_above(solid.t);
   take_solids(&solid, found, hits);
 }
-
-#endif

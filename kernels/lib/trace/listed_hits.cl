@@ -1,8 +1,7 @@
 // All hits of rays to a light in one walk: each surface that may transmit light (multi-hit traversal,
 // Gribble, Naveros and Kerzner 2014), and any opaque one. A ray through four interfaces is walked once, not
 // five times.
-#ifndef SUNDOG_LIB_LISTED_HITS_CL
-#define SUNDOG_LIB_LISTED_HITS_CL
+#pragma once
 #include "lib/core/config.h"
 #define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && (HAS_SHADOW_FILTERS || HAS_MEDIA) && !HAS_SDF && BATCH > 1)
 
@@ -101,6 +100,4 @@ static inline bool take_nearest(__global const TriangleBlock* restrict blocks, c
   }
   return taken;
 }
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 // Tests one ray against the eight children of a BVH node. Slabs are widened to be conservative (Ize 2013), so
 // results do not depend on the order of visits.
-#ifndef SUNDOG_LIB_NODES_CL
-#define SUNDOG_LIB_NODES_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
 #include "lib/core/masks.cl"
@@ -249,4 +248,3 @@ static inline void order_pair(u32* a, u32* b) {
   *b = high;
 }
 
-#endif

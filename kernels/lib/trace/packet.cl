@@ -1,7 +1,6 @@
 // Traces sixteen coherent rays through the two-level BVH as a packet (packet_nodes.cl, packet_mesh.cl). When
 // few rays remain, they continue singly.
-#ifndef SUNDOG_LIB_PACKET_CL
-#define SUNDOG_LIB_PACKET_CL
+#pragma once
 #include "lib/core/config.h"
 #if PACKETS
 #include "lib/core/tables.h"
@@ -79,7 +78,5 @@ NEVER_INLINE void packet_in_scene(const Scene* scene, const PacketRays* rays, Pa
     }
   }
 }
-
-#endif
 
 #endif

@@ -1,6 +1,5 @@
 // Traces rays of a packet singly.
-#ifndef SUNDOG_LIB_PACKET_ALONE_CL
-#define SUNDOG_LIB_PACKET_ALONE_CL
+#pragma once
 #include "lib/core/config.h"
 #if PACKETS
 #include "lib/core/tables.h"
@@ -19,7 +18,5 @@ NEVER_INLINE bool walk_lanes(const Scene* scene, const PacketRays* rays, PacketH
   if (any) end_lanes(hits, lanes_of(active));
   return any_lane(nearer);
 }
-
-#endif
 
 #endif

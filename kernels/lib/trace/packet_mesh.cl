@@ -1,6 +1,5 @@
 // Packets of rays in a mesh. Tests and hits equal those of triangles.cl to the bit.
-#ifndef SUNDOG_LIB_PACKET_MESH_CL
-#define SUNDOG_LIB_PACKET_MESH_CL
+#pragma once
 #include "lib/core/config.h"
 #if PACKETS
 #include "lib/core/tables.h"
@@ -133,7 +132,5 @@ NEVER_INLINE void packet_in_mesh(const Scene* scene, const PacketRays* rays, Pac
     if (hit) renew_bounds(hits);
   }
 }
-
-#endif
 
 #endif

@@ -1,7 +1,6 @@
 // Traverses a BVH's nodes with packets: tests a node's eight children at once against the interval of all
 // rays, and each ray against children that not all rays certainly cross.
-#ifndef SUNDOG_LIB_PACKET_NODES_CL
-#define SUNDOG_LIB_PACKET_NODES_CL
+#pragma once
 #include "lib/core/config.h"
 #if PACKETS
 #include "lib/trace/packet_rays.cl"
@@ -118,7 +117,5 @@ NEVER_INLINE bool next_place(__global const u32* restrict nodes, const PacketRay
     index = *word;
   }
 }
-
-#endif
 
 #endif

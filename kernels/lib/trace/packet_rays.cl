@@ -1,6 +1,5 @@
 // Sixteen coherent rays as a value: one per lane, and their common interval. packet.cl traces them.
-#ifndef SUNDOG_LIB_PACKET_RAYS_CL
-#define SUNDOG_LIB_PACKET_RAYS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
@@ -204,7 +203,5 @@ static inline float3 packet_direction(const PacketRays* rays, u32 i) {
 static inline void end_lanes(PacketHits* hits, MASK lanes) {
   hits->found->t = select(hits->found->t, (REAL)(-1.0f), lanes & hit_anything(hits->found));
 }
-
-#endif
 
 #endif

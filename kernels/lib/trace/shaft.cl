@@ -2,8 +2,7 @@
 // Ray-Traced Radiosity") is a pyramid from a point to the corners of the light's bounds, one point per lane.
 // In: shafts and a scene of few instances. Out: the instances that some shaft may touch. Lanes that touch
 // none are unoccluded; the reverse does not hold.
-#ifndef SUNDOG_LIB_SHAFT_CL
-#define SUNDOG_LIB_SHAFT_CL
+#pragma once
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 
@@ -134,7 +133,5 @@ NEVER_INLINE void cast_shafts(const Scene* scene, u32 light, const Shafts* shaft
   }
   *soft &= ~*hard;
 }
-
-#endif
 
 #endif

@@ -1,7 +1,6 @@
 // Traces one ray through both levels of the BVH, on devices without lists (walk.cl): one loop, and a stack of
 // eight bytes a level, because a GPU keeps the stack in memory and pays for every register.
-#ifndef SUNDOG_LIB_SINGLE_CL
-#define SUNDOG_LIB_SINGLE_CL
+#pragma once
 #include "lib/core/config.h"
 #if !WALKS_IN_TURN
 #include "lib/core/motion.cl"
@@ -222,7 +221,5 @@ static inline void trace_instances(const Scene* scene, float3 o, float3 d, float
   trace_bounded(scene, scene->info->tlas_root, o, d, t_min, time, any, hit);
 #endif
 }
-
-#endif
 
 #endif

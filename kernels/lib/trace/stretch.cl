@@ -1,6 +1,5 @@
 // All hits of a ray in a short interval.
-#ifndef SUNDOG_LIB_STRETCH_CL
-#define SUNDOG_LIB_STRETCH_CL
+#pragma once
 #include "lib/core/config.h"
 #if HAS_TOUCHING
 #include "lib/core/motion.cl"
@@ -184,6 +183,4 @@ NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
   for (u32 i = first; HAS_SOLID && i < scene->info->instance_count; ++i)
     if (comes_near(scene->instances + i, stretch)) note_solid(scene, i, stretch);
 }
-#endif
-
 #endif

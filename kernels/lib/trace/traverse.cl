@@ -1,7 +1,6 @@
 // The tracer's interface for shading. In: a batch of rays, one per lane, and the tables. Out: the nearest
 // hits, or occlusion. Results depend neither on the order of visits nor on whether a ray is traced singly.
-#ifndef SUNDOG_LIB_TRAVERSE_CL
-#define SUNDOG_LIB_TRAVERSE_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/tables.h"
 #include "lib/trace/hits.cl"
@@ -226,5 +225,3 @@ static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL
             0);
   return active & hit_anything(&hits);
 }
-
-#endif

@@ -3,8 +3,7 @@
 // exact signs there, so neighbours agree on each edge: a ray cannot pass between them, nor hit a triangle
 // seen edge-on from beside it. The result does not depend on the order of blocks: at equal t, the lower index
 // wins.
-#ifndef SUNDOG_LIB_TRIANGLES_CL
-#define SUNDOG_LIB_TRIANGLES_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/masks.cl"
 #include "shared/bvh.h"
@@ -201,6 +200,4 @@ ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 in
       offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
   }
 }
-#endif
-
 #endif

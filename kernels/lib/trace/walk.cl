@@ -2,8 +2,7 @@
 // a batch are listed by kind of step, node or leaf, and processed a list at a time: eight boxes or triangles
 // per instruction, few branches that depend on a ray, and while one walk waits for memory or arithmetic, the
 // others advance. In: rays and their start nodes. Out: their hits, independent of the other rays.
-#ifndef SUNDOG_LIB_WALK_CL
-#define SUNDOG_LIB_WALK_CL
+#pragma once
 #include "lib/core/config.h"
 #if WALKS_IN_TURN
 #include "lib/core/tables.h"
@@ -341,7 +340,5 @@ NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, 
     }
   }
 }
-
-#endif
 
 #endif

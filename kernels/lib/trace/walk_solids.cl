@@ -1,7 +1,6 @@
 // Tests rays that reached solids in the same round of walk.cl, each against its own, one ray per lane. Hits
 // equal those of hit_solids to the bit.
-#ifndef SUNDOG_LIB_WALK_SOLIDS_CL
-#define SUNDOG_LIB_WALK_SOLIDS_CL
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/transform.cl"
 #include "lib/trace/hits.cl"
@@ -67,5 +66,3 @@ NEVER_INLINE void hit_solids_by_lane(__global const Instance* restrict instances
                  vectors_by_lane(&transform, directions), *t_min, lanes_of(alike), hits);
   } while (bits);
 }
-
-#endif

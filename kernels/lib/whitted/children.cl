@@ -1,15 +1,13 @@
 // The reflected and refracted rays that come of surfaces (Whitted 1980), left on a stack.
-#ifndef SUNDOG_LIB_CHILDREN_CL
-#define SUNDOG_LIB_CHILDREN_CL
+#pragma once
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/path/ray_stack.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/cones.cl"
-#include "lib/shade/layers.cl"
 #include "lib/shade/relief_hits.cl"
-#include "lib/shade/rough.cl"
+#include "plain/shade/local_light.cl"
 
 // The surfaces of `lanes` cover so many times (1 or -1) the part of the pixels that the rays, those that run
 // straight on from the camera, have of the light behind the scene.
@@ -54,58 +52,17 @@ NEVER_INLINE MASK spawn(__global const SceneInfo* restrict info, RayStack* stack
   return lanes_of(bits);
 }
 
-// What rays meet at surfaces: rough ones have facets there, others are their own.
-#if HAS_ROUGH
-static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
-                                const Bsdfs* surface, REAL3 wo, MASK lanes) {
-  REAL u_x, u_y;
-  bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
-  return make_facets(scene, surface, wo, u_x, u_y, lanes);
-}
-static inline REAL3 reflected_by(const Facets* facets, REAL3 wo) {
-  const Bsdfs* bsdf = &facets->bsdf;
-  return select3(reflected_direction(bsdf, wo), reflect_direction(negate3(wo), bsdf->ns), facets->rough);
-}
-static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* split, REAL3 wo) {
-  const Bsdfs* bsdf = &facets->bsdf;
-  const REAL3 bent = refract_direction(negate3(wo), bsdf->ns, split->cos_i, split->cos_t, split->eta);
-  return select3(transmitted_direction(bsdf, split, wo), bent, facets->rough & MASK_OF(split->eta != 1.0f));
-}
-// `share` is what Fresnel's equations make of glass's own `color`.
-static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
-                                   REAL3 color, REAL share, MASK mends, REAL3* throughput) {
-  const REAL3 tint = scale3(color, 1.0f / real_max(share, (REAL)(1e-6f)));
-  const REAL3 own = select3(color, tint, facets->glass);
-  *throughput = multiply3(*throughput, facet_weight(facets, surface, wi, side, own, mends | facets->glass));
-}
-#else
-typedef struct Facets {
-  Bsdfs bsdf;
-} Facets;
-static inline Facets met_facets(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
-                                const Bsdfs* surface, REAL3 wo, MASK lanes) {
-  const Facets facets = {*surface};
-  return facets;
-}
-static inline REAL3 reflected_by(const Facets* facets, REAL3 wo) {
-  return reflected_direction(&facets->bsdf, wo);
-}
-static inline REAL3 transmitted_by(const Facets* facets, const SpecularSplits* split, REAL3 wo) {
-  return transmitted_direction(&facets->bsdf, split, wo);
-}
-static inline void weigh_by_facets(const Facets* facets, const Bsdfs* surface, REAL3 wi, float side,
-                                   REAL3 color, REAL share, MASK mends, REAL3* throughput) {}
-#endif
-
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted). Returns the surfaces that are
 // not there.
 static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
                                   const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
                                   const WaitingRays* paths, MASK lanes, RayStack* stack, u32* counts) {
   const REAL3 wo = negate3(rays->d);
-  const Facets facets = met_facets(scene, tile, paths, surface, wo, lanes);
+  REAL u_x = (REAL)(0.0f), u_y = (REAL)(0.0f);
+  if (HAS_ROUGH) bounce_numbers(tile, paths, 0u, BOUNCE_DIRECTION, 0u, 1u, lanes, &u_x, &u_y);
+  const MetFacets facets = meet_facet(scene, surface, wo, u_x, u_y, lanes);
   SpecularSplits split = bsdf_specular(scene, &facets.bsdf, wo, lanes);
-  mirror_layers(scene, surface, wo, split.branches, &split);
+  mirror_layers(scene, surface, wo, &split, split.branches);
   if (!any_lane(split.branches)) return NO_LANES;
   SceneRays child = *rays;
   child.t_min = (REAL)(0.0f);
@@ -115,21 +72,23 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
   const REAL curvature = curvatures(scene, s, split.branches);
   spread_reflected(curvature, &child);
-  child.d = reflected_by(&facets, wo);
+  child.d = reflected_by(&facets, wo, split.branches);
   REAL way;
   child.o = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
   state.throughput = multiply3(paths->throughput, split.kr);
   const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
-  weigh_by_facets(&facets, surface, child.d, 1.0f, split.kr, split.f, simple, &state.throughput);
+  state.throughput = multiply3(state.throughput, facet_weight(&facets, surface, child.d, 1.0f, split.kr,
+                                                              split.f, simple, split.branches));
   start_branch(paths, 0u, &state);
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(split.transmits)) return NO_LANES;
   spread_transmitted(curvature, &split, rays, &child);
-  child.d = transmitted_by(&facets, &split, wo);
+  child.d = transmitted_by(&facets, &split, wo, split.transmits);
   child.o = points_behind(scene, s, rays->d, split.transmits);
   state.throughput = multiply3(paths->throughput, split.kt);
-  weigh_by_facets(&facets, surface, child.d, -1.0f, split.kt, 1.0f - split.f, NO_LANES, &state.throughput);
+  state.throughput = multiply3(state.throughput, facet_weight(&facets, surface, child.d, -1.0f, split.kt,
+                                                              1.0f - split.f, NO_LANES, split.transmits));
   start_branch(paths, 1u, &state);
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
@@ -147,6 +106,4 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
                                   const WaitingRays* paths, MASK lanes, RayStack* stack, u32* counts) {
   return NO_LANES;
 }
-#endif
-
 #endif

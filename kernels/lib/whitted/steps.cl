@@ -1,8 +1,7 @@
 // What Whitted's integrator does with rays where they end: the light that they see on the way and there, each
 // kind by a step of its own. Each takes the rays of some lanes and returns the light that their pixels
 // receive.
-#ifndef SUNDOG_LIB_STEPS_CL
-#define SUNDOG_LIB_STEPS_CL
+#pragma once
 #include "lib/light/field_openness.cl"
 #include "lib/light/shadow_rays.cl"
 #include "lib/path/camera.cl"
@@ -62,7 +61,11 @@ static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, c
     const MASK mine = take_alike(s->material, &left, &index);
     light = select3(light, all3(scene->materials[index].emission.xyz), mine);
   }
-  return mapped_emission(bsdf, multiply3(paths->throughput, light));
+  light = multiply3(paths->throughput, light);
+#if HAS_MAPS
+  light = multiply3(light, bsdf->emission);
+#endif
+  return light;
 }
 
 // The rays of `lanes` at what they met: the surfaces of those that hit something, which are returned, and
@@ -90,5 +93,3 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   *light = seen;
   return hit;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Whitted's ray tree for a batch of pixels, which share a stack: the newest BATCH rays are taken together, a
 // ray a lane.
-#ifndef SUNDOG_LIB_WHITTED_BATCH_CL
-#define SUNDOG_LIB_WHITTED_BATCH_CL
+#pragma once
 #include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
 #include "lib/whitted/steps.cl"
@@ -108,6 +107,4 @@ static inline void trace_whitted(const Scene* scene, const TileSamples* tile, Sc
     lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));
 }
-#endif
-
 #endif

@@ -2,8 +2,7 @@
 // alike. The lanes of a group follow trees of their own, and are quick only where they trace at the same
 // time: so a surface's shadow rays wait on the stack, above its children, and each round takes a ray of
 // whatever kind.
-#ifndef SUNDOG_LIB_WHITTED_SINGLE_CL
-#define SUNDOG_LIB_WHITTED_SINGLE_CL
+#pragma once
 #include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
 #include "lib/whitted/steps.cl"
@@ -88,6 +87,4 @@ static inline void trace_whitted(const Scene* scene, const TileSamples* tile, Sc
     if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
   }
 }
-#endif
-
 #endif

@@ -40,7 +40,7 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState
 static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                     const LobeSet* lobes, bool free, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
-  const bool chooses = HAS_GUIDES || any(lobes->matte != lobes->all);  // matte surfaces have one lobe
+  const bool chooses = HAS_GUIDES || any(lobes->diffuse != lobes->all);  // matte surfaces have one lobe
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
   const float3 wo = -ray->d;
   const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
@@ -117,7 +117,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
-  if (!deep && scatters(&lobes)) {
+  if (!deep && scattered_share(&lobes) > 0.0f) {
     if (scene->info->light_count > 0u) {
       const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
       const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);

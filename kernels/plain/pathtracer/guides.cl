@@ -8,9 +8,9 @@
 
 // Whether the surface sends paths to balls.
 static inline bool is_guided(const LobeSet* lobes) {
-  bool matte = lobes->matte > 0.0f;
+  bool matte = lobes->diffuse > 0.0f;
   if (HAS_LAYERS) matte = matte || lobes->layers.matte > 0.0f;
-  return matte && lobes->mirror + lobes->through <= 0.0f;
+  return matte && perfect_share(lobes) <= 0.0f;
 }
 
 // The unit direction from p to the ball and 1 - the cosine of half the cone's angle; 0 from within.

@@ -3,7 +3,7 @@
 #include "plain/pathtracer/path_state.cl"
 
 static inline void follow_hero(const SampledWavelengths* w, Bsdf* bsdf) {
-  if (HAS_DISPERSION) set_wavelength_row(bsdf, wavelength_row(w->hero, 0u));
+  if (HAS_DISPERSION) bsdf->row = wavelength_row(w->hero, 0u);
 }
 
 HAVING(HAS_DISPERSION)

@@ -3,6 +3,7 @@
 #include "plain/core.h"
 #include "plain/light/light.cl"
 #include "plain/path/scene_ray.cl"
+#include "plain/shade/lobes.cl"
 
 typedef struct LANES(Faces) {
   int flags;
@@ -13,42 +14,10 @@ typedef struct LANES(Encounters) {
   int before, after;
   float3 absorbed;
 } Encounter;
-typedef struct LANES(SurfaceInteractions) {
-  float3 p, ng, ns;
-  float offset;
-  int instance, material;
-  bool entering;
-} SurfaceInteraction;
-typedef struct LANES(Bsdfs) {
-  float3 ng, ns, specular;
-  int flags, before, after;
-} Bsdf;
 typedef struct LANES(Shading) {
   SurfaceInteraction s;
   Bsdf bsdf;
 } SurfaceShading;
-typedef struct LANES(SpecularSplits) {
-  bool transmits;
-  float eta, f, cos_i;
-} SpecularSplit;
-typedef struct LANES(Microfacets) {
-  bool rough, bends, frosted;
-  float alpha;
-} Facets;
-typedef struct LANES(LayerShares) {
-  float matte, least;
-} LayerShare;
-typedef struct LANES(Lobes) {
-  SpecularSplit split;
-  float mirror, through, matte, all, exponent, layered;
-  Facets rough;
-  LayerShare layers;
-} LobeSet;
-typedef struct LANES(BsdfSamples) {
-  float3 wi, weight;
-  float pdf;
-  bool specular;
-} BsdfSample;
 typedef struct LANES(PhotonSearches) {
   float area;
 } PhotonSearch;
@@ -67,7 +36,6 @@ UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index);
 int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
 float light_probabilities(UNIFORM const Scene* scene, UNIFORM u32 leaf, float3 p, HERE);
 float3 light_arriving(UNIFORM const Scene* scene, SceneRay* ray, float3 light, HERE, UNIFORM u32* counts);
-float3 mapped_emission(const Bsdf* bsdf, float3 light);
 float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
 float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
 float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
@@ -78,24 +46,13 @@ float clear_of_fog(UNIFORM const Scene* scene, const Encounter* met, HERE);
 // Surfaces.
 void shade_hits(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met, HERE,
                 SurfaceShading* at);
-LobeSet make_lobes(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, HERE);
-bool scatters(const LobeSet* lobes);
-bool cut_away(const Bsdf* bsdf, const SpecularSplit* split, HERE);
-float3 bsdf_scatter(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float3 wi,
-                    HERE, float* pdf);
-BsdfSample sample_lobes(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes, float3 wo,
-                        float u_term, float u_x, float u_y, HERE);
 float terminator(const SurfaceInteraction* s, float3 wi);
 float relief_visibility(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 wi, HERE);
 float walls_visibility(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceInteraction* s,
                        float3 wi, HERE, UNIFORM u32* counts);
 
 // Wavelengths at surfaces.
-void set_wavelength_row(Bsdf* bsdf, float row);
 bool disperses(UNIFORM const Scene* scene, int before, int after, HERE);
-float relative_index_at(UNIFORM const Scene* scene, int before, int after, float row, HERE);
-float refracted_cosine(float cos_i, float eta);
-float fresnel_reflectance(float cos_i, float cos_t, float eta);
 
 // Photons about a surface, one after the other.
 PhotonSearch search_photons(UNIFORM const Scene* scene, const SampleAt* at, int depth, const SceneRay* ray,

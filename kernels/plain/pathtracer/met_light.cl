@@ -46,7 +46,7 @@ static inline float3 met_surface(UNIFORM const Scene* scene, const PathState* pa
   if ((at->bsdf.flags & (int)MATERIAL_EMITS) == 0 || !at->s.entering) return (float3)(0.0f);
   float3 light = (float3)(0.0f);
   EACH_ALIKE(int, index, at->s.material) light = scene->materials[index].emission.xyz;
-  light = mapped_emission(&at->bsdf, light);
+  if (HAS_MAPS) light *= at->bsdf.emission;
   if (HAS_AREA_LIGHTS) light = weighed_emission(scene, path, ray->d, hit, at, light);
   return light;
 }

@@ -5,9 +5,6 @@
 
 CONSTANT int NOT_DIMMED;
 
-BsdfSample sample_perfect_lobes(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float u_term, HERE);
-float scattered_share(const LobeSet* lobes);
-
 typedef struct Photon {
   PathState path;  // throughput is the flux; depth 1 + what has sent the photon on
   bool bent;       // it has been mirrored or bent
@@ -86,7 +83,7 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const Numbers u =
       numbers_at(&photon->path.at, dimension_here(&photon->path, BOUNCE_DIRECTION), false, true);
-  const BsdfSample sample = sample_perfect_lobes(&at.bsdf, &lobes, -ray->d, u.z);
+  const BsdfSample sample = sample_perfect(&at.bsdf, &lobes, -ray->d, u.z * lobes.all);
   if (!sample.specular) {
     // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
     const float rest = scattered_share(&lobes);

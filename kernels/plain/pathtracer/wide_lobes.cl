@@ -14,6 +14,7 @@ static inline void keep_wide_lobes(Bsdf* bsdf, LobeSet* lobes) {
   if (HAS_ROUGH && !(lobes->rough.alpha >= LEAST_WIDE_ALPHA)) {
     lobes->rough.rough = false;
     lobes->rough.bends = false;
+    lobes->rough.transmits = false;
     if (HAS_THIN_WALLS) lobes->rough.frosted = false;
   }
   if (HAS_LAYERS) lobes->layers.least = LEAST_WIDE_ALPHA;

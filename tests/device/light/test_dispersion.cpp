@@ -86,6 +86,7 @@ void check_color(const dvec3& found, const dvec3& expected, double within) {
 // deviation in degrees, or 0 of what is reflected.
 const char* const prism_kernel = R"(
 #include "lib/shade/bsdf.cl"
+#include "plain/shade/specular.cl"
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* spectra,
                   __global const float4* in, __global float* out, u32 count) {
   const u32 i = get_global_id(0);
@@ -95,13 +96,13 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const REAL3 d = real3(cos(in[i].x), -sin(in[i].x), 0.0f);
   Bsdfs bsdf = {n, n, n, n, 0, (int)materials[0].flags, 0, 1, in[i].y};
   SpecularSplits split = bsdf_specular(&scene, &bsdf, negate3(d), ALL_LANES);
-  const REAL3 inside = transmitted_direction(&bsdf, &split, negate3(d));
+  const REAL3 inside = transmitted_direction(&bsdf, &split, negate3(d), ALL_LANES);
   bsdf.ng = real3(-0.5f, 0.8660254f, 0.0f);
   bsdf.ns = bsdf.ng;
   bsdf.before = 1;
   bsdf.after = 0;
   split = bsdf_specular(&scene, &bsdf, negate3(inside), ALL_LANES);
-  const REAL3 behind = transmitted_direction(&bsdf, &split, negate3(inside));
+  const REAL3 behind = transmitted_direction(&bsdf, &split, negate3(inside), ALL_LANES);
   out[i] = split.cos_t > 0.0f ? acos(clamp(dot3(d, behind), -1.0f, 1.0f)) * (180.0f / M_PI_F) : 0.0f;
 }
 )";

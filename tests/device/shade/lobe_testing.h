@@ -59,7 +59,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const Scene scene = {.materials = materials, .media = media, .lobe_energy = energy, .layers = layers, .layer_rows = layer_rows};
   const REAL3 wo = real3(wo4.x, wo4.y, wo4.z), given = real3(wis[i].x, wis[i].y, wis[i].z);
   const Bsdfs bsdf = surface(materials, wo4.z < 0.0f, base, tint);
-  const Lobes lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
+  const LobeSets lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
   // Roberts's sequence in three dimensions: even, and without a pattern of its own. In integers, as few floats lie
   // between large ones: numbers that are 0 too often draw lobes of small shares too often.
   const uint3 turns = 0x80000000u + (i + 1u) * (uint3)(3518319155u, 2882110345u, 2360945575u);
@@ -67,7 +67,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const BsdfSamples s = sample_lobes(&scene, &bsdf, &lobes, wo, u.x, u.y, u.z, ALL_LANES);
   const bool draws = dot3(given, given) == 0.0f;
   REAL density = s.pdf;
-  const REAL3 value = draws ? s.weight : bsdf_scatter(&scene, &bsdf, &lobes, wo, given, ALL_LANES, &density);
+  const REAL3 value = draws ? s.weight : bsdf_scatter(&scene, &bsdf, &lobes, wo, given, &density, ALL_LANES);
   const REAL3 wi = draws ? s.wi : given;
   __global float* to = out + 8u * i;
   to[0] = wi.x; to[1] = wi.y; to[2] = wi.z; to[3] = density;

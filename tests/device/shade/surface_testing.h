@@ -76,7 +76,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   const REAL kept = terminator(&s, wi);
   REAL exponent = (REAL)(50.0f);
   REAL3 shine = all3((float3)(1.0f));
-  widen_highlights(s.even, &exponent, &shine);
+  widen_highlight(s.even, &exponent, &shine, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {
     out[7u * (first + i)] = (float4)(REAL_LANE(s.even, i), REAL_LANE(exponent, i), REAL_LANE(shine.x, i), 0.0f);
     out[7u * (first + i) + 1u] = lane4(&s.ns, kept, i);
@@ -95,11 +95,12 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
     out[7u * (first + i)] = (float4)(REAL_LANE(value.x, i), REAL_LANE(value.y, i), REAL_LANE(value.z, i), REAL_LANE(value.w, i));
 #else
   const REAL3 none = all3((float3)(0.0f));
-  Terms terms = {none, none, none, none, none, none, zero};
+  Bsdfs terms;
+  terms.ambient = terms.diffuse = terms.specular = terms.reflection = none;
   SlotValues values;
   read_slots(&scene, scene.material_maps + 1, ~0u, &at, lanes, &values);
-  metal_rough_terms(scene.material_maps + 1, &values, s.color, lanes, &terms);
-  if (scene.material_maps[1].coat > 0.0f) map_coat((REAL)(scene.material_maps[1].coat), lanes, &terms);
+  metal_rough_terms(scene.material_maps + 1, &values, s.color, &terms, lanes);
+  if (scene.material_maps[1].coat > 0.0f) map_coat((REAL)(scene.material_maps[1].coat), &terms, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {
     __global float4* to = out + 7u * (first + i);
     to[2] = lane4(&terms.ambient, zero, i); to[3] = lane4(&terms.diffuse, terms.exponent, i);
@@ -147,7 +148,9 @@ inline std::string text_of(Part part) {
   const char* file = part == Part::relief     ? "lib/shade/relief.cl"
                      : part == Part::parallax ? "lib/light/relief_shadow.cl"
                                               : "lib/shade/parallax.cl";
-  return fmt::format("#include \"{}\"\n{}", file, kernel_text);
+  const bool shades = part == Part::relief || part == Part::metal_rough;
+  return fmt::format("#include \"{}\"\n{}{}", file, shades ? "#include \"lib/shade/bsdf.cl\"\n" : "",
+                     kernel_text);
 }
 
 /// The same for each test that asks.

@@ -1,4 +1,4 @@
-// bsdf_sample() and the sampler behind it: means over many directions have closed forms, perfect reflection
+// sample_lobes() and the sampler behind it: means over many directions have closed forms, perfect reflection
 // and refraction their laws.
 #include <cmath>
 #include <numbers>
@@ -30,7 +30,8 @@ __kernel void draw(__global const Material* materials, __global const Medium* me
   const Bsdfs bsdf = make_surface(materials, n, 0, 1);
   const LaneSamples at = {7, 9, (int)i};
   const FourNumbers u = chosen_lanes(&at, 0, true, true);
-  const BsdfSamples s = bsdf_sample(&scene, &bsdf, wo, u.x, u.y, u.z, ALL_LANES);
+  const LobeSets lobes = make_lobes(&scene, &bsdf, wo, ALL_LANES);
+  const BsdfSamples s = sample_lobes(&scene, &bsdf, &lobes, wo, u.x, u.y, u.z, ALL_LANES);
   __global float* to = out + 8u * i;
   to[0] = s.wi.x; to[1] = s.wi.y; to[2] = s.wi.z; to[3] = s.pdf;
   to[4] = s.weight.x; to[5] = s.weight.y; to[6] = s.weight.z; to[7] = s.specular ? 1.0f : 0.0f;

@@ -86,11 +86,11 @@ TEST_CASE(
   CHECK(occurrences(KernelText{"main.cl", {}, files}.expanded(), "int in_c;") == 3);
 }
 
-TEST_CASE("a header's own include guard does not count as an #if") {
-  const std::string guarded = "// Comment.\n#ifndef H\n#define H\n#include \"a.cl\"\n#endif\n";
-  const GeneratedFiles files = {
-      {"main.cl", "#include \"h.h\"\n#include \"a.cl\"\n"}, {"h.h", guarded}, {"a.cl", "int in_a;\n"}};
-  CHECK(occurrences(KernelText{"main.cl", {}, files}.expanded(), "int in_a;") == 1);
+TEST_CASE("#pragma once is left out: the expanded text is one file") {
+  const GeneratedFiles files = {{"main.cl", "// Comment.\n#pragma once\n#pragma unroll 1\nint x;\n"}};
+  const std::string text = KernelText{"main.cl", {}, files}.expanded();
+  CHECK(occurrences(text, "once") == 0);
+  CHECK(occurrences(text, "// Comment.\n\n#pragma unroll 1\nint x;\n") == 1);
 }
 
 TEST_CASE("defines stand first, sorted by name") {

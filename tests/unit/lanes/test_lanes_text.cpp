@@ -35,6 +35,8 @@ TEST_CASE("features are the preprocessor's") {
   const std::string members = in_lanes("typedef struct P { float a; HAVING(HAS_FOG) float b; } P;\n" +
                                        function("P p; p.a = x; return p.a;"));
   CHECK_THAT(members, Contains("#if HAS_FOG\n  REAL b;\n#endif"));
+  const std::string rest = in_lanes("HAVING(HAS_FOG);\n" + function("return x;"));
+  CHECK_THAT(rest, Contains("#if HAS_FOG\nNEVER_INLINE REAL f("));
 }
 
 TEST_CASE("constants of headers keep their names, those of plain files are written out") {

@@ -1,0 +1,181 @@
+// Applies textures to materials: multiplies the surface's terms by texture values. Opacity shows what is
+// behind a surface: it attenuates all terms and adds straight transmission.
+#include "plain/shade/bsdf.h"
+
+HAVING(HAS_MAPS);
+
+static inline float part_of_one(float x) { return real_clamp(x, 0.0f, 1.0f); }
+static inline float3 parts_of_one(float4 a) {
+  return (float3)(part_of_one(a.x), part_of_one(a.y), part_of_one(a.z));
+}
+
+// A slot's value, 1 without a texture.
+static inline float4 slot_value(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
+                                UNIFORM u32 slot) {
+  if (has_slot(maps, slot)) return values->of[slot];
+  return (float4)(1.0f);
+}
+static inline float first_value(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
+                                UNIFORM u32 slot) {
+  return slot_value(maps, values, slot).x;
+}
+
+// Below 1, what is behind the surface shows through.
+static inline float opacity_of(UNIFORM __global const MaterialMaps* maps, const SlotValues* values) {
+  const float opacity = part_of_one(maps->opacity * first_value(maps, values, MAP_OPACITY));
+  if (maps->cutoff > 0.0f) return opacity >= maps->cutoff ? 1.0f : 0.0f;
+  return opacity;
+}
+
+static inline void map_term(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
+                            UNIFORM u32 slot, float3* term) {
+  if (has_slot(maps, slot)) *term *= values->of[slot].xyz;
+}
+
+// The terms of a metal-rough material (shared/metal_rough.h).
+HAVING(HAS_METAL_ROUGH)
+ENTRY static inline void metal_rough_terms(UNIFORM __global const MaterialMaps* maps,
+                                           const SlotValues* values, float3 tint, Bsdf* bsdf) {
+  const float4 metal_rough = slot_value(maps, values, MAP_METAL_ROUGH);
+  const float metalness = part_of_one(metal_rough.z * maps->base.w);
+  const float roughness = part_of_one(metal_rough.y * maps->roughness);
+  const float mirror = metal_mirror(metalness, roughness);
+  const float3 base = slot_value(maps, values, MAP_DIFFUSE).xyz * maps->base.xyz * tint;
+  const float exponent = rough_exponent(roughness), energy = highlight_energy(exponent),
+              lobe = metal_highlight(energy, mirror), left = 1.0f - mirror - lobe * metalness;
+  // A highlight texture applies to the non-metal part.
+  const float3 dull = slot_value(maps, values, MAP_SPECULAR).xyz * (maps->reflectance * (1.0f - metalness));
+  bsdf->diffuse =
+      base * (float3)(real_max(fma(-lobe, dull.x, left), 0.0f), real_max(fma(-lobe, dull.y, left), 0.0f),
+                      real_max(fma(-lobe, dull.z, left), 0.0f));
+  bsdf->ambient = bsdf->diffuse * 0.1f;
+  bsdf->specular = along(dull, metalness, base) * (lobe / energy);
+  bsdf->reflection = base * mirror;
+  bsdf->exponent = exponent;
+}
+
+// Metalness, roughness and transmission of a layered material's base. The other terms are those of the
+// non-metal part; ray terms those of maximum transmission.
+static inline float mapped_share(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
+                                 UNIFORM u32 slot, float own) {
+  return part_of_one(own * first_value(maps, values, slot));
+}
+static inline bool maps_base(UNIFORM __global const MaterialMaps* maps) {
+  return has_slot(maps, MAP_METALNESS) || has_slot(maps, MAP_GLASS);
+}
+// The fraction of rays through the surface that metalness and transmission textures leave.
+static inline float transmitting_part(UNIFORM const Scene* scene, UNIFORM u32 material,
+                                      UNIFORM __global const MaterialMaps* maps, const SlotValues* values) {
+  const float metalness = scene->layers[material].specular.w;
+  const float glass = part_of_one(first_value(maps, values, MAP_GLASS));
+  if (has_slot(maps, MAP_METALNESS))
+    return (1.0f - mapped_share(maps, values, MAP_METALNESS, metalness)) * glass;
+  return glass;
+}
+HAVING(HAS_LAYER_MAPS)
+static inline void map_base_terms(UNIFORM const Scene* scene, UNIFORM u32 material,
+                                  UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
+                                  Bsdf* bsdf) {
+  bsdf->metalness = mapped_share(maps, values, MAP_METALNESS, bsdf->metalness);
+  bsdf->roughness = mapped_share(maps, values, MAP_ROUGHNESS, bsdf->roughness);
+  bsdf->glass = mapped_share(maps, values, MAP_GLASS, bsdf->glass);
+  if (has_slot(maps, MAP_METALNESS)) bsdf->ambient *= 1.0f - bsdf->metalness;
+  if (has_slot(maps, MAP_GLASS)) bsdf->ambient *= 1.0f - bsdf->glass;
+  if (!maps_base(maps)) return;
+  const float part = transmitting_part(scene, material, maps, values);
+  bsdf->reflection *= part;
+  bsdf->transmission *= part;
+}
+
+// The mirror of a clear layer, which attenuates what lies below.
+ENTRY static inline void map_coat(float coat, Bsdf* bsdf) {
+  const float kept = 1.0f - coat;
+  bsdf->ambient *= kept;
+  bsdf->diffuse *= kept;
+  bsdf->specular *= kept;
+  bsdf->reflection = bsdf->reflection * kept + (float3)(coat, coat, coat);
+}
+
+// Attenuates the terms by the opacity; the rest shows what lies behind.
+static inline float3 with_open(float3 through, float opacity) {
+  const float open = 1.0f - opacity;
+  return through * opacity + (float3)(open, open, open);
+}
+static inline void map_opacity(float opacity, Bsdf* bsdf) {
+  bsdf->ambient *= opacity;
+  bsdf->diffuse *= opacity;
+  bsdf->specular *= opacity;
+  bsdf->reflection *= opacity;
+  bsdf->emission *= opacity;
+  bsdf->transmission = with_open(bsdf->transmission, opacity);
+  if (HAS_LAYERS) bsdf->there = opacity;
+}
+
+// The textures of the surface's material.
+static inline void map_material(UNIFORM const Scene* scene, UNIFORM u32 index, const TexturePoint* at,
+                                const SurfaceInteraction* s, Bsdf* bsdf) {
+  __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+  const u32 flags = scene->materials[index].flags;
+  bool metal = false;
+  if (HAS_METAL_ROUGH) metal = (flags & MATERIAL_METAL_ROUGH) != 0u;
+  const bool alike = maps->slot[MAP_AMBIENT] == maps->slot[MAP_DIFFUSE];
+  u32 wanted = ~(1u << MAP_NORMAL | 1u << MAP_HEIGHT);
+  if (metal || alike) wanted &= ~(1u << MAP_AMBIENT);
+  SlotValues values;
+  read_slots(scene, maps, wanted, at, &values);
+  if (HAS_METAL_ROUGH && metal) metal_rough_terms(maps, &values, s->color, bsdf);
+  if (!metal) {
+    map_term(maps, &values, MAP_DIFFUSE, &bsdf->diffuse);
+    map_term(maps, &values, alike ? (u32)MAP_DIFFUSE : (u32)MAP_AMBIENT, &bsdf->ambient);
+    map_term(maps, &values, MAP_SPECULAR, &bsdf->specular);
+  }
+  map_term(maps, &values, MAP_REFLECTION, &bsdf->reflection);
+  map_term(maps, &values, MAP_TRANSMISSION, &bsdf->transmission);
+  map_term(maps, &values, MAP_EMISSION, &bsdf->emission);
+  if (HAS_LAYER_MAPS) map_base_terms(scene, index, maps, &values, bsdf);
+  if (HAS_COAT_MAPS && has_slot(maps, MAP_COAT)) bsdf->coat = part_of_one(values.of[MAP_COAT].x);
+  if (HAS_SPECULAR_MAPS && has_slot(maps, MAP_SPECULAR)) bsdf->tint = parts_of_one(values.of[MAP_SPECULAR]);
+  if (HAS_FUZZ_MAPS && has_slot(maps, MAP_FUZZ)) bsdf->fuzz = parts_of_one(values.of[MAP_FUZZ]);
+  if (has_slot(maps, MAP_EXPONENT)) bsdf->exponent *= values.of[MAP_EXPONENT].x;
+  if (has_slot(maps, MAP_OCCLUSION))
+    bsdf->ambient *= fma(maps->occlusion, values.of[MAP_OCCLUSION].x - 1.0f, 1.0f);
+  if (maps->coat > 0.0f) map_coat(maps->coat * first_value(maps, &values, MAP_COAT), bsdf);
+  const bool one_sided = (flags & MATERIAL_ONE_SIDED) != 0u;
+  if (maps->opacity == 1.0f && !has_slot(maps, MAP_OPACITY) && !one_sided) return;
+  map_opacity(one_sided && !s->entering ? 0.0f : opacity_of(maps, &values), bsdf);
+}
+static void map_bsdf(UNIFORM const Scene* scene, const SurfaceInteraction* s, Bsdf* bsdf) {
+  TexturePoint at;
+  texture_points(scene, s, &at);
+  EACH_ALIKE(u32, index, (u32)s->material) map_material(scene, index, &at, s, bsdf);
+}
+
+// Widens a highlight on normals that vary within the footprint, and weakens it accordingly (Toksvig 2005,
+// "Mipmapping Normal Maps").
+ENTRY static inline void widen_highlight(float even, float* exponent, float3* specular) {
+  const float e = *exponent, wide = e * even / nonzero(fma(e, 1.0f - even, even));
+  if (even < 1.0f) {
+    *specular = *specular * ((1.0f + wide) / (1.0f + e));
+    *exponent = wide;
+  }
+}
+
+// What the surface lets through of a shadow ray, where `own` is that without its textures.
+ENTRY static inline float3 mapped_filter(UNIFORM const Scene* scene, const SurfaceInteraction* s, bool hidden,
+                                         float3 own) {
+  TexturePoint at;
+  texture_points(scene, s, &at);
+  float3 passed = own;
+  EACH_ALIKE(u32, index, (u32)s->material) {
+    __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
+    u32 wanted = 1u << MAP_TRANSMISSION | 1u << MAP_OPACITY;
+    if (HAS_LAYER_MAPS) wanted |= 1u << MAP_METALNESS | 1u << MAP_GLASS;
+    SlotValues values;
+    read_slots(scene, maps, wanted, &at, &values);
+    map_term(maps, &values, MAP_TRANSMISSION, &passed);
+    if (HAS_LAYER_MAPS && maps_base(maps)) passed *= transmitting_part(scene, index, maps, &values);
+    const bool absent = (scene->materials[index].flags & MATERIAL_ONE_SIDED) != 0u && hidden;
+    passed = with_open(passed, absent ? 0.0f : opacity_of(maps, &values));
+  }
+  return passed;
+}

@@ -1,0 +1,25 @@
+// The lobes of surfaces, in the order in which a sample's number chooses among them. A lobe is a row here and
+// a file of plain/shade/lobes/.
+//   LOBE(feature of scenes that have it, name)
+// It defines, for light from wi to wo:
+//   share_NAME(scene, bsdf, wo, &lobes)      about the most that it returns: its share of samples
+//   sample_NAME(..., lobes, wo, u, &below)   a direction; below: behind the surface
+//   scatter_NAME(..., lobes, wo, wi, &sum)   scattering lobes: adds value and density
+//   local_NAME(..., wo, wi, met, &light)     local lobes: adds what they return of a lamp, which a reflected
+//                                            ray also sees if `met`
+//   send_NAME(bsdf, lobes, wo, &part)        perfect lobes: the direction, and the part of light that it gets
+#pragma once
+
+#define PERFECT_LOBES(LOBE)   \
+  LOBE(HAS_SECONDARY, mirror) \
+  LOBE(HAS_SECONDARY, refraction)
+
+#define SCATTERING_LOBES(LOBE) \
+  LOBE(HAS_ROUGH, ggx)         \
+  LOCAL_LOBES(LOBE)
+
+// Those that Whitted's integrator has lamps light.
+#define LOCAL_LOBES(LOBE)     \
+  LOBE(HAS_LAYERS, layered)   \
+  LOBE(HAS_SURFACES, diffuse) \
+  LOBE(HAS_SURFACES, highlight)
