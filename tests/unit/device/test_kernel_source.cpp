@@ -111,8 +111,8 @@ TEST_CASE("a missing or circular include names the file and line that asks for i
   const GeneratedFiles files = {{"main.cl", "int x;\n#include \"lib/nowhere.cl\"\n"},
                                 {"self.cl", "#include \"other.cl\"\n"},
                                 {"other.cl", "\n\n#include \"self.cl\"\n"}};
-  CHECK_THROWS_WITH(KernelText{"main.cl", {}, files}.expanded(),
+  CHECK_THROWS_WITH((KernelText{"main.cl", {}, files}.expanded()),
                     "main.cl:2: lib/nowhere.cl: there is no such kernel file");
-  CHECK_THROWS_WITH(KernelText{"self.cl", {}, files}.expanded(), "other.cl:3: self.cl includes itself");
-  CHECK_THROWS_AS(KernelText{"absent.cl", {}, files}.expanded(), BuildError);
+  CHECK_THROWS_WITH((KernelText{"self.cl", {}, files}.expanded()), "other.cl:3: self.cl includes itself");
+  CHECK_THROWS_AS((KernelText{"absent.cl", {}, files}.expanded()), BuildError);
 }
