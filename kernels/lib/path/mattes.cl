@@ -46,4 +46,3 @@ static inline void add_matte(const Scene* scene, __global float4* sums, int inst
   add_share((__global float*)sums + 2u * MATTE_RANKS, (u32)material, share);
 }
 #endif
-

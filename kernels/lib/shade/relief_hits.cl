@@ -190,4 +190,3 @@ static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active
   waiting |= pass_hidden(scene, rays, met, active & ~waiting & camera);
   if (HAS_MEDIA || HAS_EMISSION) see_behind(scene, rays, waiting, camera, met, counts);
 }
-

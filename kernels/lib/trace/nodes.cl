@@ -247,4 +247,3 @@ static inline void order_pair(u32* a, u32* b) {
   *a = low;
   *b = high;
 }
-
