@@ -317,7 +317,8 @@ void Parser::function() {
       f.uniform = true;
     else if (at("HAVING")) {
       at_ += 2;
-      f.feature = name("a feature");
+      if (!f.feature.empty()) f.feature += " && ";
+      f.feature += name("a feature");
     } else if (at("CALLED")) {
       at_ += 2;
       f.lanes = name("a function");

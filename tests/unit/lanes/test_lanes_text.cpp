@@ -37,6 +37,8 @@ TEST_CASE("features are the preprocessor's") {
   CHECK_THAT(members, Contains("#if HAS_FOG\n  REAL b;\n#endif"));
   const std::string rest = in_lanes("HAVING(HAS_FOG);\n" + function("return x;"));
   CHECK_THAT(rest, Contains("#if HAS_FOG\nNEVER_INLINE REAL f("));
+  CHECK_THAT(in_lanes("HAVING(HAS_FOG);\nHAVING(HAS_SKY)\n" + function("return x;")),
+             Contains("#if HAS_FOG && HAS_SKY\n"));
 }
 
 TEST_CASE("constants of headers keep their names, those of plain files are written out") {
