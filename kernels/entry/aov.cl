@@ -6,6 +6,7 @@
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
+#include "plain/shade/specular.cl"
 #include "shared/launch.h"
 
 #ifndef ALL_AOVS
