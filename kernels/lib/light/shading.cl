@@ -4,6 +4,7 @@
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
+#include "lib/shade/relief_hits.cl"
 
 // What surfaces and the rays that met them are, for all that is done there.
 typedef struct Shading {
@@ -34,6 +35,8 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
   set_footprints(scene, rays, met->hit.t, &at->s);
   add_parallax(scene, rays->d, lanes, &at->s);
   add_relief(scene, rays->d, lanes, &at->s);
-  if (SHADOWS_AS_PATHS && (HAS_LAYERS || HAS_ROUGH)) bend_normals(rays->d, lanes, &at->s);
+#if SHADOWS_AS_PATHS && (HAS_LAYERS || HAS_ROUGH)
+  bend_normals(rays->d, lanes, &at->s);
+#endif
   at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after, lanes);
 }

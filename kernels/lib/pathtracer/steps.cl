@@ -1,8 +1,6 @@
 // What plain text of the path tracer uses (plain/pathtracer/interface.h).
 #pragma once
-#include "lib/light/choose_light.cl"
 #include "lib/light/light.cl"
-#include "lib/light/relief_shadow.cl"
 #include "lib/light/shading.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/photon_search.cl"

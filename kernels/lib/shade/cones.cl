@@ -3,6 +3,7 @@
 // refraction of neighbouring rays. Behind its focus a cone's width is negative.
 #pragma once
 #include "lib/shade/bsdf.cl"
+#include "plain/shade/specular.cl"
 
 #if HAS_CONES && HAS_SECONDARY
 // Curvature at triangle hits of `lanes`: how their corners' normals turn along the edges, the mean of the

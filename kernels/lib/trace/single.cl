@@ -133,7 +133,8 @@ ALWAYS_INLINE bool next_word(const Scene* scene, float t_min, float t_max, uint2
       *top -= 4u;
       const float2 a = as_float2(stack[*top]), b = as_float2(stack[*top + 1u]),
                    c = as_float2(stack[*top + 2u]);
-      *ray = lean_ray((float3)(a, b.x), (float3)(b.y, c));
+      // One by one: Oclgrind ends at vectors in vectors.
+      *ray = lean_ray((float3)(a.x, a.y, b.x), (float3)(b.y, c.x, c.y));
       *mesh = NO_INSTANCE;
       continue;
     }
