@@ -40,7 +40,8 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   s.material = faces->material;
   locate(scene, hits, lanes, &s);
   set_footprints(scene, rays, hits->t, &s);
-  return mapped_filter(scene, &s, SHADOWS_AS_PATHS ? faces->entering : ~faces->entering, plain, lanes);
+  const MASK hidden = SHADOWS_AS_PATHS ? ~faces->entering : faces->entering;
+  return mapped_filter(scene, &s, hidden, plain, lanes);
 }
 #else
 static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
