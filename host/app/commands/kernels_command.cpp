@@ -66,7 +66,10 @@ std::string write_programs(const KernelsCommand& c) {
   const SceneDescription scene = load_scene(c.scene);
   std::vector<SceneProgram> programs = scene_programs(compile(scene), device);
   if (scene.environment.type == EnvironmentType::halo) programs.push_back(halo_program(device));
-  std::filesystem::create_directories(c.out);
+  std::error_code failed;
+  std::filesystem::create_directories(c.out, failed);
+  if (failed)
+    throw IoError(fmt::format("{}: {}: name a folder that can be written", c.out, failed.message()));
   std::string list;
   for (auto& [entry, defines, generated] : programs) {
     defines.emplace("DEVICE_HAS_FMA", "1");
