@@ -22,11 +22,11 @@ for release in "${releases[@]}"; do
   mount -t proc proc "$root/proc"
   for sys in without with; do
     [[ $sys == without ]] || mount -t sysfs sysfs "$root/sys"
-    rm -rf "$root/root/.cache"
-    chroot "$root" env -i HOME=/root PATH=/usr/bin:/bin "/opt/$name/sundog" render "/opt/$name/scenes/spheres.json" "${picture[@]}" -o /picture.png
+    rm -rf "$root/srv/.cache"
+    chroot "$root" env -i HOME=/srv PATH=/usr/bin:/bin "/opt/$name/sundog" render "/opt/$name/scenes/spheres.json" "${picture[@]}" -o /picture.png
     cmp "$folder/expected.png" "$root/picture.png"
     echo "bundle: $release $sys /sys: the same picture"
   done
-  chroot "$root" env -i HOME=/root PATH=/usr/bin:/bin "/opt/$name/sundog" check
+  chroot "$root" env -i HOME=/srv PATH=/usr/bin:/bin "/opt/$name/sundog" check
   umount "$root/sys" "$root/proc"
 done

@@ -46,7 +46,7 @@ struct MatteFolder : CliFolder {
   }
 };
 
-/// What of a pixel the named thing covers; without a name, all of them.
+/// The part of a pixel that the named thing covers; without a name, the sum of all parts.
 float coverage(const AovImages& aovs, const std::string& kind, int x, int y, const std::string& name = "") {
   float sum = 0;
   for (const char* layer : {"00", "01", "02"})
