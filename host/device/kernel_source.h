@@ -14,11 +14,10 @@ struct KernelText {
   GeneratedFiles generated = {};
   std::filesystem::path folder = {};
 
-  /// The text of `entry` after `defines` (as sorted #define lines), with every `#include "path"` (relative to
-  /// kernels/ or to `folder`, if given; generated files first) expanded, each file once, with #line
-  /// directives so that logs name file and line. Plain files are converted to lanes (lanes/lanes.h). Leaves
-  /// `#include
-  /// <...>` alone. Throws BuildError for a missing file or one that includes itself.
+  /// The text of `entry` after `defines` (as sorted #define lines). Each `#include "path"` (relative to
+  /// kernels/ or to `folder`, if given; generated files first) is expanded, each file once, with #line
+  /// directives so that logs name file and line. Plain files are converted to lanes (lanes/lanes.h).
+  /// `#include <...>` stays. Throws BuildError for a missing file or one that includes itself.
   std::string expanded() const;
   /// All that expanded() depends on, but faster: plain files are left as they are.
   std::string identity() const;
