@@ -326,10 +326,8 @@ NB_MODULE(_sundog, m) {
   add_scene(m);
   add_session(m);
   m.def("version", &version);
-  m.def(
-      "threads_left_behind", [](nb::handle devices) { return threads_left_behind(devices_of(devices)); },
-      nb::arg("devices"),
-      "How many threads drivers have not let go of, of these devices and of those listed with them.");
+  m.def("threads_left_behind", &threads_left_behind,
+        "How many threads drivers have not let go of; the process waits for them at its exit.");
   m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
         nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),

@@ -4,14 +4,12 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <set>
 
 namespace sundog {
 inline namespace v0 {
 namespace {
 
-Device device_of(core::DeviceInfo info, const std::shared_ptr<core::DriverThreads>& threads) {
-  info.threads = threads;
+Device device_of(core::DeviceInfo info) {
   Device device;
   device.label = info.label();
   device.platform = info.platform;
@@ -26,7 +24,7 @@ Device device_of(core::DeviceInfo info, const std::shared_ptr<core::DriverThread
   device.estimate = info.estimate;
   device.usable = info.usable();
   device.problem = info.problem;
-  device.handle = std::make_shared<const Device::Handle>(Device::Handle{std::move(info), threads});
+  device.handle = std::make_shared<const Device::Handle>(Device::Handle{std::move(info)});
   return device;
 }
 
@@ -36,17 +34,13 @@ const core::EnvironmentPtr& environment() {
   return read;
 }
 
-/// Owns threads that drivers keep. A child of fork() lacks these threads, so it does not wait for them.
-std::shared_ptr<core::DriverThreads> make_owner() {
-  return {new core::DriverThreads, [](const core::DriverThreads* threads) {
-            if (!is_forked()) delete threads;
-          }};
-}
-
-/// Owns threads of renders and sessions that were given no device. Created after the drivers are loaded,
-/// hence destroyed before they are unloaded at the end of the process.
+/// Owns the threads that drivers keep. Created after the drivers are loaded, hence destroyed before they are
+/// unloaded at the end of the process. A child of fork() lacks these threads, so it does not wait for them.
 const std::shared_ptr<core::DriverThreads>& threads_of_process() {
-  static const auto threads = make_owner();
+  static const std::shared_ptr<core::DriverThreads> threads(new core::DriverThreads,
+                                                            [](const core::DriverThreads* all) {
+                                                              if (!is_forked()) delete all;
+                                                            });
   return threads;
 }
 
@@ -57,10 +51,9 @@ int process_of_threads() noexcept {
 }
 
 std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
-  const auto threads = make_owner();
   std::vector<Device> result;
   result.reserve(all.size());
-  for (const core::DeviceInfo& info : all) result.push_back(device_of(info, threads));
+  for (const core::DeviceInfo& info : all) result.push_back(device_of(info));
   return result;
 }
 
@@ -96,28 +89,18 @@ std::vector<Device> choose_devices(const std::vector<std::string>& specs,
   });
 }
 
-unsigned threads_left_behind(const std::vector<Device>& devices) {
-  std::set<core::DriverThreads*> all;
-  for (const Device& device : devices)
-    if (device.handle) all.insert(device.handle->threads.get());
-  unsigned count = 0;
-  for (core::DriverThreads* threads : all) count += threads->count();
-  return count;
-}
+unsigned threads_left_behind() { return is_forked() ? 0 : threads_of_process()->count(); }
 
-HostDevices devices_of(const std::vector<Device>& devices) {
+std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {
   enter_threads();
-  HostDevices result;
-  if (devices.empty()) {
-    result.infos = core::select_devices(core::enumerate_devices(environment()), {});
-    for (core::DeviceInfo& info : result.infos) info.threads = threads_of_process();
-  }
+  std::vector<core::DeviceInfo> result;
+  if (devices.empty()) result = core::select_devices(core::enumerate_devices(environment()), {});
   for (const Device& device : devices) {
     if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");
     if (!device.usable) throw core::DeviceError(device.label + ": " + device.problem);
-    result.infos.push_back(device.handle->info);
-    result.threads.push_back(device.handle->threads);
+    result.push_back(device.handle->info);
   }
+  for (core::DeviceInfo& info : result) info.threads = threads_of_process();
   return result;
 }
 

@@ -36,13 +36,6 @@ struct SUNDOG_LOCAL Image::Impl {
 
 struct SUNDOG_LOCAL Device::Handle {
   core::DeviceInfo info;
-  std::shared_ptr<core::DriverThreads> threads;  // shared by all devices that were listed together
-};
-
-/// Devices and the owners of their threads.
-struct SUNDOG_LOCAL HostDevices {
-  std::vector<std::shared_ptr<core::DriverThreads>> threads;
-  std::vector<core::DeviceInfo> infos;
 };
 
 /// Call before using threads of the library or of a driver. Throws UsageError in a child of fork() whose
@@ -90,8 +83,9 @@ struct SUNDOG_LOCAL Scene::Impl {
 Image share(core::Image image);
 Image share(std::shared_ptr<const core::Image> image);
 
-/// The given devices, or the default one, whose threads the process owns. Throws DeviceError, UsageError.
-HostDevices devices_of(const std::vector<Device>& devices);
+/// The given devices, or the default one; the process owns the threads left in their drivers. Throws
+/// DeviceError, UsageError.
+std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices);
 
 core::WorkGroup group_of(const WorkGroup& group);
 

@@ -112,9 +112,9 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   sundog::check_frame_memory(
       static_cast<int>(flat->info.width), static_cast<int>(flat->info.height),
       {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
-  const HostDevices devices = devices_of(options.devices);
+  const std::vector<core::DeviceInfo> devices = devices_of(options.devices);
   film->warnings = description->warnings;
-  for (std::string& warning : sundog::view_warnings(*description, *flat, devices.infos))
+  for (std::string& warning : sundog::view_warnings(*description, *flat, devices))
     film->warnings.push_back(std::move(warning));
   core::RenderOptions wanted;
   wanted.work_group = group_of(options.work_group);
@@ -124,7 +124,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wanted.picture_seconds = seconds_of("the time between pictures", options.picture_seconds);
   wanted.tuning = [flat](const core::DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
   callbacks.install(wanted);
-  film->result = core::render(flat, devices.infos, wanted);
+  film->result = core::render(flat, devices, wanted);
   wait_for_threads_at_exit();
   film->tone_map = description->image.tone_map;
   film->transparent = description->image.transparent;

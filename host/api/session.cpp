@@ -8,12 +8,11 @@ inline namespace v0 {
 
 struct SUNDOG_LOCAL Session::Impl {
   mutable std::mutex mutex;
-  std::vector<std::shared_ptr<core::DriverThreads>> threads;  // guarded by the mutex; outlive the session
   std::unique_ptr<core::RenderSession> session;
   std::shared_ptr<const core::SceneDescription> newest;  // guarded by the mutex
 
-  explicit Impl(HostDevices devices)
-      : threads(std::move(devices.threads)), session(std::make_unique<core::RenderSession>(devices.infos)) {}
+  explicit Impl(const std::vector<core::DeviceInfo>& devices)
+      : session(std::make_unique<core::RenderSession>(devices)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -68,14 +67,7 @@ void Session::cancel() {
 }
 
 void Session::use_devices(const std::vector<Device>& devices) {
-  translated([&] {
-    HostDevices chosen = devices_of(devices);
-    {
-      const std::lock_guard lock(impl_->mutex);
-      impl_->threads.insert(impl_->threads.end(), chosen.threads.begin(), chosen.threads.end());
-    }
-    impl_->entered().use_devices(chosen.infos);
-  });
+  translated([&] { impl_->entered().use_devices(devices_of(devices)); });
 }
 
 Snapshot Session::snapshot(bool with_picture) const {

@@ -1,5 +1,7 @@
 #include "base/driver_threads.h"
 
+#include <optional>
+
 namespace sundog {
 namespace {
 
@@ -19,18 +21,21 @@ void join_ended(std::vector<DriverThread>& threads) {
 }  // namespace
 
 void DriverThreads::wait() {
-  std::vector<DriverThread> all;
-  {
-    const std::lock_guard lock(mutex_);
-    all.swap(threads_);
-  }
   const auto limit = std::chrono::steady_clock::now() + patience_;
-  for (DriverThread& left : all) {
-    const bool own = left.thread.get_id() == std::this_thread::get_id();  // it dropped the last reference
-    if (!own && left.ended.wait_until(limit) == std::future_status::ready)
-      left.thread.join();
+  const auto take_last = [this]() -> std::optional<DriverThread> {
+    const std::lock_guard lock(mutex_);
+    if (threads_.empty()) return std::nullopt;
+    DriverThread last = std::move(threads_.back());
+    threads_.pop_back();
+    return last;
+  };
+  // One at a time: a thread that ends may leave its own compiler's thread here.
+  while (std::optional<DriverThread> left = take_last()) {
+    const bool own = left->thread.get_id() == std::this_thread::get_id();  // it dropped the last reference
+    if (!own && left->ended.wait_until(limit) == std::future_status::ready)
+      left->thread.join();
     else
-      left.thread.detach();
+      left->thread.detach();
   }
 }
 

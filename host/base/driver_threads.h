@@ -40,7 +40,7 @@ class DriverThreads {
   DriverThreads& operator=(const DriverThreads&) = delete;
 
   void take(DriverThread thread);
-  /// Joins all threads; detaches those that hang.
+  /// Joins all threads, and those that they leave here meanwhile; detaches those that hang.
   void wait();
   /// Number of threads still running.
   unsigned count();

@@ -12,8 +12,7 @@ inline namespace v0 {
 
 /// An OpenCL device as its driver reports it. Returned by devices() and choose_devices(); copies refer to the
 /// same device. A driver cannot be interrupted: when a render is stopped, a thread in a driver's compiler
-/// runs on. The last copy of devices listed together waits for such threads, up to a minute, then detaches
-/// them.
+/// runs on. The process waits for such threads at its exit, up to a minute, then detaches them.
 struct Device {
   std::string label{};              ///< "0:1 Portable Computing Language / cpu-..."
   int platform = 0;                 ///< as `clinfo -l` numbers them, from 0
@@ -45,10 +44,9 @@ SUNDOG_API std::vector<Device> devices();
 SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& specs = {},
                                               std::vector<std::string>* warnings = nullptr);
 
-/// Returns the number of threads that are still inside drivers, for these devices and those listed with them:
-/// they compile for a stopped render, or hang. While it is above 0, end the process by _exit(), because
-/// static destructors would destroy objects that these threads use. Thread-safe.
-SUNDOG_API unsigned threads_left_behind(const std::vector<Device>& devices);
+/// Returns the number of threads that are still inside drivers: they compile for a stopped render, or hang.
+/// While it is above 0, exit() waits for them, up to a minute; _exit() does not. Thread-safe.
+SUNDOG_API unsigned threads_left_behind();
 
 }  // namespace v0
 }  // namespace sundog

@@ -304,5 +304,5 @@ TEST_CASE("renders of several threads at once have the bits of one after the oth
 TEST_CASE("no thread stays in a driver that works") {
   const auto devices = test_device();
   (void)sundog::render(small_scene(), {.devices = devices});
-  CHECK(sundog::threads_left_behind(devices) == 0);
+  CHECK(sundog::threads_left_behind() == 0);
 }

@@ -26,6 +26,23 @@ TEST_CASE("threads that drivers have not let go of are counted and waited for by
   CHECK(used);
 }
 
+TEST_CASE("a thread that is left while its owner waits is waited for, too") {
+  std::atomic<bool> waits{false}, done{false};
+  const auto owner = std::make_shared<DriverThreads>();
+  leave_thread(owner, start_thread([&] {  // a worker that ends leaves its compiler's thread
+                 while (!waits) std::this_thread::sleep_for(1ms);
+                 std::this_thread::sleep_for(20ms);
+                 leave_thread(owner, start_thread([&] {
+                                std::this_thread::sleep_for(20ms);
+                                done = true;
+                              }));
+               }));
+  waits = true;
+  owner->wait();
+  CHECK(done);
+  CHECK(owner->count() == 0);
+}
+
 TEST_CASE("a thread that nobody takes over is waited for") {
   std::atomic<bool> done{false};
   leave_thread({}, start_thread([&] {
