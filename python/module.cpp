@@ -328,6 +328,8 @@ NB_MODULE(_sundog, m) {
   m.def("version", &version);
   m.def("threads_left_behind", &threads_left_behind,
         "How many threads drivers have not let go of; the process waits for them at its exit.");
+  m.def("wait_for_threads", &wait_for_threads, Unlocked(),
+        "Waits for these threads, up to a minute. The interpreter calls it at its end.");
   m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
         nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),

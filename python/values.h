@@ -50,6 +50,8 @@ auto interruptible(const F& f, const Stop& stop) {
       }
     }
   }
-  if (interrupted) throw nb::python_error();
+  // A signal may have ended f() with an error of its own: LLVM removes a compiler's temporary files on
+  // Ctrl-C.
+  if (interrupted || PyErr_CheckSignals() != 0) throw nb::python_error();
   return running.get();
 }

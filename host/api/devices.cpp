@@ -89,6 +89,10 @@ std::vector<Device> choose_devices(const std::vector<std::string>& specs,
   });
 }
 
+void wait_for_threads() noexcept {
+  if (!is_forked()) threads_of_process()->wait();
+}
+
 unsigned threads_left_behind() { return is_forked() ? 0 : threads_of_process()->count(); }
 
 std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {

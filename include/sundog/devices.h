@@ -48,5 +48,10 @@ SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& sp
 /// While it is above 0, exit() waits for them, up to a minute; _exit() does not. Thread-safe.
 SUNDOG_API unsigned threads_left_behind();
 
+/// Waits for these threads now, up to a minute, then detaches them. Call it before exit() where a process may
+/// end within its first compilation: a driver's compiler creates static objects as it runs, and exit()
+/// destroys the newest first. Thread-safe.
+SUNDOG_API void wait_for_threads() noexcept;
+
 }  // namespace v0
 }  // namespace sundog

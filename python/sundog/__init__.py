@@ -8,6 +8,7 @@
 A scene is a file, a dict like its JSON (docs/scene-reference.md), or a Scene.
 """
 
+import atexit as _atexit
 import ctypes as _ctypes
 
 try:
@@ -33,8 +34,10 @@ from ._sundog import (  # noqa: E402
     render,
     threads_left_behind,
     version,
+    wait_for_threads,
 )
 
+_atexit.register(wait_for_threads)  # while what the drivers' threads use is still there
 __version__ = version()
 __all__ = [
     "Device",
@@ -50,4 +53,5 @@ __all__ = [
     "render",
     "threads_left_behind",
     "version",
+    "wait_for_threads",
 ]
