@@ -326,8 +326,11 @@ NB_MODULE(_sundog, m) {
   add_scene(m);
   add_session(m);
   m.def("version", &version);
-  m.def("threads_left_behind", &threads_left_behind,
-        "How many threads drivers have not let go of; the process waits for them at its exit.");
+  m.def(
+      "threads_left_behind", [](nb::handle) { return threads_left_behind(); },
+      nb::arg("devices").none() = nb::none(),
+      "How many threads drivers have not let go of; the process waits for them at its exit, whichever the "
+      "devices.");
   m.def("wait_for_threads", &wait_for_threads, Unlocked(),
         "Waits for these threads, up to a minute. The interpreter calls it at its end.");
   m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
