@@ -1,4 +1,5 @@
 // One stage: photons from the lights to where they land, before the samples that look for them.
+#define HAS_LANDINGS 1
 #include "lib/core/counters.cl"
 #include "lib/pathtracer/photon_start.cl"
 #include "lib/pathtracer/steps.cl"

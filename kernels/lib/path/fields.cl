@@ -135,6 +135,11 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   rays.t_min = search->t_min;
   rays.t_max = search->t_best;
   rays.footprint = search->footprint;
+#if HAS_LANDINGS
+  const REAL3 from_camera = along3(search->o, -1.0f, all3(scene->info->camera_position.xyz));
+  rays.away2 = dot3(from_camera, from_camera);
+  rays.slope = dot3(from_camera, search->d);
+#endif
   rays.spread = (REAL)(pixel_spread(scene->info));
   rays.active = search->active;
   rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));

@@ -7,12 +7,13 @@
 
 #if HAS_CAUSTICS
 #define PHOTONS_A_CELL 96u  // looked at; of more, every second, third...
-#define PHOTON_FLAT 0.25f   // how far from the surface photons count, of the radius
+#define PHOTON_FLAT 0.25f   // how far from the surface photons count, of the radius; fields are rough: 1
 #define PHOTON_CELLS 8u     // that a ball meets
 
 // A lane's way through the photons about its surface.
 typedef struct PhotonSearch {
   float3 p, n;  // of the surface as it stood when the shutter opened, where photons lie
+  float flat;   // how far from the surface photons count
   PhotonMap map;
   int3 low;     // the cube of the lowest corner
   u32 slice;    // of time
@@ -34,6 +35,8 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
   search.n *= rsqrt(dot(search.n, search.n));
 #endif
   search.map = scene->photon_maps[photon_map_of(sample) - scene->photon_maps[0].number];
+  const bool on_field = HAS_SDF && instance >= scene->info->instance_count;
+  search.flat = search.map.radius * (on_field ? 1.0f : PHOTON_FLAT);
   search.low = photon_cube(search.p - search.map.radius, search.map.inverse_edge);
   search.slice = photon_slice(time);
   search.deepest = (int)scene->info->max_depth - (int)depth;
@@ -65,7 +68,7 @@ static inline bool find_photon(const Scene* scene, PhotonSearch* search, float3*
       search->at += max(search->stride, 1u);
       const float4 place = scene->photons[2u * at];
       const float3 to = place.xyz - search->p;
-      if (dot(to, to) > radius * radius || fabs(dot(to, search->n)) > PHOTON_FLAT * radius) continue;
+      if (dot(to, to) > radius * radius || fabs(dot(to, search->n)) > search->flat) continue;
       // Other cubes and slices share the cell.
       const u32 k = search->cell - 1u;
       const int3 cube = photon_cube(place.xyz, search->map.inverse_edge) - search->low;

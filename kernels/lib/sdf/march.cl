@@ -11,8 +11,12 @@
 #define SDF_CROSSES (SDF_TWO_SIDED || SDF_HAS_NEAR)
 
 // t is in units of the direction's length, which need not be 1. The pixel's footprint at t is footprint + t *
-// spread, in the same unit.
+// spread, in the same unit. Photons land on the surface that camera rays see, so theirs is that of a camera
+// ray to the same place: spread times the distance, whose square is away2 + t (2 slope + t).
 typedef struct MarchRays {
+#if HAS_LANDINGS
+  REAL away2, slope;
+#endif
   REAL3 origin, direction;
   REAL t_min, t_max;
   REAL footprint, spread;
@@ -36,8 +40,13 @@ typedef struct MarchHits {
 // The distance at which a ray at t, of this speed in field space, has arrived.
 static inline REAL march_threshold(__global const SdfField* restrict field, const MarchRays* rays, REAL t,
                                    REAL speed) {
+#if HAS_LANDINGS
+  const REAL away = real_sqrt(real_max(fma(t, fma(2.0f, rays->slope, t), rays->away2), (REAL)(0.0f)));
+  const REAL footprint = rays->spread * speed * field->detail * away;
+#else
   const REAL footprint =
       fma(t, rays->spread * speed * field->detail, rays->footprint * speed * field->detail);
+#endif
   return real_clamp(footprint, (REAL)(field->lower.w), (REAL)(field->upper.w));
 }
 

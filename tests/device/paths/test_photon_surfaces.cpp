@@ -64,6 +64,21 @@ SceneDescription moving_ball(std::optional<double> time) {
       0.8 * at, 0.3 * at, 0.8 * way, 0.3 * way));
 }
 
+/// The light of a lamp behind a ball of glass on a fractal, seen from aside.
+SceneDescription fractal_behind_ball(const std::string& formula) {
+  return scene_of(fmt::format(
+      R"({{"camera": {{"position": [0, 4, -5], "target": [0, 0.9, 0], "fov": 12}},
+      "image": {{"width": 32, "height": 32}},
+      "render": {{"integrator": "path", "caustics": true, "samples": 32, "max_depth": 5,
+        "path": {{"photon_radius": 0.03}}}},
+      "lights": [{{"type": "sphere", "position": [0, 6, 0], "radius": 1.2, "intensity": 60}}],
+      "materials": {{"white": {{"color": [0.8, 0.8, 0.8], "diffuse": 1}},
+        "glass": {{"type": "dielectric", "ior": 1.5}}}},
+      "objects": [{{"type": "fractal", "formula": "{}", "material": "white"}},
+        {{"type": "sphere", "radius": 0.6, "center": [0, 2.2, 0], "material": "glass"}}]}})",
+      formula));
+}
+
 /// A plate below a ball of glass; it moves, or stands as it does at the time.
 SceneDescription plate(const std::string& motion) {
   return scene_of(fmt::format(
@@ -109,6 +124,20 @@ TEST_CASE("layered and glossy surfaces have from photons, and narrow lobes from 
       const Mean met = mean_on(device, scene);
       CAPTURE(floor, brought.value.x, met.value.x);
       CHECK(brought.value.x == Approx(met.value.x).epsilon(0.04));
+    }
+  });
+}
+
+TEST_CASE("photons bring to rough fractals what paths find") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const char* formula : {"mandelbulb", "menger"}) {
+      SceneDescription scene = fractal_behind_ball(formula);
+      const Mean brought = mean_on(device, scene);
+      scene.render.caustics = false;
+      scene.render.samples = 512;
+      const Mean met = mean_on(device, scene);
+      CAPTURE(formula, brought.value.x, met.value.x);
+      CHECK(brought.value.x == Approx(met.value.x).epsilon(0.05));
     }
   });
 }
