@@ -1,8 +1,20 @@
 #!/usr/bin/env bash
 # Renders every shipped scene to docs/pictures/NAME.png and every surface of the list to docs/pictures/formulas.png, as the
 # pages show them. Arguments go to `render`. The second needs the bench programs (./test.sh builds them).
+# `render_pictures.sh gallery [NAME...]` renders the scenes of scenes/gallery instead, all or those named: ten minutes each; what is
+# interrupted continues where it was.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
+if [ "${1:-}" = gallery ]; then
+  shift
+  scenes=$root/scenes/gallery pictures=$root/docs/pictures/gallery
+  [ -e "$scenes/wine_glass.ply" ] || "$scenes/make_meshes.py"
+  [ $# -gt 0 ] || set -- $(cd "$scenes" && basename -s .json ./*.json)
+  for name; do
+    "$root/run.sh" render "$scenes/$name.json" -o "$pictures/$name.jpg" --time-limit 600 --denoise --resume "$pictures/$name.checkpoint"
+  done
+  exit
+fi
 for scene in "$root"/scenes/*.json; do
   name=$(basename "$scene" .json)
   case "$name" in scene.schema | fractal_light_*) continue ;; esac

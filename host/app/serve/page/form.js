@@ -2,15 +2,16 @@
 import {html, Group, Button, useStore} from './ui.js';
 import {store} from './store.js';
 import {join} from './pointer.js';
-import {changesFor, fits, isTextureName, missing, nameOf, resolve, sample, unitOf, variants, words} from './schema.js';
+import {branch, changesFor, definition, fits, isTextureName, missing, nameOf, resolve, sample, unitOf, variants, words} from './schema.js';
 import {BooleanField, ChoiceField, CodeField, ColorField, NumberField, Row, TextField, VectorField} from './fields.js';
 
 const isColor = (s) => ['color', 'share_color', 'light_color'].includes(s.kind);
 const isVector = (s) => s.type === 'array' && s.minItems === s.maxItems && s.minItems <= 4 && ['number', 'integer'].includes(resolve(s.items).type);
 const names = {
-  material_name: () => Object.keys(store.state.document.materials ?? {}),
+  material_name: () => [...new Set([...Object.keys(store.state.document.materials ?? {}), ...presetNames()])],
   formula_name: () => store.state.formulas.map((f) => f.name),
 };
+export const presetNames = () => definition('preset_material').properties.preset.enum;
 /** Keys by which a schema refers to a table of the document, by what their descriptions say. */
 const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field|material)\b/.exec(description)?.[1];
 const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
@@ -104,7 +105,7 @@ function Json({at, value, label, help, onReset}) {
 /** All keys of an object; `only` and `without` choose among them. An object with a "type" shows the keys of its type. */
 export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   const types = variants(schema);
-  const s = types ? types[value?.type] ?? {} : resolve(schema);
+  const s = types ? types[value?.type] ?? {} : branch(schema, value);
   const required = s.required ?? [];
   const needs = (key) => s.if?.properties[key] && ((next) => {  // what another value of that key asks for as well
     const chosen = {...value, [key]: next}, more = s.if.properties[key].const === next ? missing({...s, required: []}, chosen) : {};

@@ -1,23 +1,18 @@
 // Presets: materials, lights and render settings that are often wanted, as parts of a scene. A preset is an edit like any other.
+import {presetNames} from './form.js';
 import {html, Button, useState} from './ui.js';
 import {store} from './store.js';
 import {join} from './pointer.js';
 
 const glossy = (coefficient, exponent) => ({specular: {coefficient, exponent}});
 
-/** Of materials. Those without a colour keep the one that there is. */
-export const materials = {
-  Matte: {ambient: 0.2, diffuse: 0.9},
-  Plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
-  Lacquer: {ambient: 0.15, diffuse: 0.75, ...glossy(0.8, 200), reflection: 0.12},
-  Mirror: {color: [0.9, 0.9, 0.9], ambient: 0, diffuse: 0.05, ...glossy(0.8, 400), reflection: 0.9},
-  'Brushed metal': {color: [0.75, 0.76, 0.78], ambient: 0.1, diffuse: 0.25, ...glossy(0.9, 30), reflection: 0.45, roughness: 0.3},
-  Gold: {color: [1, 0.71, 0.29], ambient: 0.1, diffuse: 0.25, specular: {color: [1, 0.78, 0.34], coefficient: 0.9, exponent: 120}, reflection: {color: [1, 0.71, 0.29], coefficient: 0.7}},
-  Glass: {type: 'dielectric', ior: 1.52, ...glossy(0.6, 300)},
-  Water: {type: 'dielectric', ior: 1.333, ...glossy(0.5, 200)},
-  Ice: {type: 'dielectric', ior: 1.31, ...glossy(0.4, 150)},
-  Diamond: {type: 'dielectric', ior: 2.417, ...glossy(0.8, 500)},
+/** Of materials. Those of Phong's model keep the colour that there is; the others are the scene's own presets. */
+const painted = {
+  matte: {ambient: 0.2, diffuse: 0.9},
+  plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
+  lacquer: {ambient: 0.15, diffuse: 0.75, ...glossy(0.8, 200), reflection: 0.12},
 };
+export const materials = () => ({...painted, ...Object.fromEntries(presetNames().map((preset) => [preset, {preset}]))});
 
 /** Of all lights. */
 export const lights = {
@@ -38,9 +33,8 @@ export const qualities = {
 let gestures = 0;
 
 export function setMaterial(at, before, name) {
-  const preset = materials[name];
-  const keeps = !preset.color && preset.type !== 'dielectric' && before?.color !== undefined;
-  store.set(at, keeps ? {color: before.color, ...preset} : {...preset});
+  const keeps = name in painted && before?.color !== undefined;
+  store.set(at, keeps ? {color: before.color, ...painted[name]} : materials()[name]);
 }
 export const setLights = (name) => store.set('/lights', structuredClone(lights[name]));
 export const setQuality = (name) =>

@@ -22,6 +22,16 @@ export function variants(schema) {
   return Object.fromEntries(s.allOf.map((one) => [one.if.properties.type.const, resolve(one.then)]));
 }
 
+const holds = (condition, value) => (condition.required ?? []).every((key) => key in value) &&
+  Object.entries(condition.properties ?? {}).every(([key, {const: wanted}]) => value[key] === wanted);
+
+/** The schema of a value whose own "if" chooses among several, as that of a material does. */
+export function branch(schema, value = {}) {
+  let s = resolve(schema);
+  while (s.then?.$ref) s = resolve(holds(s.if, value) ? s.then : s.else);
+  return s;
+}
+
 /** Whether a value may be meant for a schema: its JSON type, its required keys, whether its keys are known. */
 export function fits(schema, value) {
   const s = resolve(schema);

@@ -152,9 +152,9 @@ export function BuildPanel() {
     <${Group} title=${field ? 'Surface, further' : titleOf(chosen)} id="object" open=${!field} key=${'object' + at}>
       <${Fields} schema=${{$ref: '#/$defs/object'}} at=${at} value=${object} without=${field ? surfaceKeys : ['objects']} /></${Group}>
     ${material && get(document, join('/materials', material)) && html`<${Group} title=${`Material: ${material}`} id="material">
-      <${Presets} title="Presets of materials" list=${materials} onTake=${(name) => setMaterial(join('/materials', material), get(document, join('/materials', material)), name)} />
-      <${Fields} schema=${{$ref: '#/$defs/material'}} at=${join('/materials', material)} value=${get(document, join('/materials', material))} /></${Group}>`}
+      <${Presets} title="Presets of materials" list=${materials()} onTake=${(name) => setMaterial(join('/materials', material), get(document, join('/materials', material)), name)} />
+      <${Fields} schema=${{$ref: '#/$defs/any_material'}} at=${join('/materials', material)} value=${get(document, join('/materials', material))} /></${Group}>`}
     <${Group} title="Smoothing" id="smoothing"><${Fields} schema=${{$ref: '#/$defs/render'}} at="/render" value=${document.render ?? {}}
       only=${['samples', 'filter', 'filter_radius', 'adaptive', 'subsample']} /></${Group}>
-    <${Group} title="All materials" id="materials" open=${false}><${Table} name="materials" schema=${{$ref: '#/$defs/material'}} title="Material" /></${Group}>`;
+    <${Group} title="All materials" id="materials" open=${false}><${Table} name="materials" schema=${{$ref: '#/$defs/any_material'}} title="Material" /></${Group}>`;
 }
