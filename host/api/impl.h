@@ -54,6 +54,7 @@ struct SUNDOG_LOCAL Film::Impl {
   Image image;
   std::map<std::string, Image> aovs;
   sundog::ImageTexts texts;  // for an EXR's header
+  sundog::Shot shot;
   Figures figures;
   std::vector<std::string> warnings;
 };

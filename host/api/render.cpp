@@ -8,6 +8,7 @@
 
 #include "api/impl.h"
 #include "base/clock.h"
+#include "scene/shot.h"
 
 namespace sundog {
 inline namespace v0 {
@@ -128,6 +129,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wait_for_threads_at_exit();
   film->tone_map = description->image.tone_map;
   film->transparent = description->image.transparent;
+  film->shot = sundog::shot_of(*description);
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
   std::vector<std::string> objects, materials;
@@ -197,7 +199,9 @@ void Film::save(const std::filesystem::path& file) const {
     if (all)
       for (const auto& [name, image] : impl_->aovs) aovs.emplace(name, *image.impl()->image);
     const core::Image& image = *impl_->image.impl()->image;
-    if (all) return sundog::write_file(file, core::encode_image(image, file, aovs, {.texts = impl_->texts}));
+    if (all)
+      return sundog::write_file(
+          file, core::encode_image(image, file, aovs, {.texts = impl_->texts, .shot = impl_->shot}));
     core::Image colors =
         impl_->transparent && sundog::is_png(file) ? core::Image(image) : without_coverage(image);
     if (sundog::is_for_screens(file)) sundog::prepare_for_screen(colors, impl_->tone_map, true);

@@ -104,6 +104,8 @@ void add_picture(Arguments* app, PictureOptions& picture) {
         "the temperature of the light that is white in .png and .jpg");
   value(app, "--dpi", "N", picture.dpi, "pixels an inch that .png, .jpg and .exr state (default 72)")
       ->range(1, 65535);
+  app->add_flag("--icc", picture.icc, "put an ICC profile, that of sRGB, into .png and .jpg");
+  value(app, "--far", "Z", picture.far, "the AOV depth where nothing is (default: infinite)");
   app->add_flag("--no-dither", picture.no_dither, "round colours of .png and .jpg to the nearest of 8 bits");
 }
 

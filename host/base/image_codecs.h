@@ -16,9 +16,9 @@ std::string with_png_texts(std::string png, const ImageTexts& texts);
 /// Texts of a PNG; empty for other files.
 ImageTexts decode_png_texts(std::string_view bytes);
 /// Likewise with 8 bits, without alpha; colours in full resolution.
-std::string encode_jpeg(const Image& image, int dpi = 72);
-/// The JPEG of stb_image_write with Exif tags that say sRGB, and its density.
-std::string with_jpeg_tags(std::string jpeg, int dpi);
+std::string encode_jpeg(const Image& image, const FileOptions& options = {});
+/// The JPEG of stb_image_write with Exif tags that say sRGB, its density and, by option, a profile.
+std::string with_jpeg_tags(std::string jpeg, const FileOptions& options);
 /// The exponent that makes a PNG's samples linear; none: sRGB.
 std::optional<float> png_decoding_exponent(std::string_view bytes);
 

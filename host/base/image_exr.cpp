@@ -4,8 +4,10 @@
 #include <ImfChromaticities.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
+#include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
@@ -222,6 +224,24 @@ std::size_t greatest_size(const Imf::Header& header) {
   return width * height * pixel + 16 * height + (std::size_t{1} << 16);
 }
 
+Imath::M44f row_matrix(const glm::dmat4& m) {
+  Imath::M44f rows;
+  for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = static_cast<float>(m[i / 4][i % 4]);
+  return rows;
+}
+
+/// Matrices of row vectors, seconds and metres, as ImfStandardAttributes.h has them.
+void add_shot(Imf::Header& header, const Shot& shot) {
+  Imf::addWorldToCamera(header, row_matrix(shot.world_to_camera));
+  Imf::addWorldToNDC(header, row_matrix(shot.world_to_ndc));
+  header.screenWindowWidth() = static_cast<float>(shot.window_width);
+  if (shot.focus) Imf::addFocus(header, static_cast<float>(*shot.focus));
+  if (!shot.frame) return;
+  header.insert("imageCounter", Imf::IntAttribute(*shot.frame));
+  Imf::addFramesPerSecond(header, Imf::guessExactFps(shot.frames_per_second));
+  if (shot.exposure_seconds > 0) Imf::addExpTime(header, static_cast<float>(shot.exposure_seconds));
+}
+
 /// The colours of an image on their way into a file, a row at a time.
 class ColorRows {
  public:
@@ -266,6 +286,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   std::size_t text_bytes = 0;
   Imf::addChromaticities(header, chromaticities(space));
   Imf::addXDensity(header, static_cast<float>(options.dpi));
+  if (options.shot) add_shot(header, *options.shot);
   for (const auto& [name, text] : options.texts) {
     if (name == "capDate") Imf::addUtcOffset(header, 0);  // it is universal time
     header.insert(name, Imf::StringAttribute(text));

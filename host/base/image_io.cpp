@@ -113,7 +113,7 @@ std::string encode_image(const Image& image, const fs::path& path, const AovImag
     if (extension == ".exr") return encode_exr(image, aovs, options);
     if (extension == ".hdr") return encode_hdr(image);
     if (extension == ".pfm") return encode_pfm(image);
-    if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image, options.dpi);
+    if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image, options);
     return with_png_texts(encode_png(image, options), options.texts);
   };
   try {

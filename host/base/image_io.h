@@ -2,11 +2,13 @@
 // .hdr, .pfm; the content decides when reading, which also takes 16-bit PNG.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/image.h"
+#include "base/shot.h"
 
 namespace sundog {
 
@@ -23,9 +25,11 @@ enum class ExrSpace { srgb, acescg };
 struct FileOptions {
   ExrColor color = ExrColor::half;
   ExrSpace space = ExrSpace::srgb;
-  int bits = 8;           // of a PNG's channels: 8 or 16
-  int dpi = 72;           // pixels an inch, for printers: in PNG, JPEG and EXR
-  ImageTexts texts = {};  // in PNG and EXR
+  int bits = 8;                   // of a PNG's channels: 8 or 16
+  int dpi = 72;                   // pixels an inch, for printers: in PNG, JPEG and EXR
+  bool icc = false;               // an ICC profile, in PNG and JPEG
+  ImageTexts texts = {};          // in PNG and EXR
+  std::optional<Shot> shot = {};  // in EXR
 };
 
 /// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at

@@ -19,7 +19,7 @@ void append(void* context, void* bytes, int size) {
 
 }  // namespace
 
-std::string encode_jpeg(const Image& image, int dpi) {
+std::string encode_jpeg(const Image& image, const FileOptions& options) {
   // From 91 on stb_image_write keeps the colours of each pixel, not of four at once.
   constexpr int quality = 92;
   const auto channels = static_cast<std::size_t>(image.channels);
@@ -30,7 +30,7 @@ std::string encode_jpeg(const Image& image, int dpi) {
   std::string bytes;
   if (!stbi_write_jpg_to_func(append, &bytes, image.width, image.height, 3, samples.data(), quality))
     throw std::runtime_error("the JPEG encoder failed");
-  return with_jpeg_tags(std::move(bytes), dpi);
+  return with_jpeg_tags(std::move(bytes), options);
 }
 
 std::string encode_hdr(const Image& image) {

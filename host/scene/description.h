@@ -51,6 +51,7 @@ struct Camera {
   double near = 0, far = std::numeric_limits<double>::infinity();
   Lens lens;
   std::optional<View> moves_to;  // position and target when the shutter closes; linear in between
+  double shutter = 0;            // of a film: the part of a frame for which it is open
 };
 
 struct ImageSettings {
@@ -325,7 +326,9 @@ struct SceneDescription {
   std::vector<SdfDescription> fields;
   std::vector<Object> objects;
   std::vector<std::string> warnings;  // one line each: features of model files that were ignored
-  bool plays = false;                 // a part changes with the frame by itself: a model's animation
+  double unit = 0.1;                  // of length, in metres
+  double frames_per_second = 24;
+  bool plays = false;  // a part changes with the frame by itself: a model's animation
 };
 
 }  // namespace sundog

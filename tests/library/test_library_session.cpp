@@ -28,7 +28,7 @@ TEST_CASE("two sessions in one process at once have the command line's bits") {
     images = {first.finish(), second.finish()};
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string ours = (folder / "ours.exr").string(), theirs = (folder / "theirs.exr").string();
+    const std::string ours = (folder / "ours.pfm").string(), theirs = (folder / "theirs.pfm").string();
     std::vector<std::string> arguments{"render", shipped_scene(names[i]).string(), "-o", theirs, "--size",
                                        "48x32"};
     if (!test_spec().empty()) arguments.insert(arguments.end(), {"--device", test_spec()});
@@ -60,7 +60,7 @@ TEST_CASE("two sessions at once on different devices have the command line's bit
   for (const int intensity : {2, 1})  // an edit while both draw
     for (sundog::Session& session : sessions) session.start(scene.set("/lights/0/intensity", intensity));
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::string ours = (folder / "ours.exr").string(), theirs = (folder / "theirs.exr").string();
+    const std::string ours = (folder / "ours.pfm").string(), theirs = (folder / "theirs.pfm").string();
     sessions[i].finish().save(ours);
     REQUIRE(run_sundog({"render", shipped_scene("spheres").string(), "-o", theirs, "--size", "48x32", "--set",
                         "/lights/0/intensity=1", "--device",

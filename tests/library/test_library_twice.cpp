@@ -83,8 +83,8 @@ TEST_CASE("the library loaded twice in a process draws in two sessions at once w
     fs::copy_file(SUNDOG_SHARED_LIBRARY, folder / name, fs::copy_options::overwrite_existing);
   const Loaded first(folder / "first.so"), second(folder / "second.so");
   REQUIRE(FUNCTION_OF(first, sundog_version) != FUNCTION_OF(second, sundog_version));
-  const std::string scene = shipped_scene("spheres").string(), theirs = (folder / "theirs.exr").string(),
-                    ours = (folder / "ours.exr").string();
+  const std::string scene = shipped_scene("spheres").string(), theirs = (folder / "theirs.pfm").string(),
+                    ours = (folder / "ours.pfm").string();
   std::vector<std::string> arguments{"render", scene, "-o", theirs, "--size", "48x32"};
   if (!test_spec().empty()) arguments.insert(arguments.end(), {"--device", test_spec()});
   REQUIRE(run_sundog(arguments).status == 0);

@@ -125,8 +125,8 @@ double parse_tolerance(const std::string& text) {
   return *value;
 }
 
-double parse_amount(const char* option, const std::string& text) {
-  const std::optional<double> value = number(text, 0.0, 1e9);
+double parse_amount(const char* option, const std::string& text, double most) {
+  const std::optional<double> value = number(text, 0.0, most);
   if (!value || !(*value > 0)) throw UsageError(fmt::format("{} {}: wanted a number above 0", option, text));
   return *value;
 }

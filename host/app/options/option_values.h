@@ -29,8 +29,8 @@ double parse_real(const char* option, const std::string& text, double low, doubl
 /// A finite number, 0 or more.
 double parse_tolerance(const std::string& text);
 
-/// A finite number above 0.
-double parse_amount(const char* option, const std::string& text);
+/// A number above 0 and at most `most`.
+double parse_amount(const char* option, const std::string& text, double most = 1e9);
 
 /// "WxH", each from 1 to the greatest edge.
 std::pair<int, int> parse_size(const std::string& text);

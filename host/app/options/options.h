@@ -21,6 +21,8 @@ struct PictureOptions {
   int dpi = 72;                      // pixels an inch, for printers
   std::string color_space = "srgb";  // of an EXR: srgb or acescg
   int bits = 8;                      // of a PNG's channels: 8 or 16
+  bool icc = false;                  // a PNG or JPEG has an ICC profile
+  std::string far;                   // as typed: the depth where nothing is; empty: infinite
   bool transparent = false;          // a PNG keeps alpha
 };
 

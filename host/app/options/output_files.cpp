@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
+#include "app/options/option_values.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
@@ -34,6 +36,8 @@ std::optional<FileIdentity> identity(const std::string& name) {
   return FileIdentity{found.st_dev, found.st_ino};
 }
 
+constexpr double greatest_depth = 1e30;  // that --far takes
+
 /// Devices and pipes: nothing in them is written over.
 bool holds_nothing(const std::string& name) {
   std::error_code failed;
@@ -48,10 +52,8 @@ std::string format_name(const PictureOptions& picture) {
 
 FileOptions file_options(const PictureOptions& picture) {
   return {picture.full_floats ? ExrColor::full : ExrColor::half,
-          picture.color_space == "acescg" ? ExrSpace::acescg : ExrSpace::srgb,
-          picture.bits,
-          picture.dpi,
-          {}};
+          picture.color_space == "acescg" ? ExrSpace::acescg : ExrSpace::srgb, picture.bits, picture.dpi,
+          picture.icc};
 }
 
 std::vector<std::string> made_aovs(const RenderCommand& command) {
@@ -62,6 +64,18 @@ std::vector<std::string> made_aovs(const RenderCommand& command) {
   return aovs;
 }
 
+void end_depth(const PictureOptions& picture, AovImages& aovs) {
+  if (picture.far.empty()) return;
+  const auto depth = aovs.find("depth");
+  if (depth == aovs.end())
+    throw UsageError(
+        fmt::format("--far {}: is for the AOV depth, which {} does not have: render it with --aov depth",
+                    picture.far, picture.out));
+  const auto far = static_cast<float>(parse_amount("--far", picture.far, greatest_depth));
+  for (float& z : depth->second.data)
+    if (std::isinf(z)) z = far;
+}
+
 void check_picture(const PictureOptions& picture, bool with_aovs) {
   const std::string name = format_name(picture);
   check_image_path(name, with_aovs);
@@ -69,6 +83,9 @@ void check_picture(const PictureOptions& picture, bool with_aovs) {
     throw UsageError(fmt::format("{}: --float is for .exr files", picture.out));
   if (picture.color_space != "srgb" && drops_alpha(name))
     throw UsageError(fmt::format("{}: --color-space is for .exr files", picture.out));
+  if (picture.icc && !is_for_screens(name))
+    throw UsageError(fmt::format("{}: --icc is for .png and .jpg files", picture.out));
+  if (!picture.far.empty()) static_cast<void>(parse_amount("--far", picture.far, greatest_depth));
   if (picture.bits != 8 && !is_png(name))
     throw UsageError(fmt::format("{}: --bits is for .png files", picture.out));
   if (!is_standard_stream(picture.out)) return check_writable(picture.out);

@@ -22,6 +22,9 @@ FileOptions file_options(const PictureOptions& picture);
 /// The AOVs that a frame makes: those asked for, and those that the denoiser wants.
 std::vector<std::string> made_aovs(const RenderCommand& command);
 
+/// Replaces infinite depths by those of --far. Throws UsageError where there are no depths.
+void end_depth(const PictureOptions& picture, AovImages& aovs);
+
 /// Throws UsageError where the picture's name is of no format, or its format cannot hold what is asked, or
 /// the standard output is a terminal; IoError where the file could not be written.
 void check_picture(const PictureOptions& picture, bool with_aovs);

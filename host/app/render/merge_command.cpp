@@ -27,6 +27,7 @@ int merge_command(const MergeCommand& command) {
                                dithers(command));
   AovImages aovs;
   for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
+  end_depth(command, aovs);
   save_image({image, aovs, whole.film, whole.key, {}, command.format, file_options(command)}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;

@@ -1,6 +1,7 @@
 // `sundog render`: scene file -> description -> flat tables -> image -> file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <optional>
@@ -41,6 +42,10 @@ void check_extras(const RenderCommand& command) {
         fmt::format("{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or "
                     "--tiles out",
                     command.out));
+  if (!command.far.empty() && (command.part || std::ranges::count(command.aovs, "depth") == 0))
+    throw UsageError(fmt::format("--far {}: {}", command.far,
+                                 command.part ? "a part keeps its infinite depths: give --far to merge"
+                                              : "is for the AOV depth: give --aov depth as well"));
   for (const std::string& name : command.aovs)
     if (command.part && (name.starts_with("crypto_") || name == "samples" || name == "variance"))
       throw UsageError(fmt::format("--aov {}: wants a whole frame: leave --tiles out", name));

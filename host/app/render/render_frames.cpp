@@ -33,6 +33,10 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   if (scene.times > 1)
     text += fmt::format(" {} {}", scene.times, hash_scene(*scene.at_time(scene.times - 1)));
   text += std::filesystem::path(command.out).extension().string();
+  if (!drops_alpha(command.out))  // an EXR states both
+    text += fmt::format(" {} {}", scene.description->frames_per_second, scene.description->unit);
+  if (command.icc) text += " icc";
+  text += command.far;
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);
   for (const std::string& name : command.aovs) text += " " + name;
   for (const Object& object : scene.description->objects) text += "\n" + object.name;  // of Cryptomatte

@@ -23,6 +23,7 @@
 #include "render/film/hash.h"
 #include "render/film/part.h"
 #include "render/film/sampling_report.h"
+#include "scene/shot.h"
 
 namespace sundog {
 namespace {
@@ -101,6 +102,7 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
 AovImages take_aovs(const RenderCommand& command, RenderResult& result) {
   std::erase_if(result.aovs,
                 [&](const auto& aov) { return std::ranges::count(command.aovs, aov.first) == 0; });
+  end_depth(command, result.aovs);
   return std::move(result.aovs);
 }
 
@@ -128,6 +130,7 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   AovImages aovs = take_aovs(command, result);
   FileOptions file = file_options(command);
   file.texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
+  file.shot = shot_of(scene, command.frame);
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
   Picture picture{image, aovs, result.film, result.key, checkpoint, command.format, file};

@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include "app/commands/formulas_command.h"
+#include "app/process/save_image.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
 #include "app/serve/page_files.h"
 #include "app/serve/studio.h"
 #include "base/error.h"
 #include "base/image_io.h"
-#include "base/pixels/dither.h"
 #include "scene/json/parse.h"
 #include "scene/model.h"
+#include "scene/shot.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -27,12 +28,12 @@ WebAnswer plain(int status, std::string text) {
 
 WebAnswer json_answer(const json& value) { return {200, json_type, message_text(value), ""}; }
 
-/// Image of a settled frame as `sundog render` writes it: without coverage where that would look like holes.
-Image for_format(const Image& image, const std::string& format) {
-  if (format == "exr" || image.channels == 3) return image;
-  Image out(image.width, image.height, 3);
+/// Those channels of a settled frame that `sundog render` would write into that file.
+Image with_channels(const Image& image, int channels) {
+  if (image.channels <= channels) return image;
+  Image out(image.width, image.height, channels);
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) std::copy_n(image.pixel(x, y), 3, out.pixel(x, y));
+    for (int x = 0; x < image.width; ++x) std::copy_n(image.pixel(x, y), channels, out.pixel(x, y));
   return out;
 }
 
@@ -98,13 +99,18 @@ WebAnswer Studio::open_upload(const WebRequest& request) {
 
 WebAnswer Studio::picture(const std::string& format) {
   if (format != "png" && format != "exr") return plain(400, "wanted format=png or format=exr");
+  std::unique_lock lock(mutex_);
   const Snapshot now = session_.snapshot();
+  const auto scene = drawn_;
+  lock.unlock();
   if (now.state != SessionState::settled || !now.picture)
     return plain(409, "the picture is not finished yet");
   const std::string name = "picture." + format;
-  Image image = for_format(*now.picture, format);
-  if (is_for_screens(name)) dither_to_8_bits(image);
-  return {200, format == "png" ? "image/png" : "image/x-exr", encode_image(image, name), name};
+  const ImageSettings& settings = scene->image;
+  const Image image = shown_in(name, with_channels(*now.picture, image_channels(name, settings.transparent)),
+                               settings.tone_map);
+  return {200, format == "png" ? "image/png" : "image/x-exr",
+          encode_image(image, name, {}, {.shot = shot_of(*scene)}), name};
 }
 
 std::string Studio::command_line() const {

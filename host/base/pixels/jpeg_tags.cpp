@@ -1,5 +1,6 @@
-// What a JPEG says of its colours and its density: in the JFIF header, and as Exif (CIPA DC-008, 4.6: a TIFF
-// header and directories of tags).
+// What a JPEG says of its colours and its density: in the JFIF header, as an ICC profile, and as Exif (CIPA
+// DC-008, 4.6: a TIFF header and directories of tags).
+#include "base/colors/icc_profile.h"
 #include "base/image_codecs.h"
 
 namespace sundog {
@@ -13,6 +14,10 @@ std::string little_endian(std::uint32_t value, int bytes) {
 
 std::string big_endian_word(std::size_t value) {
   return {static_cast<char>(value >> 8 & 255), static_cast<char>(value & 255)};
+}
+
+std::string segment(unsigned char marker, const std::string& content) {
+  return std::string("\xff") + static_cast<char>(marker) + big_endian_word(content.size() + 2) + content;
 }
 
 enum ExifType : std::uint32_t { short_value = 3, long_value = 4, rational = 5, undefined = 7 };
@@ -35,12 +40,14 @@ std::string exif(int dpi) {
 
 }  // namespace
 
-std::string with_jpeg_tags(std::string jpeg, int dpi) {
+std::string with_jpeg_tags(std::string jpeg, const FileOptions& options) {
   constexpr std::size_t units = 13, header_end = 20;
-  const std::string density = big_endian_word(static_cast<std::size_t>(dpi));
+  const std::string density = big_endian_word(static_cast<std::size_t>(options.dpi));
   jpeg.replace(units, 5, "\x01" + density + density);
-  const std::string content = exif(dpi);
-  return jpeg.insert(header_end, "\xff\xe1" + big_endian_word(content.size() + 2) + content);
+  std::string segments = segment(0xe1, exif(options.dpi));
+  // In one piece: the first of one (ICC.1:2022, annex B.4).
+  if (options.icc) segments += segment(0xe2, std::string("ICC_PROFILE\0\1\1", 14) + srgb_icc_profile());
+  return jpeg.insert(header_end, segments);
 }
 
 }  // namespace sundog

@@ -106,7 +106,8 @@ ContentKey KeyMaker::key() const {
 }
 
 KeyMaker& KeyMaker::add(const Camera& camera) {
-  const auto& [position, target, up, fov, near, far, lens, moves_to] = camera;
+  // The shutter is for the frames of a film: it changes no scene.
+  const auto& [position, target, up, fov, near, far, lens, moves_to, shutter] = camera;
   add_each(position, target, up, fov, near, far);
   const auto& [radius, focus, blades, rotate] = lens;
   add_each(radius, blades, rotate);

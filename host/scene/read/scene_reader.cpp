@@ -55,7 +55,7 @@ class SceneReader {
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
     const auto animate = object.find("animate");
     if (animate) read_tracks(*animate);  // animate.cpp has applied them
-    object.number("frames_per_second", default_frames_per_second, above_0);
+    scene_.frames_per_second = object.number("frames_per_second", default_frames_per_second, above_0);
     bool placed = false;
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
@@ -77,7 +77,7 @@ class SceneReader {
   }
 
   void read_tables(JsonObject& object) {
-    object.number("unit", default_unit, above_0);  // for presets
+    scene_.unit = object.number("unit", default_unit, above_0);
     names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))

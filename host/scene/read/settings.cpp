@@ -153,7 +153,7 @@ Camera read_camera(const JsonValue& value, bool& placed) {
     }
     if (placed) check_view(object, camera);
     if (const auto lens = object.find("lens")) camera.lens = lens->object("lens", read_lens);
-    object.number("shutter", 0, zero_to_one);  // SceneFrames::shutter()
+    camera.shutter = object.number("shutter", 0, zero_to_one);
     object.integer("shutter_steps", 16, 2, 1024);
     if (const auto moves = object.find("moves_to")) {
       if (!placed) moves->fail("wanted a camera with \"position\" and \"target\" that it moves from");

@@ -1,6 +1,8 @@
 // Every AOV of one render: what it holds, and what an EXR says of it.
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/image_io.h"
 #include "catch.h"
@@ -101,4 +103,46 @@ TEST_CASE("AOVs that a frame cannot have are refused with the mend") {
   CHECK(run_sundog(
             {"render", folder.scene, "-o", folder.file("a.part"), "--tiles", "1/2", "--aov", "crypto_object"})
             .status == 2);
+}
+
+TEST_CASE("--far is the depth where nothing is, and changes nothing else") {
+  const CliFolder folder;
+  const std::string scene = folder.write("aovs.json", scene_text).string();
+  const auto depths = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"render", scene, "-o", folder.file("a.exr"), "--quiet", "--aov", "depth"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_sundog(words).status == 0);
+    return read_aovs(folder / "a.exr").at("depth").data;
+  };
+  const std::vector<float> plain = depths({});
+  std::vector<float> ended = depths({"--far", "1234.5"});
+  REQUIRE(std::ranges::count(ended, 1234.5f) > 20);
+  std::ranges::replace(ended, 1234.5f, std::numeric_limits<float>::infinity());
+  CHECK(ended == plain);
+  // Parts keep their depths as they are, and `merge` ends them.
+  for (const char* part : {"1/2", "2/2"})
+    REQUIRE(run_sundog({"render", scene, "-o", folder.file(part[0] + std::string(".part")), "--aov", "depth",
+                        "--tiles", part})
+                .status == 0);
+  REQUIRE(run_sundog({"merge", folder.file("1.part"), folder.file("2.part"), "-o", folder.file("m.exr"),
+                      "--far", "1234.5"})
+              .status == 0);
+  CHECK(read_aovs(folder / "m.exr").at("depth").data == depths({"--far", "1234.5"}));
+}
+
+TEST_CASE("--far without a depth, and --icc of a file without profiles, are refused with the mend") {
+  const CliFolder folder;
+  const auto refused = [&](const std::string& out, const std::vector<std::string>& more, const char* mend) {
+    std::vector<std::string> words{"render", folder.scene, "-o", folder.file(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_sundog(words);
+    CAPTURE(result.err);
+    CHECK(result.status == 2);
+    CHECK(is_one_error_line(result.err));
+    CHECK(result.err.find(mend) != std::string::npos);
+  };
+  refused("a.exr", {"--far", "9"}, "give --aov depth");
+  refused("a.exr", {"--far", "0", "--aov", "depth"}, "wanted a number above 0");
+  refused("a.part", {"--far", "9", "--aov", "depth", "--tiles", "1/2"}, "give --far to merge");
+  refused("a.exr", {"--icc"}, ".png and .jpg files");
 }

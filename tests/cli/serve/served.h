@@ -20,8 +20,10 @@ inline constexpr const char* viewer_scene = R"({
 
 /// A server in a folder of its own with "scene.json" and "other.json", and its address.
 struct Served {
+  explicit Served(const char* text = viewer_scene) : served_text(text) {}
+  const char* served_text;
   TemporaryFolder folder;
-  std::string scene = folder.write("scene.json", viewer_scene).string();
+  std::string scene = folder.write("scene.json", served_text).string();
   std::string other = folder.write("sub/other.json", viewer_scene).string();
   BackgroundProgram program{{SUNDOG_BINARY, "serve", "scene.json"}, folder.path()};
   std::string url = program.line_with("http://");

@@ -1,5 +1,7 @@
 // The viewer's server against requests that no page of its own makes: by plain sockets.
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/file.h"
 #include "catch.h"
@@ -348,4 +350,27 @@ TEST_CASE("--host adds a name for a tunnel; --port and --host are checked") {
   CHECK(taken.status == 1);
   CHECK(taken.err.find("--port") != std::string::npos);
   CHECK(run_sundog({"serve", (folder / "none.json").string()}).status == 3);
+}
+
+TEST_CASE(
+    "the pictures that the viewer saves are those of render: tone-mapped, with alpha where the scene is "
+    "transparent") {
+  json scene = json::parse(viewer_scene);
+  scene["image"]["transparent"] = true;
+  scene["image"]["tone_map"] = {{"curve", "reinhard"}, {"exposure", 1}};
+  const std::string text = scene.dump();
+  const Served viewer(text.c_str());
+  for (const char* format : {"png", "exr"}) {
+    INFO(format);
+    HttpReply saved;
+    for (int tries = 0; tries < 300 && saved.status != 200; ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      saved = http(viewer.port, http_request(viewer.port, "GET", std::string("/api/picture?format=") + format,
+                                             viewer.with_token()));
+    }
+    REQUIRE(saved.status == 200);
+    const std::string file = (viewer.folder / (std::string("a.") + format)).string();
+    REQUIRE(run_sundog({"render", viewer.scene, "-o", file}).status == 0);
+    CHECK((saved.body == sundog::read_file(file)));
+  }
 }

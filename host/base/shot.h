@@ -1,0 +1,20 @@
+// Shot: the camera of a picture and its place in a film, as OpenEXR's standard attributes hold them.
+#pragma once
+#include <glm/glm.hpp>
+#include <optional>
+
+namespace sundog {
+
+struct Shot {
+  /// Of column vectors. Camera space: x to the right, y up, z along the view, left-handed.
+  glm::dmat4 world_to_camera{1};
+  /// To (0, 0) in the picture's upper left corner and (1, 1) in its lower right, after the division by w.
+  glm::dmat4 world_to_ndc{1};
+  double window_width = 1;      // of the picture at depth 1
+  std::optional<double> focus;  // in metres; none: everything is sharp
+  std::optional<int> frame;     // of a film; with it:
+  double frames_per_second = 24;
+  double exposure_seconds = 0;  // while the shutter is open; 0: not at all
+};
+
+}  // namespace sundog

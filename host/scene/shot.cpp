@@ -1,0 +1,38 @@
+// See shot.h. The spaces are those of ImfStandardAttributes.h, which are RenderMan's.
+#include "scene/shot.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace sundog {
+namespace {
+
+/// The row of a matrix that takes a point p to axis . (p - origin).
+glm::dvec4 row(const dvec3& axis, const dvec3& origin) { return {axis, -glm::dot(axis, origin)}; }
+
+}  // namespace
+
+Shot shot_of(const SceneDescription& scene, std::optional<double> frame) {
+  const Camera& camera = scene.camera;
+  const dvec3 forward = glm::normalize(camera.target - camera.position),
+              right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+  const glm::dvec4 x = row(right, camera.position), y = row(up, camera.position),
+                   z = row(forward, camera.position), w{0, 0, 0, 1};
+  const double height = 2 * std::tan(camera.fov * std::numbers::pi / 360),
+               width = height * scene.image.width / scene.image.height,
+               near = camera.near > 0 ? camera.near : 1;
+  Shot shot;
+  shot.world_to_camera = glm::transpose(glm::dmat4(x, y, z, w));
+  // Readers discard NDC's z; 1 - near / z makes the matrix one that can be inverted.
+  shot.world_to_ndc = glm::transpose(glm::dmat4(0.5 * z + x / width, 0.5 * z - y / height, z - near * w, z));
+  shot.window_width = width;
+  const double depth = camera.lens.focus ? *camera.lens.focus : glm::length(camera.target - camera.position);
+  if (camera.lens.radius > 0) shot.focus = depth * scene.unit;
+  if (!frame) return shot;
+  shot.frame = static_cast<int>(std::lround(*frame));
+  shot.frames_per_second = scene.frames_per_second;
+  shot.exposure_seconds = camera.shutter / scene.frames_per_second;
+  return shot;
+}
+
+}  // namespace sundog
