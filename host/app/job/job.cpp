@@ -106,13 +106,16 @@ int processor_of(const Mailbox& job, const DeviceInfo& device) {
   return first;
 }
 
-ServerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInfo& device,
-                     std::uint64_t hash) {
+/// Without --isolate a rank itself keeps its devices from frame to frame.
+ServerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInfo& device, std::uint64_t hash,
+                     const KeptChannels& workers) {
   nlohmann::json settings = remote_settings(command, device);
   settings["isolate"] = command.isolate;
+  KeptChannels::Connect connect = job.connector(device.rank);
+  if (command.isolate) connect = connect_worker(command, device, workers, std::move(connect));
   const RemoteDevice remote{device,
                             processor_of(job, device),
-                            job.connector(device.rank),
+                            std::move(connect),
                             std::move(settings),
                             hash,
                             command.isolate ? worker_restarts : 0,
@@ -141,13 +144,14 @@ std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command) 
 
 std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
-                                 const std::shared_ptr<const CompiledScene>& scene) {
+                                 const std::shared_ptr<const CompiledScene>& scene,
+                                 const KeptChannels& workers) {
   const std::uint64_t hash = hash_scene(*scene);
   std::vector<ServerPlan> plans;
   for (const DeviceInfo& device : devices) {
     if (job.gone(device.rank)) continue;
-    plans.push_back(device.rank > 0   ? plan_rank(job, command, device, hash)
-                    : command.isolate ? plan_isolated(command, device, hash)
+    plans.push_back(device.rank > 0   ? plan_rank(job, command, device, hash, workers)
+                    : command.isolate ? plan_isolated(command, device, hash, workers)
                                       : plan_local(scene, device));
     plans.back().processor = processor_of(job, device);
   }

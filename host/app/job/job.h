@@ -6,6 +6,7 @@
 
 #include "app/options/options.h"
 #include "compile/compiled_scene.h"
+#include "render/remote/kept_channels.h"
 #include "render/remote/mailbox.h"
 #include "render/render.h"
 
@@ -28,6 +29,7 @@ std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command);
 /// For rank 0: how each of them is reached. Ranks that are gone are left out while others are there.
 std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
-                                 const std::shared_ptr<const CompiledScene>& scene);
+                                 const std::shared_ptr<const CompiledScene>& scene,
+                                 const KeptChannels& workers);
 
 }  // namespace sundog

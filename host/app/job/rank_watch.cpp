@@ -37,8 +37,8 @@ void RankWatch::look() {
     if (named_.insert(rank).second)
       sentences.push_back(
           fmt::format("{} says nothing any more: it has died or is stopped; mpirun ends all ranks when one "
-                      "dies, with --enable-recovery the others continue; finished work is kept in {}",
-                      job_->name(rank), kept_in_));
+                      "dies, with --enable-recovery the others continue{}",
+                      job_->name(rank), kept_in_.empty() ? "" : "; finished work is kept in " + kept_in_));
   print_warnings(sentences);
 }
 

@@ -11,7 +11,7 @@
 namespace sundog {
 
 /// For rank 0. Once `stop` is set, warns on stderr about each rank that no longer responds. `kept_in` is
-/// where the frame's checkpoint goes. Without a job it does nothing.
+/// where the frame's checkpoint goes; empty: nowhere. Without a job it does nothing.
 class RankWatch {
  public:
   RankWatch(Mailbox* job, const std::atomic<bool>& stop, std::string kept_in);

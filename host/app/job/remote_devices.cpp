@@ -35,13 +35,33 @@ DeviceInfo find_device(const DeviceInfo& wanted) {
   throw DeviceError(fmt::format("{}: its process does not find it", wanted.label()));
 }
 
+json moment_json(const std::optional<Moment>& moment) {
+  if (!moment) return {};
+  return {{"frame", moment->frame}, {"samples", moment->samples}, {"seed", moment->seed}};
+}
+
+std::shared_ptr<const SceneDescription> read_frame(const json& settings, SceneFrames& frames) {
+  const json& moment = settings.at("moment");
+  if (!moment.is_object()) return frames.read(settings.at("frame").get<double>());
+  const Moment at{moment.at("frame").get<double>(), moment.at("samples").get<int>(),
+                  moment.at("seed").get<int>()};
+  return at_moment(*frames.read(at.frame), at);
+}
+
 }  // namespace
+
+std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const Moment& moment) {
+  scene.render.samples = moment.samples;
+  scene.render.seed = moment.seed;
+  return std::make_shared<const SceneDescription>(std::move(scene));
+}
 
 json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
   return {{"scene", command.scene},
           {"scene_text", is_standard_input(command.scene) ? json(standard_input()) : json()},
           {"overrides", command.overrides},
           {"frame", command.frame ? json(*command.frame) : json()},
+          {"moment", moment_json(command.moment)},
           {"native_code", command.native_code},
           {"outside_files", command.outside_files},
           {"aovs", made_aovs(command)},
@@ -72,8 +92,7 @@ std::shared_ptr<const CompiledScene> load_frame(const json& settings, const std:
                                                 KeptOpen& kept) {
   if (kept.frames_settings != of_all) kept.frames = open_frames(settings);
   kept.frames_settings = of_all;
-  return std::make_shared<const CompiledScene>(
-      kept.compiler.compile(*kept.frames->read(settings.at("frame").get<double>())));
+  return std::make_shared<const CompiledScene>(kept.compiler.compile(*read_frame(settings, *kept.frames)));
 }
 
 /// The devices of one process render the same scene: it is loaded once.
@@ -83,6 +102,7 @@ std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& k
     of_scene[key] = settings.at(key);
   const std::string of_all = of_scene.dump();
   of_scene["frame"] = settings.at("frame");
+  of_scene["moment"] = settings.at("moment");
   const std::lock_guard lock(kept.mutex);
   if (kept.scene_settings != of_scene.dump())
     kept.scene = settings.at("frame").is_number() ? load_frame(settings, of_all, kept) : load_flat(settings);
@@ -169,10 +189,18 @@ std::vector<DeviceInfo> enumerate_in_worker() {
   }
 }
 
-ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash) {
+KeptChannels::Connect connect_worker(const RenderCommand& command, const DeviceInfo& device,
+                                     const KeptChannels& workers, KeptChannels::Connect connect) {
+  if (!command.frame) return connect;
+  return workers.kept(fmt::format("{} {}", device.rank, device.label()), std::move(connect));
+}
+
+ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
+                         const KeptChannels& workers) {
+  const auto start = [label = device.label()] { return start_worker(*program_environment(), label); };
   const RemoteDevice remote{device,
                             device.type == "cpu" ? 0 : -1,
-                            [label = device.label()] { return start_worker(*program_environment(), label); },
+                            connect_worker(command, device, workers, start),
                             remote_settings(command, device),
                             scene_hash,
                             worker_restarts,

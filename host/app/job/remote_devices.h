@@ -10,11 +10,15 @@
 #include "app/options/options.h"
 #include "compile/scene_compiler.h"
 #include "render/frame/tile_server.h"
+#include "render/remote/kept_channels.h"
 #include "render/remote/tile_worker.h"
 #include "render/render.h"
 #include "scene/load.h"
 
 namespace sundog {
+
+/// The scene of a frame at one of the times while its shutter is open.
+std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const Moment& moment);
 
 /// What a process needs to render a part of the command's frame on `device` (Message::open).
 nlohmann::json remote_settings(const RenderCommand& command, const DeviceInfo& device);
@@ -46,7 +50,13 @@ std::vector<DeviceInfo> enumerate_in_worker();
 /// How often a worker process is started again.
 inline constexpr unsigned worker_restarts = 3;
 
-/// The device in a worker process of its own, for a scene of that hash.
-ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash);
+/// The device in a worker process of its own, for a scene of that hash; of a frame of an animation, in one of
+/// `workers`.
+ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
+                         const KeptChannels& workers);
+
+/// `connect`, but frames of an animation keep the workers of those before.
+KeptChannels::Connect connect_worker(const RenderCommand& command, const DeviceInfo& device,
+                                     const KeptChannels& workers, KeptChannels::Connect connect);
 
 }  // namespace sundog

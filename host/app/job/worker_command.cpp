@@ -35,11 +35,13 @@ int worker_command(int argc, const char* const* argv) {
     } catch (const ChannelClosed&) {  // which `orders` sees as well
     }
   };
+  KeptOpen kept;  // from frame to frame of an animation
   HangWatch watch(on_hang, beat);
   serve_orders(
       channel, orders,
       [&](const nlohmann::json& settings) {
-        OpenedServer opened = open_server(settings);
+        watch.look_at({});  // which held the device of the frame before
+        OpenedServer opened = open_server(settings, settings.at("frame").is_number() ? &kept : nullptr);
         watch.look_at(opened);
         return opened;
       },

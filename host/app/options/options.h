@@ -26,6 +26,12 @@ struct PictureOptions {
   bool transparent = false;          // a PNG keeps alpha
 };
 
+/// A time while a frame's shutter is open: its share of the samples and their seed.
+struct Moment {
+  double frame = 0;
+  int samples = 1, seed = 0;
+};
+
 struct RenderCommand : PictureOptions {
   std::string scene;
   std::vector<std::string> devices;    // --device SPECs, or those of SUNDOG_DEVICE
@@ -37,6 +43,7 @@ struct RenderCommand : PictureOptions {
   double time_limit = 0, noise = 0, write_every = 0;  // 0: none
   std::vector<int> frames;                            // of an animation; the files are numbered
   std::optional<double> frame;                        // the one of them that is rendered now
+  std::optional<Moment> moment;                       // of that frame, where its shutter is open
   bool skip_existing = false;                         // frames whose picture is there are left alone
   std::string stats, resume;                          // files; empty: none
   std::vector<std::string> aovs;

@@ -78,13 +78,16 @@ void trace_halo(const RenderCommand& command, std::shared_ptr<const SceneDescrip
   scene = std::move(with_map);
 }
 
-std::vector<ServerPlan> plan_servers(const RenderCommand& command, const LoadedScene& scene,
+std::vector<ServerPlan> plan_servers(const RenderCommand& of_frame, const LoadedScene& scene,
                                      const Setup& setup) {
-  if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat);
+  RenderCommand command = of_frame;
+  command.moment = scene.moment;
+  if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat, setup.workers);
   const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
   std::vector<ServerPlan> plans;
   for (const DeviceInfo& device : setup.devices)
-    plans.push_back(command.isolate ? plan_isolated(command, device, hash) : plan_local(scene.flat, device));
+    plans.push_back(command.isolate ? plan_isolated(command, device, hash, setup.workers)
+                                    : plan_local(scene.flat, device));
   return plans;
 }
 
@@ -168,10 +171,13 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
   EnergyMeter energy(setup.devices);
   const Stopwatch frame;
-  RenderResult result = setup.session ? setup.session->render(scene.flat, options)
-                                      : render(scene.flat, plan_servers(command, scene, setup), options);
+  const auto make = [&](const LoadedScene& at) {
+    return setup.session ? setup.session->render(at.flat, options)
+                         : render(at.flat, plan_servers(command, at, setup), options);
+  };
+  RenderResult result = make(scene);
   for (int time = 1; time < scene.times && result.complete && !result.failure; ++time)
-    add_samples(setup.session->render(scene.at_time(time), options), options.channels, result);
+    add_samples(make(scene.at_time(time)), options.channels, result);
   times.joules = energy.joules(), times.frame = frame.seconds(), times.joules_by = energy.source();
   bar.erase();
   const bool told = setup.job && result.checkpoint_kept && !result.failure;

@@ -12,6 +12,7 @@
 #include "app/render/stats.h"
 #include "compile/parts/content_key.h"
 #include "compile/scene_compiler.h"
+#include "render/remote/kept_channels.h"
 #include "render/session/render_session.h"
 #include "scene/load.h"
 
@@ -32,6 +33,7 @@ struct Setup {
   RunProgress run = {};
   SceneCompiler compiler = {};  // keeps what frames have in common
   KeptHalo halo = {};
+  KeptChannels workers{};  // of --isolate
 };
 
 /// A scene as it is read, and flattened.
@@ -39,7 +41,8 @@ struct LoadedScene {
   std::shared_ptr<const SceneDescription> description;
   std::shared_ptr<const CompiledScene> flat;
   int times = 1;  // at which the scene is seen while the shutter is open, `flat` at the first
-  std::function<std::shared_ptr<const CompiledScene>(int)> at_time{};  // at the others
+  std::optional<Moment> moment{};             // the first
+  std::function<LoadedScene(int)> at_time{};  // the others
 };
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/job/remote_devices.h"
 #include "app/options/output_files.h"
 #include "app/process/exit_status.h"
 #include "app/process/warnings.h"
@@ -31,7 +32,7 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
       static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither, command.full_floats,
       command.denoise, command.metadata, command.noise, command.dpi, command.color_space, command.bits);
   if (scene.times > 1)
-    text += fmt::format(" {} {}", scene.times, hash_scene(*scene.at_time(scene.times - 1)));
+    text += fmt::format(" {} {}", scene.times, hash_scene(*scene.at_time(scene.times - 1).flat));
   text += std::filesystem::path(command.out).extension().string();
   if (!drops_alpha(command.out))  // an EXR states both
     text += fmt::format(" {} {}", scene.description->frames_per_second, scene.description->unit);
@@ -60,13 +61,7 @@ enum class Outcome { rendered, kept, unfinished, elsewhere };
 class FrameRun {
  public:
   FrameRun(const RenderCommand& command, Setup& setup)
-      : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {
-    if (shutter_.open > 0 && !setup.session)
-      throw UsageError(
-          "/camera/shutter: frames that a shutter blurs are rendered by one process: leave --isolate and "
-          "mpirun "
-          "out, or the shutter");
-  }
+      : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {}
 
   int render();
 
@@ -146,23 +141,26 @@ Outcome FrameRun::take(int frame) {
 /// The scene at one of the times while the shutter is open, with its share of the samples and a seed of its
 /// own.
 LoadedScene FrameRun::load_at(const RenderCommand& one, int frame, int time, TimeLedger& times) {
+  Moment moment;
   const auto read = [&] {
     const auto& [open, steps] = shutter_;
-    auto scene = std::make_shared<SceneDescription>(*frames_->read(frame + open * (time + 0.5) / steps));
-    RenderSettings& render = scene->render;
-    if (time == 0) seed_ = render.seed;
-    render.seed = static_cast<decltype(render.seed)>((seed_ * steps + time) & 0x7fffffff);
-    render.samples = (render.samples + steps - 1) / steps;
-    return std::shared_ptr<const SceneDescription>(std::move(scene));
+    moment.frame = frame + open * (time + 0.5) / steps;
+    const auto scene = frames_->read(moment.frame);
+    if (time == 0) seed_ = scene->render.seed;
+    moment.seed = static_cast<int>((seed_ * steps + time) & 0x7fffffff);
+    moment.samples = (scene->render.samples + steps - 1) / steps;
+    return at_moment(*scene, moment);
   };
-  return load_and_compile(one, read, setup_, times);
+  LoadedScene scene = load_and_compile(one, read, setup_, times);
+  scene.moment = moment;
+  return scene;
 }
 
 LoadedScene FrameRun::load(const RenderCommand& one, int frame, TimeLedger& times) {
   if (shutter_.open == 0) return load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
   LoadedScene scene = load_at(one, frame, 0, times);
   scene.times = shutter_.steps;
-  scene.at_time = [this, one, frame, &times](int time) { return load_at(one, frame, time, times).flat; };
+  scene.at_time = [this, one, frame, &times](int time) { return load_at(one, frame, time, times); };
   return scene;
 }
 

@@ -2,6 +2,7 @@
 
 #include <sched.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "render/remote/remote_values.h"
 
@@ -58,6 +59,7 @@ void Orders::take(Message message) {
   } else if (message.kind == Message::close) {
     closed_ = unwanted_ = true;
   } else {
+    if (message.kind == Message::open) stopped_job_ = 0;  // another frame counts its jobs anew
     waiting_.push_back(std::move(message));
   }
   changed_.notify_all();
@@ -78,11 +80,21 @@ std::optional<Message> Orders::next() {
 
 namespace {
 
-Message opened(OpenedServer& current, const Message& order,
+/// The server of the frame in hand.
+struct Current {
+  OpenedServer opened;
+  nlohmann::json settings;
+};
+
+Message opened(Current& current, const Message& order,
                const std::function<OpenedServer(const nlohmann::json&)>& make) {
-  if (!current.server) current = make(order.values);
-  const RenderTimes times = current.server->open();
-  return {Message::ready, {{"times", times}, {"scene", current.scene}}, {}};
+  if (!current.opened.server || current.settings != order.values) {
+    if (const auto last = std::exchange(current.opened, {}); last.server) last.server->close();
+    current.opened = make(order.values);
+    current.settings = order.values;
+  }
+  const RenderTimes times = current.opened.server->open();
+  return {Message::ready, {{"times", times}, {"scene", current.opened.scene}}, {}};
 }
 
 Message made(TileServer& server, const Message& order, const StopFlags& flags) {
@@ -97,7 +109,7 @@ Message made(TileServer& server, const Message& order, const StopFlags& flags) {
 void serve_orders(Channel& channel, Orders& orders,
                   const std::function<OpenedServer(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list) {
-  OpenedServer current;
+  Current current;
   while (const std::optional<Message> order = orders.next()) {
     Message answer;
     try {
@@ -105,14 +117,14 @@ void serve_orders(Channel& channel, Orders& orders,
         answer = {Message::devices, {{"devices", list()}, {"cores", usable_cores()}}, {}};
       else if (order->kind == Message::open)
         answer = opened(current, *order, make);
-      else if (current.server)
-        answer = made(*current.server, *order, {&orders.unwanted(), nullptr});
+      else if (current.opened.server)
+        answer = made(*current.opened.server, *order, {&orders.unwanted(), nullptr});
     } catch (const std::exception& error) {
       answer = failure(error);
     }
     channel.send(answer);
   }
-  if (current.server) current.server->close();
+  if (current.opened.server) current.opened.server->close();
 }
 
 }  // namespace sundog

@@ -50,8 +50,8 @@ struct OpenedServer {
   std::uint64_t scene = 0;  // hash_scene() of its scene
 };
 
-/// Serves until closed. `make` creates the server for an open order (loading its scene); exceptions from it
-/// and from the server are sent as the reply. `list` lists the devices.
+/// Serves until closed: frames one after the other. `make` creates the server for an open order (loading its
+/// scene); exceptions from it and from the server are sent as the reply. `list` lists the devices.
 void serve_orders(Channel& channel, Orders& orders,
                   const std::function<OpenedServer(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list);

@@ -1,5 +1,6 @@
 // --isolate: each device in a process of its own, which may crash, hang or be killed.
 #include <base/file.h>
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
@@ -96,6 +97,41 @@ TEST_CASE("a worker killed in the middle of a frame costs time, not the frame") 
   CHECK(stats["image"]["complete"] == true);
   CHECK(stats["devices"][0]["failures"] == 1);
   CHECK(stats["devices"][0]["retired"] == false);
+}
+
+TEST_CASE("the frames of an animation share their workers, and one that dies is replaced") {
+  IsolatedFolder folder;
+  const std::vector<std::string> animation = {"--device",
+                                              "0:1",
+                                              "--tile",
+                                              "60",
+                                              "--set",
+                                              R"(/animate=[{"value": "/camera/fov", "type": "linear",
+                    "keys": [{"frame": 0, "value": 30}, {"frame": 5, "value": 50}]}])"};
+  const auto frames = [&](const std::string& faults, const std::string& list, bool isolate) {
+    std::vector<std::string> words = animation;
+    words.insert(words.end(), {"--frames", list});
+    folder.options.environment["SUNDOG_FAULTS"] = faults;
+    if (isolate) words.emplace_back("--isolate");
+    const CommandResult result = run_sundog(folder.arguments(words), folder.options);
+    CAPTURE(result.err);
+    CHECK(result.status == 0);
+    std::string bytes;
+    for (int frame = 0; frame < 6; ++frame)
+      if (const auto file = folder / fmt::format("a_{:04}.pfm", frame); std::filesystem::exists(file)) {
+        bytes += read_file(file);
+        std::filesystem::remove(file);
+      }
+    return std::pair(bytes, result.err);
+  };
+  const std::string plain = frames("", "0..5", false).first;
+  CHECK(frames("", "0..5", true) == std::pair(plain, std::string()));
+  // A frame of six tiles does not come so far, six frames in one process do.
+  const char* late = "kill@0:1#15";
+  CHECK(frames(late, "5", true).second.empty());
+  const auto [bytes, told] = frames(late, "0..5", true);
+  CHECK(contains(told, "its worker process was killed by signal 9"));
+  CHECK(bytes == plain);
 }
 
 TEST_CASE("a worker that is stopped is noticed by its silence") {

@@ -170,19 +170,24 @@ TEST_CASE("mpirun: the frames of an animation are those of one process") {
   scene["animate"] = json::parse(R"([{"type": "linear", "value": "/camera/position",
     "keys": [{"frame": 0, "value": [0, 1, 5]}, {"frame": 2, "value": [0, 3, 5]}]}])");
   const std::string moving = folder.write("moving.json", scene.dump()).string();
-  const auto frames = [&](const std::string& out) {
-    std::vector<std::string> all = {"render", moving,     "-o",   folder.file(out), "--device",
-                                    "0:0/1",  "--frames", "0..2", "--stats",        folder.file("s.json")};
-    return all;
-  };
-  REQUIRE(run_sundog(frames("one.pfm"), folder.options).status == 0);
-  std::vector<std::string> split = frames("two.pfm");
-  split.insert(split.end(), {"--split", "1,1"});
-  const CommandResult result = folder.mpirun(2, split);
-  CAPTURE(result.err);
-  REQUIRE(result.status == 0);
-  for (const std::string number : {"_0000.pfm", "_0001.pfm", "_0002.pfm"})
-    CHECK(read_file(folder / ("one" + number)) == read_file(folder / ("two" + number)));
+  for (const char* shutter : {"0.5", "0"}) {
+    INFO(shutter);
+    const auto frames = [&](const std::string& out) {
+      std::vector<std::string> all = {"render", moving,     "-o",   folder.file(out), "--device",
+                                      "0:0/1",  "--frames", "0..2", "--stats",        folder.file("s.json")};
+      all.insert(all.end(),
+                 {"--set", std::string("/camera/shutter=") + shutter, "--set", "/camera/shutter_steps=2"});
+      return all;
+    };
+    REQUIRE(run_sundog(frames("one.pfm"), folder.options).status == 0);
+    std::vector<std::string> split = frames("two.pfm");
+    split.insert(split.end(), {"--split", "1,1"});
+    const CommandResult result = folder.mpirun(2, split);
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    for (const std::string number : {"_0000.pfm", "_0001.pfm", "_0002.pfm"})
+      CHECK(read_file(folder / ("one" + number)) == read_file(folder / ("two" + number)));
+  }
   const json last = json::parse(read_file(folder / "s_0002.json"));
   CHECK(last["devices"][1]["share"] == 0.5);
   CHECK(last["devices"][1]["kernels_cached"] == true);
