@@ -28,7 +28,9 @@ int merge_command(const MergeCommand& command) {
   AovImages aovs;
   for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
   end_depth(command, aovs);
-  save_image({image, aovs, whole.film, whole.key, {}, command.format, file_options(command)}, command.out);
+  FileOptions file = file_options(command);
+  file.shot = whole.shot;
+  save_image({image, aovs, whole.film, whole.key, {}, command.format, file}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
 }

@@ -138,8 +138,10 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   if (!command.part && !is_empty(result))
     save_image(picture, command.out);
   else if (command.part && result.complete)
-    save_part(picture, {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs},
-              command.out);
+    save_part(
+        picture,
+        {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs, *file.shot},
+        command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   std::error_code stays;  // the picture is there
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint, stays);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shot.h"
 #include "render/film/film.h"
 #include "render/film/rows.h"
 #include "render/values/options.h"
@@ -22,6 +23,7 @@ struct PartHeader {
   std::string scene;                            // the scene's file, for messages
   std::map<std::string, std::string> settings;  // what was set and may differ, for messages
   std::vector<std::string> aovs;                // in the order they were asked for
+  Shot shot{};                                  // for an EXR of the whole frame
 };
 
 struct PartFile : PartHeader {

@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* format_name = "sundog part 1";
+constexpr const char* format_name = "sundog part 2";
 constexpr std::size_t checksum_digits = 16;
 constexpr std::size_t most_header = std::size_t{1} << 20;  // of its JSON, which takes more as values
 
@@ -69,6 +69,40 @@ bool are_aovs(const std::vector<std::string>& names) {
          std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
+json matrix_json(const glm::dmat4& m) {
+  json numbers;
+  for (int i = 0; i < 16; ++i) numbers.push_back(m[i / 4][i % 4]);
+  return numbers;
+}
+
+glm::dmat4 read_matrix(const json& numbers) {
+  glm::dmat4 m;
+  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = numbers.at(static_cast<std::size_t>(i)).get<double>();
+  return m;
+}
+
+json shot_json(const Shot& shot) {
+  return {{"camera", matrix_json(shot.world_to_camera)},
+          {"ndc", matrix_json(shot.world_to_ndc)},
+          {"window", shot.window_width},
+          {"focus", shot.focus ? json(*shot.focus) : json()},
+          {"frame", shot.frame ? json(*shot.frame) : json()},
+          {"rate", shot.frames_per_second},
+          {"exposure", shot.exposure_seconds}};
+}
+
+Shot read_shot(const json& value) {
+  Shot shot;
+  shot.world_to_camera = read_matrix(value.at("camera"));
+  shot.world_to_ndc = read_matrix(value.at("ndc"));
+  shot.window_width = value.at("window").get<double>();
+  if (!value.at("focus").is_null()) shot.focus = value["focus"].get<double>();
+  shot.frame = whole(value, "frame", 0, 999999);
+  shot.frames_per_second = value.at("rate").get<double>();
+  shot.exposure_seconds = value.at("exposure").get<double>();
+  return shot;
+}
+
 /// The header's values, with a film without pixels of its size; none where they cannot be true. Throws what
 /// JSON throws.
 std::optional<PartFile> read_header(const json& head) {
@@ -83,6 +117,7 @@ std::optional<PartFile> read_header(const json& head) {
   file.scene = head.at("scene").get<std::string>();
   file.aovs = head.at("aovs").get<std::vector<std::string>>();
   file.settings = head.at("settings").get<std::map<std::string, std::string>>();
+  file.shot = read_shot(head.at("shot"));
   file.film.width = *width;
   file.film.height = *height;
   if (!are_aovs(file.aovs)) return std::nullopt;
@@ -120,9 +155,11 @@ bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::
 
 void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film,
                 const std::shared_ptr<Faults>& faults) {
-  const json head = {{"format", format_name}, {"part", header.part.index}, {"parts", header.part.count},
-                     {"key", header.key},     {"scene", header.scene},     {"aovs", header.aovs},
-                     {"width", film.width},   {"height", film.height},     {"settings", header.settings}};
+  const json head = {{"format", format_name},       {"part", header.part.index},
+                     {"parts", header.part.count},  {"key", header.key},
+                     {"scene", header.scene},       {"aovs", header.aovs},
+                     {"width", film.width},         {"height", film.height},
+                     {"settings", header.settings}, {"shot", shot_json(header.shot)}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
   const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
   bytes.reserve(bytes.size() + film.done.size() +

@@ -14,7 +14,10 @@ using nlohmann::json;
 namespace {
 
 json good_header() {
-  return {{"format", "sundog part 1"},
+  const json matrix = std::vector<double>(16, 0.5);
+  const json shot = {{"camera", matrix}, {"ndc", matrix}, {"window", 1},  {"focus", nullptr},
+                     {"frame", 1},       {"rate", 24},    {"exposure", 0}};
+  return {{"format", "sundog part 2"},
           {"part", 1},
           {"parts", 1},
           {"key", 7},
@@ -22,6 +25,7 @@ json good_header() {
           {"height", 4},
           {"scene", "a.json"},
           {"aovs", json::array()},
+          {"shot", shot},
           {"settings", json::object()}};
 }
 
@@ -53,12 +57,27 @@ TEST_CASE("a part whose header cannot be true is refused with status 3 and the f
   many_pixels["height"] = 65536;
   json many_aovs = changed("aovs", json::array());
   for (int i = 0; i < 7; ++i) many_aovs["aovs"].push_back("depth");
-  for (const json& header :
-       {changed("parts", 536870912), changed("parts", 100000000), changed("parts", 0), changed("part", 2),
-        changed("part", 0), changed("parts", 4294967297), changed("parts", 1.5), changed("width", -1),
-        changed("width", 0), changed("width", 2147483648), changed("height", 1e300), many_pixels,
-        changed("width", 16384), changed("aovs", json::array({"dept"})), many_aovs, changed("aovs", 3),
-        changed("key", -1), changed("scene", 3), changed("settings", {{"samples", 4}})}) {
+  for (const json& header : {changed("parts", 536870912),
+                             changed("parts", 100000000),
+                             changed("parts", 0),
+                             changed("part", 2),
+                             changed("part", 0),
+                             changed("parts", 4294967297),
+                             changed("parts", 1.5),
+                             changed("width", -1),
+                             changed("width", 0),
+                             changed("width", 2147483648),
+                             changed("height", 1e300),
+                             many_pixels,
+                             changed("width", 16384),
+                             changed("aovs", json::array({"dept"})),
+                             many_aovs,
+                             changed("aovs", 3),
+                             changed("key", -1),
+                             changed("scene", 3),
+                             changed("settings", {{"samples", 4}}),
+                             changed("shot", {{"camera", {1, 2}}}),
+                             changed("shot", 3)}) {
     const CommandResult result = merge(folder, part_file(header));
     CAPTURE(header.dump().substr(0, 200), result.err);
     CHECK(result.status == 3);
