@@ -4,7 +4,7 @@
 # From a clone it runs build/release/sundog (or that of the folder SUNDOG_BUILD), from a bundle the bundle's. In this order: the devices;
 # `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); builds of kernels, cold and warm; `bench rays`
 # of three models, or of MODEL..., by each way through a node (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers
-# too; samples a second of six scenes; times by work-group size; registers, memory and build logs of every kernel; watts and joules where
+# too; samples a second of six scenes; times by work-group size; the roofline; registers, memory and build logs of every kernel; watts and joules where
 # nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
 # OUT_DIR as soon as it is there, and summary.txt names it; one that fails does not keep the others from running, and those that would begin
 # after N seconds (480) are left out. SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.
@@ -38,11 +38,11 @@ models=("$@")
 [[ $# -gt 0 ]] || models=("$scenes"/sundog/spruce_{needles,snow}.obj "$scenes/relief/ball.obj")
 frame_scenes=(spheres hollow_ice mandelbulb cornell_path glass_path frosted_panes)
 frame=(--size 1024x1024 --samples 64)
-small=64x64 bench=() rays=(--rays 1024) groups=()
+small=64x64 bench=() rays=(--rays 1024) groups=() roof=()
 if [[ $quick ]]; then
   frame_scenes=(spheres cornell_path)
   frame=(--size 16x16 --samples 1)
-  small=8x8 bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays)
+  small=8x8 bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays) roof=(--rays 16 --megabytes 1)
 fi
 here=() failed=() missing=()
 
@@ -172,6 +172,7 @@ part frames 120 frames
 [[ ${power-} ]] && kill "$power"
 part workgroup 60 "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" \
   --json "$out/workgroup.json" --html "$out/workgroup.html"
+part roofline 60 "$sundog" bench roofline "${models[0]}" --device "$device" "${bench[@]}" "${roof[@]}" --json "$out/roofline.json" --svg "$out/roofline.svg"
 for name in "${frame_scenes[@]}"; do
   SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels" 60 "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
     --set /render/tracer=compact --json "$out/$name-kernels.json"

@@ -16,14 +16,22 @@ constexpr const char* own_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
 /// An option up to its value.
 std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
 
+/// Appends those of `more` that `stronger` does not have by the same name.
+void append_options(std::string& options, std::string_view more, const std::string& stronger) {
+  std::istringstream words{std::string(more)};
+  for (std::string option; words >> option;)
+    if (stronger.find(name_of(option)) == std::string::npos) options += " " + option;
+}
+
 }  // namespace
 
-std::string all_build_options(const DeviceInfo& device, const BuildWish& wish) {
+std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry) {
   const HostEnvironment& environment = value_of(device.environment);
+  const DeviceRule& rule = rule_of(device);
+  const std::string of_entry(entry == "entry/trace_rays.cl" ? rule.of_tracer : "");
   std::string options = own_options;
-  std::istringstream of_device{std::string(rule_of(device).options)};
-  for (std::string option; of_device >> option;)
-    if (environment.build_options.find(name_of(option)) == std::string::npos) options += " " + option;
+  append_options(options, rule.options, environment.build_options + " " + of_entry);
+  append_options(options, of_entry, environment.build_options);
   for (const std::string& more : {environment.build_options, wish.options})
     if (!more.empty()) options += " " + more;
   return options;

@@ -1,6 +1,7 @@
 // Options that programs are built with, and bypassing of drivers' caches.
 #pragma once
 #include <string>
+#include <string_view>
 
 namespace sundog {
 
@@ -12,9 +13,9 @@ struct BuildWish {
   bool from_source = false;  // do not use caches, which lose the log
 };
 
-/// All options of a build: sundog's, the device's (device_rules.h), the user's (HostEnvironment, such as
-/// -cl-nv-maxrregcount=64), which take the place of the device's by the same name, and `wish`'s.
-std::string all_build_options(const DeviceInfo& device, const BuildWish& wish);
+/// All options of a build of `entry`: sundog's, the device's (device_rules.h), the user's (HostEnvironment,
+/// such as -cl-nv-maxrregcount=64), which take the place of the device's by the same name, and `wish`'s.
+std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry);
 
 /// Disables drivers' own caches, which lose the log. Call before the first OpenCL call.
 /// HostEnvironment::build_log implies it.

@@ -13,12 +13,16 @@ namespace sundog {
 namespace {
 
 constexpr std::array rules{
-    // Inlined, frames keep their structs in registers. Nodes in pieces of 16 bytes (NODE_LOOP=1) cost 32
-    // registers in trace_rays. With 128 registers a multiprocessor holds 16 warps; most kernels spill little
-    // or nothing for that.
-    DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128"},
+    // Inlined, frames keep their structs in registers. With 128 registers a multiprocessor holds 16 warps;
+    // most
+    // kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32 warps run
+    // instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
+    DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
+               "-cl-nv-maxrregcount=64"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
-    DeviceRule{"amd", "Advanced Micro Devices", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
+    // For ten waves render_whitted gives up 17 registers of 150 and spills none (RDNA 3 and newer).
+    DeviceRule{"amd", "Advanced Micro Devices", true, false,
+               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10"},
     DeviceRule{"intel", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
     DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL"},
     // Mesa's compilers inline every call: the interpreter of fields (kernels/lib/sdf/interpret.cl) takes

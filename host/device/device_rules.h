@@ -9,11 +9,12 @@ namespace sundog {
 
 /// A row of the table; the first row that matches a device decides.
 struct DeviceRule {
-  std::string_view name;     // as in `sundog kernels --gpu`
-  std::string_view reports;  // in its vendor or platform
-  bool of_gpus;              // only for the class gpu
-  bool calls;                // its compiler keeps calls of functions
-  std::string_view options;  // for its compiler; definitions that kernels have defaults for
+  std::string_view name;            // as in `sundog kernels --gpu`
+  std::string_view reports;         // in its vendor or platform
+  bool of_gpus;                     // only for the class gpu
+  bool calls;                       // its compiler keeps calls of functions
+  std::string_view options;         // for its compiler; definitions that kernels have defaults for
+  std::string_view of_tracer = {};  // of entry/trace_rays.cl, in place of options by the same name
   bool matches(const DeviceInfo& device) const;
 };
 

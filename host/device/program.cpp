@@ -229,7 +229,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
-  record->options = all_build_options(info, wish);
+  record->options = all_build_options(info, wish, source.text.entry);
   record->key = program_key(info, record->options, source.identity);
   record->source = std::move(source);
   record->cache_file = program_cache_file(environment, record->key);
@@ -262,7 +262,7 @@ bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, cons
                        PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
   if (wants_log(environment, wish)) return false;
-  std::string key = program_key(info, all_build_options(info, wish), source.identity);
+  std::string key = program_key(info, all_build_options(info, wish, source.text.entry), source.identity);
   std::optional<CachedProgram> program = cached_program(program_cache_file(environment, key), key, prepared);
   if (program) prepared.found = {std::move(key), std::move(*program)};
   return prepared.found.has_value();
@@ -271,7 +271,7 @@ bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, cons
 bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
-  const std::string options = all_build_options(info, wish);
+  const std::string options = all_build_options(info, wish, source.text.entry);
   std::string key = program_key(info, options, source.identity);
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();

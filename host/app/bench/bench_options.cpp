@@ -192,6 +192,7 @@ void add_bench(Arguments& root, Command& chosen) {
   add_bench_textures(*bench, chosen);
   add_bench_devices(*bench, chosen);
   add_bench_kernels(*bench, chosen);
+  add_bench_roofline(*bench, chosen);
   add_bench_compare(*bench, chosen);
 }
 

@@ -84,6 +84,7 @@ void add_bench_rays(Arguments& bench, Command& chosen);
 void add_bench_samples(Arguments& bench, Command& chosen);
 void add_bench_quality(Arguments& bench, Command& chosen);
 void add_bench_textures(Arguments& bench, Command& chosen);
+void add_bench_roofline(Arguments& bench, Command& chosen);
 void add_bench_compare(Arguments& bench, Command& chosen);
 
 }  // namespace sundog

@@ -75,7 +75,7 @@ std::string write_programs(const KernelsCommand& c) {
     defines.emplace("DEVICE_HAS_FMA", "1");
     const auto file = std::filesystem::path(c.out) / std::filesystem::path(entry).filename();
     write_file(file, KernelText{entry, defines, generated, environment.kernels}.expanded());
-    list += fmt::format("{} {}\n", file.string(), all_build_options(device, {}));
+    list += fmt::format("{} {}\n", file.string(), all_build_options(device, {}, entry));
   }
   return list;
 }

@@ -18,6 +18,7 @@ struct Walk {
   Ray ray;  // world space; t_max shrinks to the nearest hit
   Hit hit;
   bool found = false;
+  Visits* visits = nullptr;
 
   bool done() const { return any && found; }
 };
@@ -60,6 +61,7 @@ void walk_tree(Walk& walk, u32 root, Ray& ray, const Leaf& leaf) {
       continue;
     }
     const Bvh8Node& node = walk.scene.nodes[next.word];
+    if (walk.visits) ++walk.visits->nodes[next.word];
     const std::size_t base = top;
     for (u32 slot = 0; slot < BVH_WIDTH; ++slot) {
       if (!(node.valid >> slot & 1u)) continue;
@@ -102,11 +104,14 @@ void cross_block(Walk& walk, const TriangleBlock& block, Ray& ray, u32 instance)
 
 void cross_instance(Walk& walk, u32 index) {
   const Instance& instance = walk.scene.instances[index];
+  if (walk.visits) ++walk.visits->instances[index];
   Ray ray{object_point(instance, walk.ray.o), object_vector(instance, walk.ray.d), walk.ray.t_min,
           walk.ray.t_max};
   if (instance.shape == SHAPE_MESH) {
-    walk_tree(walk, instance.root, ray,
-              [&](u32 block) { cross_block(walk, walk.scene.blocks[block], ray, index); });
+    walk_tree(walk, instance.root, ray, [&](u32 block) {
+      if (walk.visits) ++walk.visits->blocks[block];
+      cross_block(walk, walk.scene.blocks[block], ray, index);
+    });
     walk.ray.t_max = ray.t_max;
     return;
   }
@@ -150,15 +155,18 @@ glm::vec3 world_normal(const Instance& instance, const vec3& n) {
          vec3(m[2].x, m[2].y, m[2].z) * n.z;
 }
 
-bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit) {
-  Walk walk{scene, false, ray, {}, false};
+Visits::Visits(const CompiledScene& scene)
+    : nodes(scene.nodes.size()), blocks(scene.blocks.size()), instances(scene.instances.size()) {}
+
+bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit, Visits* visits) {
+  Walk walk{scene, false, ray, {}, false, visits};
   cross_scene(walk);
   hit = walk.hit;
   return walk.found;
 }
 
-bool any_hit(const CompiledScene& scene, const Ray& ray) {
-  Walk walk{scene, true, ray, {}, false};
+bool any_hit(const CompiledScene& scene, const Ray& ray, Visits* visits) {
+  Walk walk{scene, true, ray, {}, false, visits};
   cross_scene(walk);
   return walk.found;
 }

@@ -1,5 +1,7 @@
 // Rays through a compiled scene in plain scalar C++.
 #pragma once
+#include <vector>
+
 #include "bench/plain/solids.h"
 #include "compile/compiled_scene.h"
 
@@ -32,11 +34,17 @@ class PlainFinder : public HitFinder {
   const CompiledScene& scene_;
 };
 
-/// The nearest hit in (t_min, t_max]; false: none.
-bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit);
+/// How often rays came to each node, block of triangles and instance of a scene.
+struct Visits {
+  std::vector<u32> nodes, blocks, instances;
+  explicit Visits(const CompiledScene& scene);
+};
+
+/// The nearest hit in (t_min, t_max]; false: none. Counts in `visits` where it is given.
+bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit, Visits* visits = nullptr);
 
 /// Whether there is any.
-bool any_hit(const CompiledScene& scene, const Ray& ray);
+bool any_hit(const CompiledScene& scene, const Ray& ray, Visits* visits = nullptr);
 
 glm::vec3 object_point(const Instance& instance, const glm::vec3& p);
 

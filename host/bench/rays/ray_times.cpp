@@ -95,6 +95,13 @@ std::optional<Spread> RayTimes::kernel_rate(std::size_t kind) const {
   return rates(kinds_[kind]->set.rays.size(), seconds);
 }
 
+std::vector<RayTimes::Timed> RayTimes::timed() const {
+  std::vector<Timed> all;
+  for (std::size_t i = 0; i < kinds_.size(); ++i)
+    if (const auto by_wall = rate(i)) all.push_back({&kinds_[i]->set, kernel_rate(i).value_or(*by_wall)});
+  return all;
+}
+
 void RayTimes::add_to(Report& report) const {
   const std::string tracer = traces_compact(*scene_, info_) ? "compact" : "wide";
   Table table{fmt::format("{} on {}, {} tracer", name_, info_.label(), tracer), {}, {}};

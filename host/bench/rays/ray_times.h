@@ -22,6 +22,13 @@ class RayTimes {
   void measure(const MeasureOptions& options);
   void add_to(Report& report) const;
 
+  /// A kind of rays that has times: millions of rays a second by the device's events, else by the wall clock.
+  struct Timed {
+    const RaySet* set;
+    Spread rate;
+  };
+  std::vector<Timed> timed() const;
+
  private:
   struct Tracing {
     Device device;

@@ -41,6 +41,14 @@
 #define NEVER_INLINE static __attribute__((noinline))
 #endif
 
+// Waves of a SIMD that the registers of render_whitted leave room for; only where the compiler needs no
+// spills for that (host/device/device_rules.cpp).
+#if defined(DEVICE_WAVES) && (defined(__GFX11__) || defined(__GFX12__))
+#define FOR_WAVES __attribute__((amdgpu_waves_per_eu(DEVICE_WAVES)))
+#else
+#define FOR_WAVES
+#endif
+
 // Rays per work-item: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on GPU-class ones.
 #ifndef TILE_W
 #define TILE_W 4

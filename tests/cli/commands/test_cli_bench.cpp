@@ -348,3 +348,46 @@ TEST_CASE("bench textures times a frame with textures and without, and the loadi
   CHECK(rows[1].at("scene") == "eight PNG, 64x64");
   CHECK(rows[1].at("decoding_ms").at("median") > 0);
 }
+
+TEST_CASE("bench roofline measures a device, and counts the work of rays below its roof") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "roofline", folder.scene, "--device", "portable", "--megabytes", "1", "--rays",
+                  "32", "--repeat", "1", "--json", folder.file("r.json"), "--svg", folder.file("r.svg")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("Peaks of ") && ContainsSubstring("read memory") &&
+                             ContainsSubstring("work of a ray"));
+  CHECK_THAT(sundog::read_file(folder.file("r.svg")), ContainsSubstring("operations a byte"));
+  std::set<std::string> measured;
+  std::size_t kinds = 0;
+  const json report = json::parse(sundog::read_file(folder.file("r.json")));
+  for (const json& row : report.at("measurements")) {
+    CAPTURE(row.dump());
+    CHECK(row.at("problem").is_null());
+    if (!row.at("measured").is_null()) measured.insert(row.at("measured"));
+    if (!row.contains("kind") || row.at("kind").is_null()) continue;
+    ++kinds;
+    CHECK(row.at("work_op") > 0);
+    CHECK(row.at("at_least_B") <= row.at("asked_for_B"));
+    CHECK(row.at("rate_Gop/s").at("median") > 0);
+  }
+  CHECK(kinds > 0);
+  for (const char* what : {"read memory", "read cache", "copy memory", "float", "int", "launch"})
+    CHECK(measured.count(what) == 1);
+  CHECK(run_sundog({"bench", "roofline", "--megabytes", "0"}).status == 2);
+}
+
+TEST_CASE("bench roofline continues an earlier run") {
+  const CliFolder folder;
+  const std::vector<std::string> arguments{"bench", "roofline", "--device", "portable", "--megabytes",
+                                           "1",     "--repeat", "1",        "--quiet",  "--json"};
+  auto first = arguments;
+  first.push_back(folder.file("a.json"));
+  REQUIRE(run_sundog(first).status == 0);
+  auto second = arguments;
+  second.insert(second.end(), {folder.file("b.json"), "--continue", folder.file("a.json")});
+  const CommandResult result = run_sundog(second);
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+}

@@ -47,3 +47,22 @@ TEST_CASE("kernels writes a scene's programs as a GPU of a maker gets them, with
   CHECK_THAT(unknown.err, Contains("acme: wanted nvidia, amd or intel"));
   CHECK(run_sundog({"kernels", "--gpu", "nvidia"}).status == 2);
 }
+
+TEST_CASE("a GPU's tracer alone gets fewer registers than its render kernels, each option once") {
+  const TemporaryFolder folder;
+  const auto options_of = [&](const std::string& gpu, const std::string& program) {
+    const std::string out = (folder / gpu).string();
+    const CommandResult made = run_sundog(
+        {"kernels", "--scene", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--gpu", gpu, "--out", out});
+    REQUIRE(made.status == 0);
+    const std::size_t line = made.out.find(program);
+    REQUIRE(line != std::string::npos);
+    return made.out.substr(line, made.out.find('\n', line) - line);
+  };
+  CHECK_THAT(options_of("nvidia", "trace_rays.cl"), Contains("=64") && !Contains("=128"));
+  CHECK_THAT(options_of("nvidia", "render_whitted.cl"), Contains("=128") && !Contains("=64"));
+  CHECK_THAT(options_of("amd", "render_whitted.cl"), Contains("-DDEVICE_WAVES=10"));
+  CHECK_THAT(
+      sundog::read_file((folder / "amd/render_whitted.cl").string()),
+      Contains("__kernel FOR_WAVES void render_whitted(") && Contains("amdgpu_waves_per_eu(DEVICE_WAVES)"));
+}

@@ -40,7 +40,7 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
     CHECK_FALSE(read_file(folder / "out" / (std::string(part) + ".txt")).empty());
   }
   for (const char* part : {"ball-rays-0", "ball-rays-1", "ball-rays-2", "ball-rays-wide", "workgroup",
-                           "spheres-kernels", "cornell_path-kernels"}) {
+                           "roofline", "spheres-kernels", "cornell_path-kernels"}) {
     CAPTURE(part);
     CHECK_THAT(result.out, ContainsSubstring(std::string("there:   ") + part + "\n"));
     const json report = json::parse(read_file(folder / "out" / (std::string(part) + ".json")));

@@ -32,6 +32,7 @@ const std::map<std::string, std::string> pages{{"render", "command-line"},
                                                {"bench quality", "benchmarks"},
                                                {"bench kernels", "benchmarks"},
                                                {"bench textures", "benchmarks"},
+                                               {"bench roofline", "benchmarks"},
                                                {"halo", "halo"}};
 
 /// The long options in a text: "--size", as a whole.

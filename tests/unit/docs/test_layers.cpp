@@ -32,7 +32,7 @@ const std::map<std::string, Names> allowed = {
 /// own folder come after all of them.
 const std::map<std::string, std::vector<std::string>> folders = {
     {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
-    {"host/bench", {"plain", "report", "runs", "rays", "frames", "quality", "tune"}},
+    {"host/bench", {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune"}},
     {"host/app", {"process", "options", "job", "render", "bench", "bake", "commands", "serve"}},
     {"kernels/lib",
      {"core", "halo", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},

@@ -1,0 +1,58 @@
+// What a device does at most: bytes and operations a second, and the time that a launch takes.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/report/report.h"
+#include "bench/runs/measure.h"
+#include "device/device.h"
+
+namespace sundog {
+
+/// A kernel of kernels/entry/peaks.cl at one width of vectors.
+struct Peak {
+  std::string what;                 // "read memory", "copy memory", "read cache", "float", ..., "launch"
+  std::string unit;                 // "GB/s", "Gop/s" or "us"
+  unsigned width = 1;               // lanes of a vector
+  unsigned chains = 0;              // computations that do not wait for each other, of a work-item; 0: none
+  double amount = 0;                // bytes or operations of a run; set before its first run counts
+  std::size_t times = 0;            // launches or rounds of a run, as many as take long enough
+  std::vector<double> queued = {};  // of launches: microseconds until each run's started, if known
+
+  bool is_rate() const { return unit != "us"; }
+};
+
+class DevicePeaks {
+ public:
+  /// `megabytes`: of the buffers that are larger than a cache.
+  DevicePeaks(DeviceInfo device, unsigned megabytes);
+
+  /// The result of every run is compared with what the host knows it must be.
+  void measure(const MeasureOptions& options);
+  void add_to(Report& report) const;
+
+  /// The greatest median of those with that name, over widths and chains; nothing: none has been measured.
+  std::optional<Spread> best(const std::string& what) const;
+
+ private:
+  struct Opened;
+  struct Work;
+  void add(Peak peak, double amount, const std::function<Work()>& make);
+  void add_reads(const char* what, unsigned width, bool cached);
+  void add_copies(unsigned width);
+  void add_operations(const std::string& type, unsigned width, unsigned chains);
+  void add_launches();
+  std::optional<Spread> figure(std::size_t index) const;
+  Spread queued_of(std::size_t index) const;  // microseconds; zeros: not known
+  Table table() const;
+
+  DeviceInfo info_;
+  unsigned megabytes_;
+  std::shared_ptr<Opened> opened_;
+  std::vector<std::shared_ptr<Peak>> peaks_;
+  std::vector<Subject> subjects_;  // as peaks_
+};
+
+}  // namespace sundog
