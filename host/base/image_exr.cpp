@@ -23,6 +23,7 @@
 #include "base/colors/color_space.h"
 #include "base/image_codecs.h"
 #include "base/limits.h"
+#include "shared/light_parts.h"
 
 namespace sundog {
 namespace {
@@ -65,11 +66,14 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
+#define IS_PART(name) || aov == #name
+bool is_light_part(std::string_view aov) { return false LIGHT_PARTS(IS_PART); }
+
 /// Names of a layer's channels.
 Suffixes channel_suffixes(const std::string& aov, int channels) {
   if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
   if (channels == 2) return {"U", "V"};
-  const bool color = aov == "albedo" || aov == "variance" || channels == 4;
+  const bool color = aov == "albedo" || aov == "variance" || channels == 4 || is_light_part(aov);
   const Suffixes all = color ? Suffixes{"R", "G", "B", "A"} : Suffixes{"X", "Y", "Z"};
   return {all.begin(), all.begin() + channels};
 }
@@ -279,7 +283,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   for (const auto& [aov, layer] : aovs) {
     Suffixes suffixes = channel_suffixes(aov, layer.channels);
     for (std::string& suffix : suffixes) suffix.insert(0, aov + ".");
-    const bool colors = aov == "albedo" || aov == "denoise_albedo";
+    const bool colors = aov == "albedo" || aov == "denoise_albedo" || is_light_part(aov);
     rows.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt).add_to(header, buffer, suffixes);
   }
   std::string bytes;
