@@ -64,19 +64,6 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
   return fresh;
 }
 
-Image Film::develop(int channels) const {
-  Image image(width, height, channels);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (!done[i] || !(weights[i] > 0)) continue;
-    float* pixel = image.data.data() + static_cast<std::size_t>(channels) * i;
-    pixel[0] = sums[i].x / weights[i];
-    pixel[1] = sums[i].y / weights[i];
-    pixel[2] = sums[i].z / weights[i];
-    if (channels == 4) pixel[3] = sums[i].w / weights[i];
-  }
-  return image;
-}
-
 namespace {
 
 enum class AovKind { surface, matte, light };
@@ -137,16 +124,15 @@ std::size_t first_float(const AovLayout& layout, const AovPlace& place) {
   return place.first + (place.kind == AovKind::matte ? of_mattes : 4 * layout.first_light());
 }
 
-/// Of a pixel with these sums of all parts and of its colours, the mean of the part whose sums are `values`.
-void mean_of_part(const float* all, const float4& sum, float weight, std::size_t part, float* values) {
-  const Color color = mean_of(sum, weight);
-  const float whole[3] = {color.r, color.g, color.b};
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    PartValues parts;
-    for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = all[3 * k + channel] / weight;
-    fit_sum(parts, whole[channel]);
-    values[channel] = weight > 0 ? parts[part] : 0;
-  }
+/// The parts of a channel of pixel `i`, which has samples.
+PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
+  const auto* sums = reinterpret_cast<const float*>(&film.sums[i]);
+  const auto* of_parts =
+      reinterpret_cast<const float*>(&film.aovs[film.layout.vectors() * i + film.layout.first_light()]);
+  PartValues parts;
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = of_parts[3 * k + channel] / film.weights[i];
+  fit_sum(parts, sums[channel] / film.weights[i]);
+  return parts;
 }
 
 const AovPlace* find_place(const std::string& name) {
@@ -200,6 +186,22 @@ std::size_t film_bytes(const std::vector<std::string>& names) {
   return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
 }
 
+Image Film::develop(int channels) const {
+  Image image(width, height, channels);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!done[i] || !(weights[i] > 0)) continue;
+    float* pixel = image.data.data() + static_cast<std::size_t>(channels) * i;
+    pixel[0] = sums[i].x / weights[i];
+    pixel[1] = sums[i].y / weights[i];
+    pixel[2] = sums[i].z / weights[i];
+    // Where floats have no sum of parts with these bits, the picture takes the sum's.
+    for (std::size_t c = 0; c < 3 && layout.light && !aovs.empty(); ++c)
+      pixel[c] = sum_of(parts_of(*this, i, c));
+    if (channels == 4) pixel[3] = sums[i].w / weights[i];
+  }
+  return image;
+}
+
 Image Film::develop_aov(const std::string& name) const {
   if (name == "rays" && !rays.empty()) {
     Image image(width, height, 1);
@@ -215,11 +217,11 @@ Image Film::develop_aov(const std::string& name) const {
   for (std::size_t i = 0; i < done.size(); ++i) {
     if (!done[i]) continue;
     float* values = image.data.data() + place->count * i;
-    const float* pixel = floats + 4 * layout.vectors() * i;
-    std::copy_n(pixel + first, place->count, values);
+    std::copy_n(floats + 4 * layout.vectors() * i + first, place->count, values);
     if (place->kind == AovKind::matte) rank_mattes(values, weights[i]);
     if (place->kind == AovKind::light)
-      mean_of_part(pixel + 4 * layout.first_light(), sums[i], weights[i], place->first / 3, values);
+      for (std::size_t c = 0; c < 3; ++c)
+        values[c] = weights[i] > 0 ? parts_of(*this, i, c)[place->first / 3] : 0;
   }
   return image;
 }

@@ -8,8 +8,12 @@ namespace sundog {
 
 using PartValues = std::array<float, LIGHT_PART_COUNT>;
 
-/// Changes the parts by what rounding has lost, so that ((parts[0] + parts[1]) + parts[2]) + ... in floats is
-/// `whole`, to the bit. The greatest part that can takes the difference.
+/// ((parts[0] + parts[1]) + parts[2]) + ... in floats.
+float sum_of(const PartValues& parts);
+
+/// Changes the parts by what rounding has lost, so that their sum is `whole`, to the bit. The greatest part
+/// that can takes the difference; those that are 0 stay so. Where parts cancel that are far greater than
+/// `whole`, floats may have no such sum.
 void fit_sum(PartValues& parts, float whole);
 
 }  // namespace sundog
