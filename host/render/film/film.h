@@ -34,6 +34,8 @@ struct AovLayout {
   std::size_t first_light() const { return surfaces + (mattes ? MATTE_VECTORS : 0); }
   std::size_t sums() const { return (mattes ? MATTE_VECTORS : 0) + (light ? LIGHT_VECTORS : 0); }
   std::size_t vectors() const { return surfaces + sums(); }
+  /// Not 0, and another for every layout.
+  std::uint32_t code() const { return u32(surfaces) | u32(mattes) << 8 | u32(light) << 9; }
 };
 constexpr std::size_t most_aov_vectors = all_aov_vectors + MATTE_VECTORS + LIGHT_VECTORS;
 

@@ -70,6 +70,28 @@ TEST_CASE("parts of light are the same of a frame in tiles") {
   CHECK(read_file(folder / "a.exr") == whole);
 }
 
+TEST_CASE("parts of light are resumed, and not from a checkpoint of other AOVs that take as many bytes") {
+  const LightFolder folder;
+  const std::vector<std::string> passes = {"--float", "--set", "/render/progressive=true"};
+  folder.render(passes);
+  const std::string whole = read_file(folder / "a.exr");
+  std::vector<std::string> first = passes;
+  first.insert(first.end(), {"--time-limit", "1e-6", "--resume", folder.file("c")});
+  REQUIRE(run_sundog(folder.command(first, "b.exr")).status == 0);
+  REQUIRE(std::filesystem::exists(folder / "c"));
+  const CommandResult other =
+      run_sundog({"render", folder.scene_file, "-o", folder.file("b.exr"), "--quiet", "--device", "0:0",
+                  "--set", "/render/progressive=true", "--aov", "denoise_albedo", "--aov", "crypto_object",
+                  "--resume", folder.file("c")});
+  CHECK(other.status == 2);
+  CAPTURE(other.err);
+  CHECK(other.err.find("another") != std::string::npos);
+  std::vector<std::string> second = passes;
+  second.insert(second.end(), {"--resume", folder.file("c")});
+  REQUIRE(run_sundog(folder.command(second, "a.exr")).status == 0);
+  CHECK(read_file(folder / "a.exr") == whole);
+}
+
 TEST_CASE("Whitted's integrator does not know parts of light, and says so") {
   const LightFolder folder;
   const CommandResult result = run_sundog(folder.command({"--integrator", "whitted"}, "a.exr"));
