@@ -23,7 +23,6 @@
 #include "base/colors/color_space.h"
 #include "base/image_codecs.h"
 #include "base/limits.h"
-#include "shared/light_parts.h"
 
 namespace sundog {
 namespace {
@@ -66,8 +65,10 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
-#define IS_PART(name) || aov == #name
-bool is_light_part(std::string_view aov) { return false LIGHT_PARTS(IS_PART); }
+/// Whether it is one of the parts of light (kernels/shared/light_parts.h).
+bool is_light_part(std::string_view aov) {
+  return aov.ends_with("_direct") || aov.ends_with("_indirect") || aov == "emission" || aov == "sky";
+}
 
 /// Names of a layer's channels.
 Suffixes channel_suffixes(const std::string& aov, int channels) {

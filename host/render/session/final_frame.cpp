@@ -34,10 +34,7 @@ void check_variance(const std::vector<std::string>& names, const Sampling& sampl
 void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
   for (const std::string& name : names)
     if (is_light(name) && scene.integrator != "path")
-      throw UsageError(
-          fmt::format("the AOV '{}' wants the integrator path: add --integrator path, or set "
-                      "/render/integrator",
-                      name));
+      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
 }
 
 void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
