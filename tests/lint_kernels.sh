@@ -12,7 +12,7 @@ shapes=""; all="-DHAS_SDF=1"; few="-DHAS_SDF=0"
 solids=$(grep -o '^ *SOLID([A-Z]*' kernels/shared/shapes.h | sed 's/.*(//')
 for shape in MESH $solids BVH; do shapes+=" -DHAS_$shape=1"; done
 for feature in $features; do all+=" -D$feature=1"; few+=" -D$feature=0"; done
-all+=$shapes; few+=$shapes
+all+="$shapes -DHAS_MATTES=1 -DHAS_LIGHT_PARTS=1"; few+=$shapes
 failed=0
 # Plain files in lanes stand in for themselves.
 made=$(mktemp -d)
@@ -54,6 +54,7 @@ for ((i = 0; i < ${1:-24}; ++i)); do
     -DSDF_TWO_SIDED=$((has[SDF] * (RANDOM % 2))) -DSDF_FLAGS=$((has[SDF] * (RANDOM % 4)))"
   options=""
   for feature in "${!has[@]}"; do options+=" -DHAS_$feature=${has[$feature]}"; done
+  options+=" -DHAS_MATTES=$((i / 4 % 2)) -DHAS_LIGHT_PARTS=$((i / 4 % 2))"
   for entry in whitted path; do
     without=""
     if [ $entry = whitted ]; then for feature in $of_paths; do without+=" -UHAS_$feature -DHAS_$feature=0"; done; fi

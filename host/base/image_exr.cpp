@@ -67,11 +67,16 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
+/// Whether it is one of the parts of light (kernels/shared/light_parts.h).
+bool is_light_part(std::string_view aov) {
+  return aov.ends_with("_direct") || aov.ends_with("_indirect") || aov == "emission" || aov == "sky";
+}
+
 /// Names of a layer's channels.
 Suffixes channel_suffixes(const std::string& aov, int channels) {
   if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
   if (channels == 2) return {"U", "V"};
-  const bool color = aov == "albedo" || aov == "variance" || channels == 4;
+  const bool color = aov == "albedo" || aov == "variance" || channels == 4 || is_light_part(aov);
   const Suffixes all = color ? Suffixes{"R", "G", "B", "A"} : Suffixes{"X", "Y", "Z"};
   return {all.begin(), all.begin() + channels};
 }
@@ -300,7 +305,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   for (const auto& [aov, layer] : aovs) {
     Suffixes suffixes = channel_suffixes(aov, layer.channels);
     for (std::string& suffix : suffixes) suffix.insert(0, aov + ".");
-    const bool colors = aov == "albedo" || aov == "denoise_albedo";
+    const bool colors = aov == "albedo" || aov == "denoise_albedo" || is_light_part(aov);
     rows.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt).add_to(header, buffer, suffixes);
   }
   std::string bytes;

@@ -33,7 +33,10 @@ struct RenderOptions {
   /// Devices to render on together; empty: the one estimated fastest.
   std::vector<Device> devices{};
   /// More images: "depth", "normal", "position", "albedo", "object", "material", "geometric_normal", "uv",
-  /// "march_steps", "samples", "variance" (scenes rendered in passes), "crypto_object", "crypto_material".
+  /// "march_steps", "samples", "variance" (scenes rendered in passes), "crypto_object", "crypto_material";
+  /// with the integrator path the parts of light that sum to the image: "diffuse_direct", "diffuse_indirect",
+  /// "glossy_direct", "glossy_indirect", "transmission_direct", "transmission_indirect", "volume_direct",
+  /// "volume_indirect", "emission", "sky" (docs/aovs.md).
   std::vector<std::string> aovs{};
   WorkGroup work_group{};  ///< work-group size of the kernels
   int tile = 0;            ///< edge in pixels, 0: chosen by measured speed

@@ -89,6 +89,45 @@ static inline void add_mattes(const Scene* scene, const Launch* launch, const La
                               const PathStates* paths, MASK lanes, __global float4* restrict film) {}
 #endif
 
+// Adds the parts of the light `all` of samples that have ended, as store_sample() adds that.
+#if HAS_LIGHT_PARTS
+static inline void add_part(const Launch* launch, const LaneWork* work, const REAL3* light,
+                            const float* shares, MASK lanes, u32 part, __global float4* restrict film) {
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 lane = lowest_bit(bits), place = (u32)MASK_LANE(work->place, lane);
+    __global float* sum =
+        (__global float*)(sample_sums(launch, film, place) + FIRST_LIGHT_VECTOR) + 3u * part;
+    const float3 added = shares[lane] * get3(light, lane);
+    sum[0] += added.x;
+    sum[1] += added.y;
+    sum[2] += added.z;
+  }
+}
+
+#define ADD_PART(name)                                                                        \
+  {                                                                                           \
+    const REAL3 light = spectrum_seen(scene, &paths->wavelengths, &paths->parts.name, lanes); \
+    add_part(launch, work, &light, shares, lanes, part++, film);                              \
+  }
+NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, const LaneWork* work,
+                                  const PathStates* paths, const REAL3* all, MASK lanes,
+                                  __global float4* restrict film) {
+  float shares[BATCH];
+  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
+    const u32 lane = lowest_bit(bits);
+    const float3 light = get3(all, lane);
+    shares[lane] = work->sign[lane] * limiting_share(light, scene->info->max_component);
+    if (!all_finite(light)) MASK_LANE(lanes, lane) = 0;
+  }
+  u32 part = 0u;
+  LIGHT_PARTS(ADD_PART)
+}
+#else
+static inline void add_light_parts(const Scene* scene, const Launch* launch, const LaneWork* work,
+                                   const PathStates* paths, const REAL3* all, MASK lanes,
+                                   __global float4* restrict film) {}
+#endif
+
 // One work-item of the kernel below: items [first, end).
 NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Launch* launch, u32 first,
                                u32 end, __global const u32* restrict pixels, __global float4* restrict film,
@@ -122,6 +161,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
                    limited = limit_components(radiance, scene->info->max_component);
       store_sample((u32)MASK_LANE(work.place, lane), limited, work.sign[lane], film, weights, counts);
     }
+    add_light_parts(scene, launch, &work, &paths, &seen, over, film);
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

@@ -22,7 +22,7 @@ struct Header {
   char magic[8];
   std::uint64_t key;
   std::int32_t width, height;
-  std::uint64_t has_aovs;
+  std::uint64_t aovs;  // code() of their layout; 0: none
 };
 
 template <class T>
@@ -51,7 +51,7 @@ void write_checkpoint(const std::filesystem::path& path, const Film& film, std::
   header.key = key;
   header.width = film.width;
   header.height = film.height;
-  header.has_aovs = !film.aovs.empty();
+  header.aovs = film.aovs.empty() ? 0 : film.layout.code();
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
   bytes.reserve(sizeof header + bytes_of(film) + sizeof(std::uint64_t));
   append(bytes, film.sums);
@@ -87,7 +87,8 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_
   if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body) ||
       !is_frame_size(header.width, header.height))
     throw damaged;
-  if (header.key != key || header.width != film.width || header.height != film.height || body != expected)
+  if (header.key != key || header.width != film.width || header.height != film.height || body != expected ||
+      header.aovs != (film.aovs.empty() ? 0 : film.layout.code()))
     throw other_checkpoint(path);
   std::size_t at = sizeof header;
   take(bytes, at, film.sums);

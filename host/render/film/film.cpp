@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "render/film/light_parts.h"
 
 namespace sundog {
 
@@ -63,30 +64,24 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
   return fresh;
 }
 
-Image Film::develop(int channels) const {
-  Image image(width, height, channels);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (!done[i] || !(weights[i] > 0)) continue;
-    float* pixel = image.data.data() + static_cast<std::size_t>(channels) * i;
-    pixel[0] = sums[i].x / weights[i];
-    pixel[1] = sums[i].y / weights[i];
-    pixel[2] = sums[i].z / weights[i];
-    if (channels == 4) pixel[3] = sums[i].w / weights[i];
-  }
-  return image;
-}
-
 namespace {
 
-/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on, of mattes among these.
+enum class AovKind { surface, matte, light };
+
+/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on among those of its kind.
 struct AovPlace {
   const char* name;
   std::size_t first, count;
-  bool of_mattes = false;
+  AovKind kind = AovKind::surface;
 };
 constexpr std::size_t matte_floats = 2 * MATTE_RANKS;
 
-constexpr AovPlace places[] = {{"depth", 3, 1},
+#define NUMBER_OF_PART(name) part_##name,
+enum : std::size_t { LIGHT_PARTS(NUMBER_OF_PART) all_parts };
+static_assert(all_parts == LIGHT_PART_COUNT && 3 * all_parts <= 4 * LIGHT_VECTORS);
+#define PLACE_OF_PART(name) {#name, 3 * part_##name, 3, AovKind::light},
+
+constexpr AovPlace places[] = {LIGHT_PARTS(PLACE_OF_PART){"depth", 3, 1},
                                {"normal", 0, 3},
                                {"position", 4, 3},
                                {"albedo", 8, 3},
@@ -97,8 +92,8 @@ constexpr AovPlace places[] = {{"depth", 3, 1},
                                {"geometric_normal", 20, 3},
                                {"march_steps", 23, 1},
                                {"uv", 24, 2},
-                               {"crypto_object", 0, matte_floats, true},
-                               {"crypto_material", matte_floats, matte_floats, true}};
+                               {"crypto_object", 0, matte_floats, AovKind::matte},
+                               {"crypto_material", matte_floats, matte_floats, AovKind::matte}};
 
 /// A pixel's pairs of id + 1 and sum of shares become pairs of id (-1: none) and coverage, the greatest
 /// first, of equal ones the smaller id.
@@ -116,6 +111,28 @@ void rank_mattes(float* pairs, float weight) {
   });
   for (std::size_t k = 0; k < ranks.size(); ++k)
     pairs[2 * k] = ranks[k].id, pairs[2 * k + 1] = ranks[k].share;
+}
+
+bool holds(const AovLayout& layout, const AovPlace& place) {
+  if (place.kind == AovKind::surface) return place.first < 4 * layout.surfaces;
+  return place.kind == AovKind::matte ? layout.mattes : layout.light;
+}
+
+std::size_t first_float(const AovLayout& layout, const AovPlace& place) {
+  const std::size_t of_mattes = 4 * layout.surfaces;
+  if (place.kind == AovKind::surface) return place.first;
+  return place.first + (place.kind == AovKind::matte ? of_mattes : 4 * layout.first_light());
+}
+
+/// The parts of a channel of pixel `i`, which has samples.
+PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
+  const auto* sums = reinterpret_cast<const float*>(&film.sums[i]);
+  const auto* of_parts =
+      reinterpret_cast<const float*>(&film.aovs[film.layout.vectors() * i + film.layout.first_light()]);
+  PartValues parts;
+  for (std::size_t k = 0; k < parts.size(); ++k) parts[k] = of_parts[3 * k + channel] / film.weights[i];
+  fit_sum(parts, sums[channel] / film.weights[i]);
+  return parts;
 }
 
 const AovPlace* find_place(const std::string& name) {
@@ -145,9 +162,10 @@ AovLayout aov_layout(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const AovPlace* place = find_place(name);
     if (!place) continue;
-    layout.mattes |= place->of_mattes;
+    layout.mattes |= place->kind == AovKind::matte;
+    layout.light |= place->kind == AovKind::light;
     for (const std::size_t more : {feature_aov_vectors, all_aov_vectors})
-      if (!place->of_mattes && place->first >= 4 * layout.surfaces) layout.surfaces = more;
+      if (place->kind == AovKind::surface && place->first >= 4 * layout.surfaces) layout.surfaces = more;
   }
   return layout;
 }
@@ -156,11 +174,32 @@ bool shows_features(const std::vector<std::string>& names) {
   return std::ranges::count(names, feature_albedo) + std::ranges::count(names, feature_normal) > 0;
 }
 
+bool is_light(const std::string& aov) {
+  const AovPlace* place = find_place(aov);
+  return place && place->kind == AovKind::light;
+}
+
 bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }
 
 std::size_t film_bytes(const std::vector<std::string>& names) {
   const std::size_t aovs = show_surfaces(names) ? sizeof(float4) * aov_layout(names).vectors() : 0;
   return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
+}
+
+Image Film::develop(int channels) const {
+  Image image(width, height, channels);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!done[i] || !(weights[i] > 0)) continue;
+    float* pixel = image.data.data() + static_cast<std::size_t>(channels) * i;
+    pixel[0] = sums[i].x / weights[i];
+    pixel[1] = sums[i].y / weights[i];
+    pixel[2] = sums[i].z / weights[i];
+    // Where floats have no sum of parts with these bits, the picture takes the sum's.
+    for (std::size_t c = 0; c < 3 && layout.light && !aovs.empty(); ++c)
+      pixel[c] = sum_of(parts_of(*this, i, c));
+    if (channels == 4) pixel[3] = sums[i].w / weights[i];
+  }
+  return image;
 }
 
 Image Film::develop_aov(const std::string& name) const {
@@ -171,16 +210,18 @@ Image Film::develop_aov(const std::string& name) const {
     return image;
   }
   const AovPlace* place = find_place(name);
-  if (!place || aovs.empty() || (place->of_mattes ? !layout.mattes : place->first >= 4 * layout.surfaces))
-    throw UsageError("no AOV is called '" + name + "'");
+  if (!place || aovs.empty() || !holds(layout, *place)) throw UsageError("no AOV is called '" + name + "'");
   Image image(width, height, static_cast<int>(place->count));
   const auto* floats = reinterpret_cast<const float*>(aovs.data());
-  const std::size_t first = place->first + (place->of_mattes ? 4 * layout.surfaces : 0);
+  const std::size_t first = first_float(layout, *place);
   for (std::size_t i = 0; i < done.size(); ++i) {
     if (!done[i]) continue;
     float* values = image.data.data() + place->count * i;
     std::copy_n(floats + 4 * layout.vectors() * i + first, place->count, values);
-    if (place->of_mattes) rank_mattes(values, weights[i]);
+    if (place->kind == AovKind::matte) rank_mattes(values, weights[i]);
+    if (place->kind == AovKind::light)
+      for (std::size_t c = 0; c < 3; ++c)
+        values[c] = weights[i] > 0 ? parts_of(*this, i, c)[place->first / 3] : 0;
   }
   return image;
 }

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/image.h"
 #include "shared/launch.h"
+#include "shared/light_parts.h"
 #include "shared/types.h"
 
 namespace sundog {
@@ -28,11 +30,14 @@ constexpr std::size_t few_aov_vectors = 3, feature_aov_vectors = 5, all_aov_vect
 /// The float4 of a pixel's AOVs: first those of surfaces, then sums over the samples (shared/launch.h).
 struct AovLayout {
   std::size_t surfaces = few_aov_vectors;
-  bool mattes = false;
-  std::size_t sums() const { return mattes ? MATTE_VECTORS : 0; }
+  bool mattes = false, light = false;
+  std::size_t first_light() const { return surfaces + (mattes ? MATTE_VECTORS : 0); }
+  std::size_t sums() const { return (mattes ? MATTE_VECTORS : 0) + (light ? LIGHT_VECTORS : 0); }
   std::size_t vectors() const { return surfaces + sums(); }
+  /// Not 0, and another for every layout.
+  std::uint32_t code() const { return u32(surfaces) | u32(mattes) << 8 | u32(light) << 9; }
 };
-constexpr std::size_t most_aov_vectors = all_aov_vectors + MATTE_VECTORS;
+constexpr std::size_t most_aov_vectors = all_aov_vectors + MATTE_VECTORS + LIGHT_VECTORS;
 
 struct Color {
   float r = 0, g = 0, b = 0;
@@ -74,7 +79,7 @@ struct Film {
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
   Image develop(int channels = 4) const;
   /// The named AOV (one of aov_names(), but those that develop_aovs() makes of more than the film); pixels
-  /// that are not done are 0.
+  /// that are not done are 0. Parts of light sum to develop()'s colours, to the bit (fit_sum()).
   Image develop_aov(const std::string& name) const;
 };
 
@@ -103,6 +108,9 @@ constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "deno
 
 /// Whether they are among these AOVs.
 bool shows_features(const std::vector<std::string>& names);
+
+/// Whether it is a part of a pixel's light, which only the path tracer keeps apart.
+bool is_light(const std::string& aov);
 
 /// Whether they want the rays of each pixel to be counted.
 bool counts_rays(const std::vector<std::string>& names);

@@ -25,7 +25,8 @@ std::uint64_t aov_floats(const std::string& name) {
   if (name.starts_with("crypto_")) return 2 * MATTE_RANKS;
   if (name == "uv") return 2;
   return name == feature_albedo || name == feature_normal || name == "geometric_normal" ||
-                 name == "variance" || name == "normal" || name == "position" || name == "albedo"
+                 name == "variance" || is_light(name) || name == "normal" || name == "position" ||
+                 name == "albedo"
              ? 3
              : 1;
 }

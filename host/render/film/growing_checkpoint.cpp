@@ -21,7 +21,7 @@ struct GrowingHeader {
   char magic[8];
   std::uint64_t key;
   std::int32_t width, height, pass_width, pass_height;
-  std::uint32_t first_sample, sample_count, surfaces, costs, has_aovs, has_block_rays;
+  std::uint32_t first_sample, sample_count, surfaces, costs, aovs, has_block_rays;
   std::uint32_t stage, step;
   std::uint64_t surfaces_seen;
 };
@@ -95,7 +95,7 @@ void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFi
   header.first_sample = pass.first_sample, header.sample_count = pass.sample_count;
   header.surfaces = pass.surfaces, header.costs = pass.costs;
   header.has_block_rays = !film.block_rays.empty();
-  header.has_aovs = !made.aovs.empty();
+  header.aovs = made.aovs.empty() ? 0 : made.layout.code();
   header.stage = film.stage, header.step = film.step;
   header.surfaces_seen = film.surfaces_seen;
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
@@ -128,7 +128,8 @@ void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& fil
   pass.width = header.pass_width, pass.height = header.pass_height;
   pass.first_sample = header.first_sample, pass.sample_count = header.sample_count;
   pass.surfaces = header.surfaces != 0, pass.costs = header.costs != 0;
-  if (pass.surfaces != (header.has_aovs != 0)) throw damaged;
+  if (pass.surfaces != (header.aovs != 0)) throw damaged;
+  if (pass.surfaces && header.aovs != film.film.layout.code()) throw other;
   check_memory(path, film, pass, bytes.size());
   made = film_of_pass(film, pass, pass.surfaces);
   film.stage = header.stage, film.step = header.step;

@@ -111,14 +111,31 @@ std::vector<u32> near_surprises(const Grid& grid) {
 }
 
 /// An interpolated pixel shows the same surface as its corners: one of them says what covers it.
-void take_sums(Film& film, std::size_t corner, std::size_t p) {
-  if (film.layout.sums() == 0) return;
+void take_mattes(Film& film, std::size_t corner, std::size_t p) {
+  if (!film.layout.mattes) return;
   const float share = film.sums[corner].w > 0 ? film.sums[p].w / film.sums[corner].w : 0;
   float4* pixel = &film.aovs[film.layout.vectors() * p + film.layout.surfaces];
   const float4* of = &film.aovs[film.layout.vectors() * corner + film.layout.surfaces];
   // Of each pair the first is an id.
-  for (std::size_t k = 0; k < film.layout.sums(); ++k)
+  for (std::size_t k = 0; k < MATTE_VECTORS; ++k)
     pixel[k] = {of[k].x, of[k].y * share, of[k].z, of[k].w * share};
+}
+
+/// Its light has the parts of its corners' light, as promised() has that.
+void take_light(Film& film, const std::array<std::size_t, 4>& corners, std::size_t p) {
+  if (!film.layout.light) return;
+  const auto light_of = [&](std::size_t at) {
+    return &film.aovs[film.layout.vectors() * at + film.layout.first_light()];
+  };
+  for (std::size_t k = 0; k < LIGHT_VECTORS; ++k) {
+    float4 sum{};
+    for (const std::size_t corner : corners) {
+      const float share = film.weights[corner] > 0 ? 0.25f / film.weights[corner] : 0;
+      const float4& of = light_of(corner)[k];
+      sum = {sum.x + share * of.x, sum.y + share * of.y, sum.z + share * of.z, sum.w + share * of.w};
+    }
+    light_of(p)[k] = sum;
+  }
 }
 
 /// Sets pixels without samples to the mean of those corners that have some.
@@ -135,7 +152,8 @@ void interpolate(GrowingFilm& film, const Grid& grid) {
         coverage += 0.25f * film.film.sums[corner].w / std::max(film.film.weights[corner], 1.0f);
       film.film.sums[p] = {color.r, color.g, color.b, coverage};
       film.film.weights[p] = 1;
-      take_sums(film.film, grid.corners(x, y)[0], p);
+      take_mattes(film.film, grid.corners(x, y)[0], p);
+      take_light(film.film, grid.corners(x, y), p);
       film.film.done[p] = 1;
       film.states[p] = PixelState::interpolated;
     }

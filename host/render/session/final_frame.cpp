@@ -30,6 +30,13 @@ void check_variance(const std::vector<std::string>& names, const Sampling& sampl
         "the AOV 'variance' wants a frame in passes: make it adaptive, or set /render/progressive to true");
 }
 
+/// Only the path tracer knows which lobes light has come by.
+void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
+  for (const std::string& name : names)
+    if (is_light(name) && scene.integrator != "path")
+      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
+}
+
 void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
@@ -219,6 +226,7 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
                           const std::function<void(const std::shared_ptr<Frame>&)>& run) {
   check_aovs(options.aovs);
   check_variance(options.aovs, scene->sampling);
+  check_light(options.aovs, *scene);
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
   const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);

@@ -107,6 +107,11 @@
 #define HAS_MATTES 0
 #endif
 
+// Whether paths keep the parts of their light apart (shared/light_parts.h).
+#ifndef HAS_LIGHT_PARTS
+#define HAS_LIGHT_PARTS 0
+#endif
+
 // Whether rays carry the pixel's cone, for texture filtering.
 #define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
 

@@ -236,6 +236,7 @@ static inline REAL4 select4(REAL4 a, REAL4 b, MASK m) {
 }
 static inline REAL4 all4(float4 a) { return real4((REAL)(a.x), (REAL)(a.y), (REAL)(a.z), (REAL)(a.w)); }
 static inline REAL4 add4(REAL4 a, REAL4 b) { return real4(a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w); }
+static inline REAL4 subtract4(REAL4 a, REAL4 b) { return real4(a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w); }
 static inline REAL4 multiply4(REAL4 a, REAL4 b) { return real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w); }
 static inline REAL4 scale4(REAL4 a, REAL s) { return real4(a.x * s, a.y * s, a.z * s, a.w * s); }
 

@@ -100,17 +100,25 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
   }
 }
 
-// The radiance of a sample, its greatest component at most `most`.
-static inline float4 limit_components(float4 radiance, float most) {
+// The share of a sample's radiance whose greatest component is at most `most`.
+static inline float limiting_share(float3 radiance, float most) {
   const float greatest = fmax(fmax(radiance.x, radiance.y), radiance.z);
-  return greatest > most ? (float4)(radiance.xyz * (most / greatest), radiance.w) : radiance;
+  return greatest > most ? most / greatest : 1.0f;
+}
+static inline float4 limit_components(float4 radiance, float most) {
+  const float share = limiting_share(radiance.xyz, most);
+  return share < 1.0f ? (float4)(radiance.xyz * share, radiance.w) : radiance;
+}
+
+static inline bool all_finite(float3 radiance) {
+  const float3 zero = radiance * 0.0f;  // NaN if one is not finite
+  return zero.x + zero.y + zero.z == 0.0f;
 }
 
 // Adds a sample's light to film and weights of the rectangle's pixel `place`, with the weight `sign`.
 static inline void store_sample(u32 place, float4 radiance, float sign, __global float4* restrict film,
                                 __global float* restrict weights, u32* counts) {
-  const float3 zero = radiance.xyz * 0.0f;  // NaN if one is not finite
-  if (zero.x + zero.y + zero.z != 0.0f) {
+  if (!all_finite(radiance.xyz)) {
     counts[COUNT_NON_FINITE] += 1u;
     return;
   }

@@ -14,5 +14,6 @@ typedef REAL3 SampledSpectrum;
 #define spectrum_all(value) OF_SPECTRUM(all)((OF_SPECTRUM(float))(value))
 #define spectrum_select OF_SPECTRUM(select)
 #define spectrum_add OF_SPECTRUM(add)
+#define spectrum_subtract OF_SPECTRUM(subtract)
 #define spectrum_multiply OF_SPECTRUM(multiply)
 #define spectrum_scale OF_SPECTRUM(scale)

@@ -8,7 +8,7 @@
 #include "plain/pathtracer/scatter_media.cl"
 
 // What a lamp that is chosen sends to the surface, times what that makes of it.
-static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
+static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
                                      const Encounter* met, const SurfaceShading* at, const LobeSet* lobes,
                                      const Numbers* u, UNIFORM u32* counts) {
   bool seen;  // rays may meet the lamp: the path's next ray has its share
@@ -32,7 +32,26 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, const PathState
   count(counts, COUNT_SHADOW);
   note_ray(counts);
   SceneRay to_light = ray_to_light(scene, ray, met, at, &light, below);
-  return arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+  const SampledSpectrum arriving =
+      kept_hero(scene, at, &lobes->split, path,
+                arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts));
+  if (HAS_LIGHT_PARTS) {
+    const LobeShares shares =
+        shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, -ray->d, light.wi, below);
+    note_sent(path, &shares, true, arriving);
+  }
+  return arriving;
+}
+
+// Notes which lobes sent the path in the direction of `sample`.
+HAVING(HAS_LIGHT_PARTS)
+static void note_sample(UNIFORM const Scene* scene, const SurfaceShading* at, const LobeSet* lobes, float3 wo,
+                        const BsdfSample* sample, bool below, PathState* path) {
+  LobeShares shares = no_lobes();
+  if (below) shares.transmitted = (SampledSpectrum)(1.0f);
+  if (path->scatterings == 0 && !below && !sample->specular)
+    shares = shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, wo, sample->wi, false);
+  note_scattering(path, &shares);
 }
 
 // The surface scatters: the path's next ray, and whether the path continues. `free`: the surface is not
@@ -61,6 +80,12 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     if (HAS_SCATTERING) path->scattered.is = false;
     if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }
+  if (HAS_LIGHT_PARTS) {
+    const bool straight = lobes->split.eta == 1.0f,
+               filtered = (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0;
+    if (!(passes && (straight || (filtered && path->scatterings > 0))))
+      note_sample(scene, at, lobes, wo, &sample, below, path);
+  }
   path->straight = path->straight && passes && lobes->split.eta == 1.0f;
   bool going = free;
   if (some && !free) going = survives(scene, path, dimension);
@@ -84,7 +109,9 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   const BegunRay begun = begun_ray_of(ray);
   bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
-  if (HAS_GLOW) path->radiance += path->throughput * spectrum_of(&path->wavelengths, emitted(ray));
+  if (HAS_GLOW)
+    path->radiance +=
+        met_light(path, SEEN_EMISSION, path->throughput * spectrum_of(&path->wavelengths, emitted(ray)));
   forget_glow(ray);
   bool turned;  // the medium has scattered the path, which may continue
   if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
@@ -94,11 +121,11 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     return true;
   }
   SampledSpectrum light = (SampledSpectrum)(0.0f);
-  if (HAS_FOG) light = met_fog(scene, &met, path);
+  if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, met_fog(scene, &met, path));
   if (!hit_anything(&met.hit)) {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
-    path->radiance += light + sky;
+    path->radiance += light + met_light(path, SEEN_SKY, sky);
     path->covered = !path->straight;
     return false;
   }
@@ -107,7 +134,9 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   shade_hits(scene, ray, &met, &at);
   follow_hero(&path->wavelengths, &at.bsdf);
   if (HAS_EMISSION)
-    light += path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at));
+    light += met_light(
+        path, SEEN_EMISSION,
+        path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at)));
   const bool deep = path->depth > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
@@ -121,11 +150,9 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     if (scene->info->light_count > 0u) {
       const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
       const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
-      light += kept_hero(scene, &at, &lobes.split, path,
-                         light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts));
+      light += light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts);
     }
-    if (HAS_CAUSTICS)
-      light += kept_hero(scene, &at, &lobes.split, path, gather_photons(scene, path, ray, &at, &lobes));
+    if (HAS_CAUSTICS) light += gather_photons(scene, path, ray, &at, &lobes);
   }
   path->radiance += light;
   if (deep && !free) {

@@ -2,12 +2,27 @@
 #include "plain/pathtracer/interface.h"
 #include "plain/pathtracer/media_stretch.cl"
 #include "plain/pathtracer/spectrum.cl"
+#include "shared/light_parts.h"
 
 // Light that photons have brought to a path's last surface, which it must not meet again through what has
 // mirrored or bent it since: the lights that photons leave. Narrow lobes do not get it from photons.
 #define GATHERED_NOTHING 0
 #define GATHERED_HERE 1    // at the surface that the ray leaves, or before interfaces that let it pass
 #define GATHERED_BEFORE 2  // at one before it; the ray was mirrored or bent since
+
+#define SPECTRUM_OF_PART(name) SampledSpectrum name;
+
+// The light gathered so far, in parts.
+typedef struct LightParts {
+  LIGHT_PARTS(SPECTRUM_OF_PART)
+} LightParts;
+
+// What kinds of lobes have of light that was scattered: all if a `medium` has scattered it, else what is
+// diffuse, what is transmitted, and the rest, glossy.
+typedef struct LobeShares {
+  SampledSpectrum diffuse, transmitted;
+  bool medium;
+} LobeShares;
 
 typedef struct PathState {
   SampledSpectrum throughput;
@@ -22,11 +37,14 @@ typedef struct PathState {
   bool straight;  // the ray goes straight on from the camera
   SampleAt at;
   SampledWavelengths wavelengths;
-  HAVING(HAS_CAUSTICS) int gathered;           // GATHERED_*
-  HAVING(HAS_CAUSTICS) float3 narrow;          // the part of the throughput by narrow lobes of what gathered
-  HAVING(HAS_MATTES) float clear;              // of the background, straight on, behind its last surface
-  HAVING(HAS_MATTES) float matte;              // what the last surface took of that
-  HAVING(HAS_MATTES) int instance, material;   // of that surface
+  HAVING(HAS_CAUSTICS) int gathered;          // GATHERED_*
+  HAVING(HAS_CAUSTICS) float3 narrow;         // the part of the throughput by narrow lobes of what gathered
+  HAVING(HAS_MATTES) float clear;             // of the background, straight on, behind its last surface
+  HAVING(HAS_MATTES) float matte;             // what the last surface took of that
+  HAVING(HAS_MATTES) int instance, material;  // of that surface
+  HAVING(HAS_LIGHT_PARTS) LightParts parts;
+  HAVING(HAS_LIGHT_PARTS) int scatterings;     // since the camera, without straight ways through surfaces
+  HAVING(HAS_LIGHT_PARTS) LobeShares shares;   // at the first of them
   HAVING(HAS_SCATTERING) Scattered scattered;  // the density is then of the place there and of the direction
 } PathState;
 
@@ -55,6 +73,14 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
     path.matte = 0.0f;
     path.instance = 0;
     path.material = 0;
+  }
+#define CLEAR_PART(name) path.parts.name = (SampledSpectrum)(0.0f);
+  if (HAS_LIGHT_PARTS) {
+    LIGHT_PARTS(CLEAR_PART)
+    path.scatterings = 0;
+    path.shares.diffuse = (SampledSpectrum)(0.0f);
+    path.shares.transmitted = (SampledSpectrum)(0.0f);
+    path.shares.medium = false;
   }
   forget_gathered(&path);
   return path;

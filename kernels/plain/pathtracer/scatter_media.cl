@@ -1,7 +1,7 @@
 // Media that scatter, on the way of a path to its next interface: each stretch of a ray gets light from one
 // lamp, at a place that is chosen for it, and may end the ray at another, from where the path continues.
+#include "plain/pathtracer/light_parts.cl"
 #include "plain/pathtracer/next_event.cl"
-#include "plain/pathtracer/path_state.cl"
 #include "plain/pathtracer/roulette.cl"
 
 // What a ray is before it goes to its next interface.
@@ -114,9 +114,9 @@ static inline float distance_for_light(UNIFORM const Scene* scene, const Stretch
 
 // Light of one lamp that the stretch scatters towards its beginning.
 HAVING(HAS_SCATTERING)
-static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, const PathState* path,
-                                        const BegunRay* begun, const SceneRay* ray, const Stretch* s,
-                                        int dimension, UNIFORM u32* counts) {
+static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                                        const SceneRay* ray, const Stretch* s, int dimension,
+                                        UNIFORM u32* counts) {
   const Numbers u = numbers_at(&path->at, dimension, true, true),
                 v = numbers_at(&path->at, dimension + 4, true, true);
   float chance, pdf;
@@ -135,7 +135,12 @@ static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, const PathSt
   count(counts, COUNT_SHADOW);
   note_ray(counts);
   SceneRay to_light = ray_from_stretch(scene, begun, ray, s, at, light.wi, light.distance);
-  return arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+  const SampledSpectrum arriving = arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+  if (HAS_LIGHT_PARTS) {
+    const LobeShares shares = all_of_medium();
+    note_sent(path, &shares, true, arriving);
+  }
+  return arriving;
 }
 
 // The path is scattered at the distance `at` of its stretch. Returns whether it continues.
@@ -153,6 +158,10 @@ static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, 
   path->pdf = pdf * phase_pdf(s->g, cosine);
   path->from = along(s->o, at, s->d);
   path->straight = false;
+  if (HAS_LIGHT_PARTS) {
+    const LobeShares shares = all_of_medium();
+    note_scattering(path, &shares);
+  }
   bool going = spectrum_greatest(path->throughput) > 0.0f;
   if (going && path->depth > (int)scene->info->max_depth) {
     count(counts, COUNT_DEPTH_LIMIT);

@@ -10,7 +10,8 @@ HAVING(HAS_LAYERS);
 // The shares of samples of the lobes.
 typedef struct LayerShare {
   float fuzz, coat, shine, matte;
-  HAVING(HAS_CAUSTICS) float least;  // narrower facets are excluded; 0: none
+  HAVING(HAS_CAUSTICS) float least;          // narrower facets are excluded; 0: none
+  HAVING(HAS_LIGHT_PARTS) bool only_glossy;  // fuzz and the matte ground are excluded
 } LayerShare;
 
 static inline bool is_layered(const Bsdf* bsdf) { return (bsdf->flags & (int)MATERIAL_LAYERED) != 0; }
@@ -22,6 +23,7 @@ static inline LayerShare no_shares(void) {
   shares.shine = 0.0f;
   shares.matte = 0.0f;
   if (HAS_CAUSTICS) shares.least = 0.0f;
+  if (HAS_LIGHT_PARTS) shares.only_glossy = false;
   return shares;
 }
 
@@ -31,6 +33,12 @@ static inline float share_left(const LayerShare* shares, float alpha_x, float al
   const float left = 1.0f - (mirrored ? mirror_share(alpha_x, alpha_y) : 0.0f);
   if (HAS_CAUSTICS) return (alpha_x * alpha_y < shares->least * shares->least ? 0.0f : 1.0f) * left;
   return left;
+}
+
+// 0 if fuzz and the matte ground are excluded.
+static inline float diffuse_left(const LayerShare* shares) {
+  if (HAS_LIGHT_PARTS) return shares->only_glossy ? 0.0f : 1.0f;
+  return 1.0f;
 }
 
 static inline float3 into_frame(const Bsdf* bsdf, float3 w) {
@@ -143,8 +151,9 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
   const float wo_h = real_clamp(dot(wo, h), 0.0f, 1.0f);
   float3 value = (float3)(0.0f), tint = (float3)(1.0f);
   float chance = shares->matte * wi.z * (1.0f / M_PI_F), kept = 1.0f;
+  const float diffuse = diffuse_left(shares);
   if (m->fuzz.w > 0.0f && bsdf->coated) {
-    value = along(value, m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha), fuzz_color(m, &base));
+    value = along(value, diffuse * m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha), fuzz_color(m, &base));
     kept = real_min(past_fuzz(scene, m, &base, wo.z), past_fuzz(scene, m, &base, wi.z));
     chance += shares->fuzz * (0.5f / M_PI_F);
   }
@@ -165,7 +174,7 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
   const float3 color = mend_shares(shine_color(scene, m, &base, bsdf->base, wo_h, 1.0f), shine.more);
   const float left = share_left(shares, base.alpha_x, base.alpha_y, mirrored);
   float3 own = color * (shine.value * (left * base.shine_scale) * kept);
-  const float ground = (1.0f - base.metal) * (1.0f - base.glass);
+  const float ground = diffuse * (1.0f - base.metal) * (1.0f - base.glass);
   if (ground > 0.0f) {
     const float3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
     const float through = past_shine(scene, m, &base, wo.z) * past_shine(scene, m, &base, wi.z);
