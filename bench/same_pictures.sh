@@ -87,8 +87,14 @@ trap 'rm -rf "$work"' EXIT
 if [[ $keep ]]; then mkdir -p -- "$keep" || exit 2; keep=$(readlink -f -- "$keep"); else keep=$work; fi
 
 aovs_of() { "$1" render --help | tr '\n' ' ' | sed -n 's/.*an extra image in the .exr: \([a-z_, ]*\);.*/\1/p' | tr -d ' ' | tr , '\n' | sort; }
-aovs=()  # but the variance, which only frames in passes have
-for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do [[ $aov == variance ]] || aovs+=(--aov "$aov"); done
+aovs=() parts=()  # but the variance, which only frames in passes have; parts of light are of paths alone
+for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do
+  case $aov in
+    variance) ;;
+    *_direct | *_indirect | emission | sky) parts+=(--aov "$aov") ;;
+    *) aovs+=(--aov "$aov") ;;
+  esac
+done
 
 # What a scene file lacks: the benchmark's model is one that its user gives.
 extra_of() {
@@ -143,10 +149,11 @@ tell() { printf '%-26s %-12s %s\n' "$scene_name" "$label" "$*"; }
 
 # compare_builds SCENE DEVICE SIZE: renders with both builds at once and prints what is found.
 compare_builds() {
-  local scene=$1 device=$2 wanted=$3 name of_old of_new found
+  local scene=$1 device=$2 wanted=$3 name of_old of_new found more=()
+  if grep -qE '"integrator": *"path"' "$scene"; then more=("${parts[@]}"); fi
   name=${scene_name}_${label//[^a-zA-Z0-9]/_}
-  render "$old" "$scene" "$device" "$wanted" "${name}_old" "${aovs[@]}" & local one=$!
-  render "$new" "$scene" "$device" "$wanted" "${name}_new" "${aovs[@]}" & local two=$!
+  render "$old" "$scene" "$device" "$wanted" "${name}_old" "${aovs[@]}" "${more[@]}" & local one=$!
+  render "$new" "$scene" "$device" "$wanted" "${name}_new" "${aovs[@]}" "${more[@]}" & local two=$!
   wait "$one"; of_old=$?
   wait "$two"; of_new=$?
   if [[ $of_old != 0 && $of_new == 0 ]]; then

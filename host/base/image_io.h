@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/image.h"
-#include "base/shot.h"
+#include "base/pixels/shot.h"
 
 namespace sundog {
 

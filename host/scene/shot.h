@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "base/shot.h"
+#include "base/pixels/shot.h"
 #include "scene/description.h"
 
 namespace sundog {

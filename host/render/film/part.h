@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/shot.h"
+#include "base/pixels/shot.h"
 #include "render/film/film.h"
 #include "render/film/rows.h"
 #include "render/values/options.h"

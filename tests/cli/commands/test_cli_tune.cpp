@@ -100,8 +100,8 @@ TEST_CASE("tune names what it rejects, with the reason") {
   const CommandResult tuned = folder.run({folder.scene, "--device", "0:0", "--budget", "5"}, options);
   CAPTURE(tuned.out, tuned.err);
   CHECK(tuned.status == 0);
-  CHECK_THAT(tuned.out, ContainsSubstring(" tried, 1 rejected") &&
-                            ContainsSubstring("\n  rejected: work-group ") &&
+  // With time left, other shapes of tiles are rejected as well: they add up a ray tree in another order.
+  CHECK_THAT(tuned.out, ContainsSubstring(" tried, ") && ContainsSubstring("\n  rejected: work-group ") &&
                             ContainsSubstring(" did not build on 0:0 "));
 }
 

@@ -25,8 +25,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"rendr", scene}, "found 'rendr': did you mean 'render'? (see sundog --help)"},
       {{"bench"},
        "wanted a benchmark (workgroup, threads, rays, samples, quality, textures, devices, kernels, "
-       "compare), found "
-       "none"},
+       "roofline, compare), found none"},
       {{"bench", "speed"}, "found 'speed'"},
       {{"bench", "thraeds"}, "found 'thraeds': did you mean 'threads'? (see sundog bench --help)"},
       {{"bench", "threads"}, "SCENE is required (see sundog bench threads --help)"},
@@ -65,7 +64,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
       {{"render", scene, "-o", "-", "--frames", "1..2"}, "--frames writes numbered files"},
       {{"render", scene, "-o", out, "--aov", "depth"}, "only .exr files hold AOVs"},
       {{"render", scene, "-o", folder.file("out.exr"), "--aov", "beauty"},
-       "--aov beauty: wanted one of depth"},
+       "--aov beauty: wanted one of diffuse_direct"},
       {{"render", scene, "-o", folder.file("out.exr"), "--aov", "nromal"},
        "--aov nromal: did you mean normal?"},
       {{"render", scene, "-o", out, "--size", "640"}, "--size 640: wanted WIDTHxHEIGHT"},
