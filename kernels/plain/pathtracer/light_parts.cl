@@ -1,7 +1,7 @@
 // The parts of a path's light (shared/light_parts.h). Light that the camera sees without a scattering between
 // is emission, sky or a medium's. All other light belongs to the lobe that scattered it last on its way to
 // the camera. It is direct if nothing else did: shadow rays count as scattered by nothing in the filters that
-// they pass. Lobes are told apart by what they return of each direction, not by which of them chose it.
+// they pass. A lobe's part is the light that it returns of a direction, whichever lobe chose the direction.
 #include "plain/pathtracer/path_state.cl"
 #include "plain/shade/lobes.cl"
 

@@ -44,7 +44,7 @@ void wait_milliseconds(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
-/// The page hears of an undo from the server, which wait_for_formula() asks.
+/// The server sends an undo to the page; wait_for_formula() asks the server, which has it first.
 void wait_for_text(const std::string& formula) {
   viewer().wait("return document.querySelector('[data-code=Distance]').editor.state.doc.toString() === '" +
                 formula + "'");
