@@ -57,11 +57,12 @@ std::string size_text(std::uintmax_t bytes) {
 
 /// Reads up to most + 1 bytes; returns false on a read error.
 bool read_all(int descriptor, std::uintmax_t expected, std::uintmax_t most, std::string& bytes) {
-  constexpr std::size_t least_step = 1 << 16;
+  constexpr std::size_t step = 1 << 20;  // stays in the cache between its zeroing and its reading
   std::size_t size = 0;
-  bytes.resize(expected + 1);
+  bytes.reserve(expected + 1);
   while (size <= most) {
-    if (size == bytes.size()) bytes.resize(size + std::max(least_step, size / 2));
+    if (size == bytes.size())
+      bytes.resize(size + (size < expected ? std::min(step, expected + 1 - size) : step));
     const ssize_t count = ::read(descriptor, bytes.data() + size, bytes.size() - size);
     if (count == 0) break;
     if (count < 0 && errno != EINTR) return false;

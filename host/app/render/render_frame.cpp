@@ -148,7 +148,7 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
   return scene;
 }
 
-FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
+FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup,
                     const Stopwatch& clock, TimeLedger& times) {
   setup.stop.asks();
   print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
@@ -190,13 +190,18 @@ FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, cons
   warn_of_losses(*scene.description, result);
   if (const std::string& left = result.checkpoint_left; !left.empty())
     print_warnings({{fmt::format("{}; the frame began anew", left.substr(0, left.find("; remove")))}});
+  using nlohmann::json;
+  json stats;
+  if (!command.stats.empty()) stats = stats_json(command, *scene.description, *scene.flat, result, times);
+  const ImageSettings image = scene.description->image;
+  const auto samples = static_cast<u32>(scene.description->render.samples);
+  scene = {}, options = {};  // which hold its tables
   times.total = clock.seconds();
   if (!command.stats.empty()) {
-    using nlohmann::json;
-    const json stats = stats_json(command, *scene.description, *scene.flat, result, times);
+    stats["seconds"] = seconds_json(times);
     write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   }
-  tell_result(command, *scene.description, result, times);
+  tell_result(command, image, samples, result, times);
   return {conclude(command, result, told), result.complete};
 }
 

@@ -68,8 +68,9 @@ struct FrameEnd {
   bool complete = true;
 };
 
-/// `clock` began with the frame.
-FrameEnd render_one(const RenderCommand& command, const LoadedScene& scene, const Setup& setup,
+/// `clock` began with the frame. The scene is let go before the frame's time ends: freeing a large one takes
+/// its time, too.
+FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup,
                     const Stopwatch& clock, TimeLedger& times);
 
 }  // namespace sundog

@@ -169,18 +169,18 @@ void warn_of_losses(const SceneDescription& scene, const RenderResult& result) {
   for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
 }
 
-void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
-                 const TimeLedger& times) {
+void tell_result(const RenderCommand& command, const ImageSettings& image, u32 samples,
+                 const RenderResult& result, const TimeLedger& times) {
   if (command.quiet) return;
   const double rays = static_cast<double>(ray_count(result.counts));
   const double seconds = times.render.render + times.render.readback;
   fmt::print("{}: {}x{}, {:.4g} Mrays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all\n", command.out,
              result.film.width, result.film.height, rays / 1e6, seconds,
              seconds > 0 ? rays / 1e6 / seconds : 0, times.total);
-  tell_samples(command, result, static_cast<u32>(scene.render.samples));
+  tell_samples(command, result, samples);
   if (!command.verbose) return;
   const double pixels = static_cast<double>(result.film.done.size());
-  const std::uint64_t each = bytes_a_pixel(frame_output(command, scene.image, !result.taken.empty()));
+  const std::uint64_t each = bytes_a_pixel(frame_output(command, image, !result.taken.empty()));
   fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
              "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }

@@ -31,9 +31,9 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint);
 /// Warnings of what was lost, on stderr.
 void warn_of_losses(const SceneDescription& scene, const RenderResult& result);
 
-/// The frame's figures, on stdout.
-void tell_result(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result,
-                 const TimeLedger& times);
+/// The frame's figures, on stdout; `samples`: a pixel's, as the scene asks for them.
+void tell_result(const RenderCommand& command, const ImageSettings& image, u32 samples,
+                 const RenderResult& result, const TimeLedger& times);
 
 /// The exit status of a frame whose finished part has been saved. An interrupt is reported, if it was not
 /// yet `told`. Throws the failure of a frame for which every device failed.

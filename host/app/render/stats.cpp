@@ -128,12 +128,6 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-json seconds_json(const TimeLedger& times) {
-  json seconds;
-  for (const auto& [step, value] : entries(times)) seconds[step] = value;
-  return seconds;
-}
-
 json energy_json(const TimeLedger& times) {
   const bool known = times.joules >= 0;
   return {{"joules", known ? json(times.joules) : json()},
@@ -156,10 +150,15 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"efficiency", result.efficiency},
           {"rays", rays_json(result.counts)},
           {"counters", counters_json(result.counts)},
-          {"seconds", seconds_json(times)},
           {"kernels_cached", times.render.cached},
           {"energy", energy_json(times)},
           {"peak_memory", peak_memory()}};
+}
+
+json seconds_json(const TimeLedger& times) {
+  json seconds;
+  for (const auto& [step, value] : entries(times)) seconds[step] = value;
+  return seconds;
 }
 
 std::uint64_t ray_count(const RayCounts& counts) {

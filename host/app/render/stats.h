@@ -22,9 +22,12 @@ struct TimeLedger {
   }
 };
 
-/// The statistics file, "schema": 1 (docs/command-line.md describes it).
+/// The statistics file, "schema": 1 (docs/command-line.md describes it), without its "seconds".
 nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& scene,
                           const CompiledScene& flat, const RenderResult& result, const TimeLedger& times);
+
+/// The file's "seconds".
+nlohmann::json seconds_json(const TimeLedger& times);
 
 /// Rays of all kinds: primary, reflection, refraction and shadow.
 std::uint64_t ray_count(const RayCounts& counts);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -45,10 +46,14 @@ void in_parallel(std::size_t count, const Body& body) {
   });
 }
 
+/// Large arrays are first touched by the threads that fill them: zeroing one takes longer than its use.
+template <class T>
+using Filled = std::unique_ptr<T[]>;
+
 /// Unit length, or 0 for a degenerate face.
-std::vector<glm::vec3> face_normals(const Mesh& mesh) {
-  std::vector<glm::vec3> normals(mesh.triangles.size());
-  in_parallel(normals.size(), [&](std::size_t i) {
+Filled<glm::vec3> face_normals(const Mesh& mesh) {
+  auto normals = std::make_unique_for_overwrite<glm::vec3[]>(mesh.triangles.size());
+  in_parallel(mesh.triangles.size(), [&](std::size_t i) {
     const glm::uvec3 t = mesh.triangles[i];
     const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
     if (!normalize(glm::cross(b - a, c - a), normals[i])) normals[i] = glm::vec3(0);
@@ -58,11 +63,12 @@ std::vector<glm::vec3> face_normals(const Mesh& mesh) {
 
 /// The corners that need a normal, grouped by point, in order: corners[first[p] .. first[p + 1]).
 struct CornersByPoint {
-  std::vector<uint32_t> first, corners;
+  std::vector<uint32_t> first;
+  Filled<uint32_t> corners;
 
   std::size_t points() const { return first.size() - 1; }
   std::span<const uint32_t> around(std::size_t point) const {
-    return std::span(corners).subspan(first[point], first[point + 1] - first[point]);
+    return {corners.get() + first[point], first[point + 1] - first[point]};
   }
 };
 
@@ -72,7 +78,7 @@ struct Surroundings {
   const std::vector<uint32_t>& points;  // of vertices; empty: each vertex is a point
   const std::vector<uint32_t>& groups;  // of faces; empty: the crease decides
   double cosine;                        // of the crease angle
-  std::vector<glm::vec3> face_normals;
+  Filled<glm::vec3> face_normals;
 
   uint32_t point(uint32_t vertex) const { return points.empty() ? vertex : points[vertex]; }
   uint32_t neighbour(uint32_t corner, uint32_t step) const {
@@ -256,7 +262,7 @@ CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
         c, [&](uint32_t point) { std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed); });
   });
   std::exclusive_scan(first.begin(), first.end(), first.begin(), 0u);
-  by_point.corners.resize(first.back());
+  by_point.corners = std::make_unique_for_overwrite<uint32_t[]>(first.back());
   // Each start advances to its end, which is the next start.
   in_parallel(corner_count, [&](std::size_t c) {
     of_wanting(c, [&](uint32_t point) {
@@ -267,7 +273,7 @@ CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
   std::shift_right(first.begin(), first.end(), 1);
   first[0] = 0;
   in_parallel(by_point.points(), [&](std::size_t p) {
-    std::sort(by_point.corners.begin() + first[p], by_point.corners.begin() + first[p + 1]);
+    std::sort(by_point.corners.get() + first[p], by_point.corners.get() + first[p + 1]);
   });
   return by_point;
 }
@@ -308,8 +314,7 @@ void append_copies(Mesh& mesh, const std::vector<Block>& blocks) {
 
 /// Stores a block's vertices, normals and corners; copies start at `next_copy`.
 void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, const Block& block,
-                 const CornersByPoint& around, const std::vector<uint32_t>& vertex_of,
-                 std::size_t next_copy) {
+                 const CornersByPoint& around, const Filled<uint32_t>& vertex_of, std::size_t next_copy) {
   std::vector<uint32_t> place;
   place.reserve(block.vertices.size());
   for (const FanVertex& v : block.vertices) {
@@ -324,7 +329,8 @@ void place_block(std::span<glm::vec3> normals, std::span<glm::uvec3> triangles, 
 
 void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degrees,
                   const std::vector<uint32_t>& points, const std::vector<uint32_t>& groups) {
-  std::vector<uint32_t> vertex_of(around.corners.size());  // for each corner, its vertex in the block
+  // For each corner, its vertex in the block.
+  const auto vertex_of = std::make_unique_for_overwrite<uint32_t[]>(around.first.back());
   std::vector<Block> blocks = make_blocks(around.points());
   {
     const Surroundings shared{mesh, points, groups, std::cos(crease_degrees * std::numbers::pi / 180),
@@ -333,7 +339,7 @@ void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degree
       Block& block = blocks[b];
       PointFans fans(shared);
       for (std::size_t p = block.first; p < block.last; ++p)
-        fans.add(around.around(p), block.vertices, vertex_of.data() + around.first[p]);
+        fans.add(around.around(p), block.vertices, vertex_of.get() + around.first[p]);
       block.copies = static_cast<std::size_t>(std::ranges::count(block.vertices, true, &FanVertex::copied));
     });
   }
@@ -354,10 +360,12 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
                       std::vector<std::uint32_t> point_of_vertex, std::vector<std::uint32_t> groups) {
   if (mesh.triangles.size() > most_triangles) throw std::length_error("more than 2^30 triangles");
   if (has_normal.empty()) has_normal.assign(mesh.positions.size(), !mesh.normals.empty());
-  mesh.normals.resize(mesh.positions.size(), glm::vec3(0));
+  std::vector<glm::vec3>& normals = mesh.normals.values();
+  normals.resize(mesh.positions.size());
   bool any = false, all = true;
   for (std::size_t i = 0; i < has_normal.size(); ++i) {
-    has_normal[i] = has_normal[i] && normalize(mesh.normals[i], mesh.normals[i]);
+    has_normal[i] = has_normal[i] && normalize(normals[i], normals[i]);
+    if (!has_normal[i]) normals[i] = any_direction;  // for vertices without a triangle
     any = any || has_normal[i];
     all = all && has_normal[i];
   }
@@ -366,8 +374,6 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
     mesh.normals.clear();
     return;
   }
-  for (std::size_t i = 0; i < has_normal.size(); ++i)
-    if (!has_normal[i]) mesh.normals[i] = any_direction;  // for vertices without a triangle
   give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex, groups);
 }
 
