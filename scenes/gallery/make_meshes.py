@@ -135,9 +135,8 @@ def snow(name, n=180, size=40.0):
     write_ply(name, V.reshape(-1, 3), N.reshape(-1, 3), F)
 
 
-def spruce(name, seed=1, layers=11, spikes=13):
-    """A snowy spruce of unit height: rings of drooping spikes."""
-    rnd = np.random.default_rng(seed)
+def spruce_parts(rnd, layers, spikes):
+    """Points, normals and triangles of a snowy spruce of unit height: rings of drooping spikes."""
     V, F = [], []
     for i in range(layers):
         t = i / layers; y = 0.10 + 0.86 * t; R = 0.235 * (1 - t) ** 0.9 + 0.012
@@ -150,8 +149,28 @@ def spruce(name, seed=1, layers=11, spikes=13):
     V, F = np.array(V), np.array(F)
     g = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]); N = np.zeros_like(V)
     for j in range(3): np.add.at(N, F[:, j], g)
-    N /= np.linalg.norm(N, axis=1)[:, None]
-    write_ply(name, V, N, F)
+    return V, N / np.linalg.norm(N, axis=1)[:, None], F
+
+
+def spruce(name):
+    write_ply(name, *spruce_parts(np.random.default_rng(1), 11, 13))
+
+
+def shore(name, seed=3, count=150):
+    """A wood of spruces behind a frozen lake: an arc around the origin, thinner and nearer at its ends."""
+    rnd = np.random.default_rng(seed); V, N, F, first = [], [], [], 0
+    for i in range(count):
+        turn = np.radians(rnd.uniform(-62, 62)); far = rnd.uniform(74, 120) - 34 * (abs(turn) / np.radians(62)) ** 2
+        tall = rnd.uniform(4.5, 11) * (1 - 0.25 * np.exp(-(turn / 0.16) ** 2))
+        v, n, f = spruce_at(rnd, tall, (far * np.sin(turn), -0.3, -far * np.cos(turn)))
+        V.append(v); N.append(n); F.append(f + first); first += len(v)
+    write_ply(name, np.vstack(V), np.vstack(N), np.vstack(F))
+
+
+def spruce_at(rnd, tall, at):
+    v, n, f = spruce_parts(rnd, 13, 11); turn = rnd.uniform(0, 2 * np.pi); c, s = np.cos(turn), np.sin(turn)
+    m = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    return (v * (tall * np.array([0.9, 1, 0.9]))) @ m.T + at, n @ m.T, f
 
 
 def write_plain(name, V, F):
@@ -226,6 +245,7 @@ def build():
     shutil.copy(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../spectra/diamond.obj"), OUT)
     snow("snow_field.ply")
     spruce("spruce.ply")
+    shore("shore.ply")
     dusk("dusk.hdr")
     tumbler()
     # wine glass
