@@ -48,7 +48,7 @@ All commands: {}.
 struct TypedRender {
   RenderCommand command;
   std::string size, samples, seed, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
-      write_every, work_group = "auto", split = "dynamic", part, tile, frames, step;
+      write_every, work_group = "auto", split = "dynamic", part, region, tile, frames, step;
   bool subsample = false, caustics = false;
 };
 
@@ -133,6 +133,9 @@ RenderCommand checked(const TypedRender& typed) {
     throw UsageError(fmt::format("{} is for an animation: give its --frames as well",
                                  command.skip_existing ? "--skip-existing" : "--step"));
   if (!typed.part.empty()) command.part = parse_part(typed.part);
+  if (!typed.region.empty()) command.region = parse_region(typed.region);
+  if (command.part && command.region)
+    throw UsageError("--crop makes a part of the picture as a picture: leave --tiles out");
   if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
   if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
   if (!typed.write_every.empty()) command.write_every = parse_amount("--write-every", typed.write_every);
@@ -160,6 +163,8 @@ void add_render(Arguments& root, Command& chosen) {
   app->add_flag("--isolate", command.isolate,
                 "a worker process for each device: a driver that crashes or hangs takes nothing else along");
   value(app, "--size", "WxH", typed->size, "width and height in pixels");
+  value(app, "--crop", "X,Y,WxH", typed->region,
+        "only this rectangle of the picture: X and Y are its upper left corner, from that of the picture");
   value(app, "--samples", "N", typed->samples, "samples a pixel");
   value(app, "--max-depth", "N", typed->max_depth,
         "greatest depth of the ray tree; 1: the camera's rays alone. Without it paths end by chance");

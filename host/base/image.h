@@ -26,6 +26,11 @@ struct Image {
   }
 };
 
+/// Where an image lies in a larger picture: its upper left corner, and that picture's size.
+struct Region {
+  int x = 0, y = 0, whole_width = 0, whole_height = 0;
+};
+
 /// Named extra images of a render (`depth`, `normal`, ...), all of the beauty image's size.
 using AovImages = std::map<std::string, Image>;
 

@@ -286,7 +286,10 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   const bool acescg = options.space == ExrSpace::acescg;
   const Primaries& space = acescg ? ap1_primaries : srgb_primaries;
   const auto matrix = acescg ? std::optional(conversion(srgb_primaries, space)) : std::nullopt;
-  Imf::Header header(image.width, image.height);
+  const Region region = options.region.value_or(Region{0, 0, image.width, image.height});
+  const Imath::V2i corner(region.x, region.y);
+  Imf::Header header(Imath::Box2i({0, 0}, {region.whole_width - 1, region.whole_height - 1}),
+                     Imath::Box2i(corner, corner + Imath::V2i(image.width - 1, image.height - 1)));
   header.compression() = Imf::ZIP_COMPRESSION;
   std::size_t text_bytes = 0;
   Imf::addChromaticities(header, chromaticities(space));
@@ -308,6 +311,8 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
     const bool colors = aov == "albedo" || aov == "denoise_albedo" || is_light_part(aov);
     rows.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt).add_to(header, buffer, suffixes);
   }
+  for (auto slice = buffer.begin(); slice != buffer.end(); ++slice)
+    slice.slice().base -= static_cast<std::ptrdiff_t>(slice.slice().xStride) * region.x;
   std::string bytes;
   bytes.reserve(greatest_size(header) + text_bytes);  // a growing string would need twice the memory
   MemoryOut out(bytes);

@@ -25,11 +25,12 @@ enum class ExrSpace { srgb, acescg };
 struct FileOptions {
   ExrColor color = ExrColor::half;
   ExrSpace space = ExrSpace::srgb;
-  int bits = 8;                   // of a PNG's channels: 8 or 16
-  int dpi = 72;                   // pixels an inch, for printers: in PNG, JPEG and EXR
-  bool icc = false;               // an ICC profile, in PNG and JPEG
-  ImageTexts texts = {};          // in PNG and EXR
-  std::optional<Shot> shot = {};  // in EXR
+  int bits = 8;                       // of a PNG's channels: 8 or 16
+  int dpi = 72;                       // pixels an inch, for printers: in PNG, JPEG and EXR
+  bool icc = false;                   // an ICC profile, in PNG and JPEG
+  ImageTexts texts = {};              // in PNG and EXR
+  std::optional<Shot> shot = {};      // in EXR
+  std::optional<Region> region = {};  // that the image shows of a larger picture, in EXR
 };
 
 /// Writes `image` (3 or 4 channels, linear) in the format of the extension; the file appears whole or not at

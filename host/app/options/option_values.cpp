@@ -94,6 +94,20 @@ PartOfFrame parse_part(const std::string& text) {
                                text, most_parts));
 }
 
+Tile parse_region(const std::string& text) {
+  const std::string_view all = text;
+  const std::size_t first = text.find(','), second = text.find(',', first + 1);
+  if (first != std::string::npos && second != std::string::npos) {
+    const std::optional<int> x = number(all.substr(0, first), 0, most_edge),
+                             y = number(all.substr(first + 1, second - first - 1), 0, most_edge);
+    const auto size = number_pair(text.substr(second + 1));
+    if (x && y && size) return {*x, *y, size->first, size->second};
+  }
+  throw UsageError(fmt::format(
+      "--crop {}: wanted X,Y,WxH in pixels, the upper left corner and the size, such as 100,40,320x240",
+      text));
+}
+
 Split parse_split(const std::string& text) {
   using enum Split::Kind;
   if (text == "dynamic") return {dynamic, {}};

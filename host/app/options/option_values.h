@@ -20,6 +20,9 @@ WorkGroup parse_work_group(const std::string& text, const char* option = "--work
 /// "i/N", i from 1 to N.
 PartOfFrame parse_part(const std::string& text);
 
+/// "X,Y,WxH": a rectangle of pixels, its upper left corner and its size.
+Tile parse_region(const std::string& text);
+
 /// "dynamic", "static", or shares such as "3,1".
 Split parse_split(const std::string& text);
 

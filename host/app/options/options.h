@@ -39,6 +39,7 @@ struct RenderCommand : PictureOptions {
   WorkGroup work_group;
   Split split;
   std::optional<PartOfFrame> part;  // OUT is a part of the frame, not an image
+  std::optional<Tile> region;       // of the picture that OUT shows; none: all
   int tile = 0;
   double time_limit = 0, noise = 0, write_every = 0;  // 0: none
   std::vector<int> frames;                            // of an animation; the files are numbered

@@ -23,6 +23,7 @@
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/hash.h"
+#include "render/plan/frame_tiles.h"
 #include "render/plan/passes.h"
 #include "scene/load.h"
 
@@ -43,6 +44,7 @@ RenderOptions render_options(const RenderCommand& command, const ImageSettings& 
   options.work_group = command.work_group;
   options.split = command.split;
   if (command.part) options.part = *command.part;
+  options.region = command.region;
   options.tile = command.tile;
   options.aovs = made_aovs(command);
   options.channels = command.part ? 0 : image_channels(format_name(command), image.transparent);
@@ -115,6 +117,13 @@ std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* jo
                       command.verbose && !command.quiet);
 }
 
+std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene) {
+  const int width = static_cast<int>(scene.info.width), height = static_cast<int>(scene.info.height);
+  check_region(command.region, width, height);
+  if (command.region) return {command.region->width, command.region->height};
+  return {width, height};
+}
+
 std::vector<std::string> output_files(const RenderCommand& command) {
   std::vector<std::string> files = {command.out, command.stats, command.resume};
   if (command.verbose && !is_standard_stream(command.out)) files.push_back(samples_file(command));
@@ -140,8 +149,7 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
     return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)
                                                                : compile(*scene.description));
   });
-  const int width = static_cast<int>(scene.flat->info.width),
-            height = static_cast<int>(scene.flat->info.height);
+  const auto [width, height] = picture_size(command, *scene.flat);
   if (!command.part) check_image_size(format_name(command), width, height);
   check_frame_memory(width, height,
                      frame_output(command, scene.description->image, in_passes(scene.flat->sampling)));

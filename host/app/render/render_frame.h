@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/job/job.h"
@@ -46,6 +47,10 @@ struct LoadedScene {
 };
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);
+
+/// Of the file that the command writes. Throws UsageError for a region that is not within the scene's
+/// picture.
+std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene);
 
 /// The files that one frame may write.
 std::vector<std::string> output_files(const RenderCommand& command);

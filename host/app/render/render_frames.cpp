@@ -39,6 +39,8 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   if (command.icc) text += " icc";
   text += command.far;
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);
+  if (const auto& at = command.region)
+    text += fmt::format(" {},{},{}x{}", at->x, at->y, at->width, at->height);
   for (const std::string& name : command.aovs) text += " " + name;
   for (const Object& object : scene.description->objects) text += "\n" + object.name;  // of Cryptomatte
   for (const MaterialDescription& material : scene.description->materials) text += "\n" + material.name;
@@ -121,9 +123,8 @@ Outcome FrameRun::take(int frame) {
   if (!lock) return Outcome::elsewhere;
   if (command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume)) return Outcome::kept;
   const LoadedScene scene = load(one, frame, times);
-  const FramePicture picture{one.out, log_.keeps() ? frame_key(one, scene) : "",
-                             static_cast<int>(scene.flat->info.width),
-                             static_cast<int>(scene.flat->info.height)};
+  const auto [width, height] = picture_size(one, *scene.flat);
+  const FramePicture picture{one.out, log_.keeps() ? frame_key(one, scene) : "", width, height};
   if (log_.done(picture)) return Outcome::kept;
   log_.begin(frame, picture);
   const FrameEnd end = render_one(one, scene, setup_, clock, times);

@@ -131,6 +131,8 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   FileOptions file = file_options(command);
   file.texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
   file.shot = shot_of(scene, command.frame);
+  if (command.region)
+    file.region = {command.region->x, command.region->y, scene.image.width, scene.image.height};
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
   Picture picture{image, aovs, result.film, result.key, checkpoint, command.format, file};

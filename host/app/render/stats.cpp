@@ -20,8 +20,8 @@ using nlohmann::json;
 
 json image_json(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result) {
   return {{"file", command.out},
-          {"width", scene.image.width},
-          {"height", scene.image.height},
+          {"width", result.film.width},
+          {"height", result.film.height},
           {"samples", scene.render.samples},
           {"max_depth", scene.render.max_depth},
           {"integrator", scene.render.integrator},

@@ -64,6 +64,17 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
   return fresh;
 }
 
+Film Film::cut(const Tile& area) const {
+  Film part;
+  part.width = area.width, part.height = area.height, part.layout = layout;
+  part.sums = cut_pixels(sums, width, area);
+  part.weights = cut_pixels(weights, width, area);
+  part.aovs = cut_pixels(aovs, width, area, layout.vectors());
+  part.rays = cut_pixels(rays, width, area);
+  part.done = cut_pixels(done, width, area);
+  return part;
+}
+
 namespace {
 
 enum class AovKind { surface, matte, light };

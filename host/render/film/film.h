@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "render/values/tile.h"
 #include "shared/launch.h"
 #include "shared/light_parts.h"
 #include "shared/types.h"
@@ -16,12 +17,6 @@
 namespace sundog {
 
 class Faults;
-
-/// A rectangle of pixels.
-struct Tile {
-  int x = 0, y = 0, width = 0, height = 0;
-  friend bool operator==(const Tile&, const Tile&) = default;
-};
 
 /// float4 a pixel that hold AOVs of first surfaces: what passes ask for, these with a denoiser's features,
 /// and all that there are (kernels/entry/aov.cl).
@@ -56,6 +51,19 @@ inline float seen_light(const Color& color) {
   return std::max(color.r + color.g + color.b, darkest);
 }
 
+/// The values of the pixels of `area`, of a picture that is `width` wide; `each` a pixel.
+template <class T>
+std::vector<T> cut_pixels(const std::vector<T>& values, int width, const Tile& area, std::size_t each = 1) {
+  std::vector<T> cut;
+  if (values.empty()) return cut;
+  cut.reserve(static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height) * each);
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    const auto row = values.begin() + (std::ptrdiff_t{y} * width + area.x) * std::ptrdiff_t(each);
+    cut.insert(cut.end(), row, row + area.width * std::ptrdiff_t(each));
+  }
+  return cut;
+}
+
 /// width * height pixels, row 0 at the top. `aovs` holds the layout's float4 a pixel when the frame has AOVs,
 /// else nothing.
 struct Film {
@@ -76,6 +84,8 @@ struct Film {
   /// layout's vectors times; they and the rays may be empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
                     std::span<const float4> tile_aovs, std::span<const u32> tile_rays = {});
+  /// A part of the film, which `area` lies in.
+  Film cut(const Tile& area) const;
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
   Image develop(int channels = 4) const;
   /// The named AOV (one of aov_names(), but those that develop_aovs() makes of more than the film); pixels

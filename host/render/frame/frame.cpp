@@ -108,7 +108,7 @@ void show_picture(Frame& frame) {
     if (!has_pixels(frame)) return;
     film = film_so_far(frame);
   }
-  frame.options.on_picture(film.film);
+  frame.options.on_picture(frame.options.region ? film.film.cut(frame.inner) : film.film);
   frame.since_picture = Stopwatch();
 }
 
@@ -205,11 +205,25 @@ RenderTimes open(Frame& frame, std::size_t i) {
   }
 }
 
+/// Has the server render a tile of the frame, which lies somewhere in the picture.
+TileResult render_in_picture(const Frame& frame, TileServer& server, TileRequest request,
+                             const StopFlags& flags) {
+  const Tile asked = request.tile;
+  if (request.pixels.empty()) request.tile.x += frame.area.x, request.tile.y += frame.area.y;
+  const u32 corner = static_cast<u32>(frame.area.x) | static_cast<u32>(frame.area.y) << 16;
+  for (u32& pixel : request.pixels)
+    if (pixel != NO_PIXEL) pixel += corner;
+  TileResult made = server.render(request, flags);
+  made.tile.x = asked.x, made.tile.y = asked.y;
+  return made;
+}
+
 /// Makes one tile; throws what the server throws.
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
   const Stopwatch busy;
-  const TileResult made = frame.servers[i].server->render(request_of(frame, job.tile), flags);
+  const TileResult made =
+      render_in_picture(frame, *frame.servers[i].server, request_of(frame, job.tile), flags);
   const bool whole = made.tile == job.tile;
   const bool first = whole ? frame.queue.finished(i, job, busy.seconds()) : frame.queue.given_up(i, job);
   if (first) keep_tile(frame, i, made);

@@ -47,6 +47,7 @@ struct Frame : std::enable_shared_from_this<Frame> {
   };
 
   const RenderOptions options;
+  Tile area, inner;  // of the picture, that the film holds; of the film, that are the region
   std::vector<Server> servers;
   std::mutex mutex;  // for everything below, and the servers' reports and phases
   std::condition_variable changed;

@@ -37,6 +37,12 @@ void check_light(const std::vector<std::string>& names, const CompiledScene& sce
       throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
 }
 
+/// Of a checkpoint: the scene and the region.
+std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options) {
+  const std::uint64_t key = hash_scene(scene);
+  return options.region ? hash_bytes(&*options.region, sizeof *options.region, key) : key;
+}
+
 void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
@@ -53,11 +59,15 @@ std::vector<double> estimates(const std::vector<ServerPlan>& devices) {
   return result;
 }
 
+Tile area_of(const CompiledScene& scene, const RenderOptions& options) {
+  return frame_area(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
+}
+
 /// The passes of a frame that has some, with what a checkpoint has of them; the frame's film is the pass's.
 FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devices,
                          const RenderOptions& options, std::uint64_t key, Film& film) {
   FramePasses passes;
-  const int width = static_cast<int>(scene->info.width), height = static_cast<int>(scene->info.height);
+  const auto [x, y, width, height] = area_of(*scene, options);
   passes.plan = {scene->sampling, scene->info.samples, options.noise, show_surfaces(options.aovs),
                  aov_layout(options.aovs).sums() > 0};
   const bool with_earlier = options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
@@ -80,8 +90,8 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
 
 /// A film that holds what a checkpoint has of the frame.
 Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
-  Film film =
-      Film::with_aovs(static_cast<int>(scene.info.width), static_cast<int>(scene.info.height), options.aovs);
+  const Tile area = area_of(scene, options);
+  Film film = Film::with_aovs(area.width, area.height, options.aovs);
   if (!options.resume.empty() && is_there(options.resume)) read_checkpoint(options.resume, film, key);
   return film;
 }
@@ -115,6 +125,9 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
     server.report.info = device.info;
     frame->servers.push_back(std::move(server));
   }
+  frame->area = area_of(*scene, options);
+  frame->inner = options.region.value_or(frame->area);
+  frame->inner.x -= frame->area.x, frame->inner.y -= frame->area.y;
   frame->pixels_done = frame->pixels_kept = done;
   frame->key = key;
   if (passes) {
@@ -180,6 +193,18 @@ GrowingFilm shown_film(Frame& frame, const RenderResult& result) {
   return result.complete ? std::move(frame.passes->film) : film_so_far(frame);
 }
 
+/// Leaves the region alone of what the frame has made.
+void cut_to_region(const Frame& frame, RenderResult& result) {
+  if (!frame.options.region) return;
+  const int width = result.film.width;
+  result.film = result.film.cut(frame.inner);
+  result.taken = cut_pixels(result.taken, width, frame.inner);
+  for (auto& [name, image] : result.aovs) {
+    image.data = cut_pixels(image.data, width, frame.inner, static_cast<std::size_t>(image.channels));
+    image.width = frame.inner.width, image.height = frame.inner.height;
+  }
+}
+
 /// Gathers the film, complete or not.
 RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   const std::lock_guard lock(frame.mutex);
@@ -200,6 +225,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   } else {
     result.film = std::move(frame.film);
   }
+  cut_to_region(frame, result);
   result.efficiency = frame_efficiency(frame);
   result.counts = frame.counts;
   if (frame.options.channels > 0) {
@@ -229,7 +255,10 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
   check_light(options.aovs, *scene);
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
-  const std::uint64_t key = checkpoint_path(options).empty() ? 0 : hash_scene(*scene);
+  check_region(options.region, static_cast<int>(scene->info.width), static_cast<int>(scene->info.height));
+  if (options.region && options.part.count > 1)
+    throw UsageError("a region is made whole: leave the part out");
+  const std::uint64_t key = checkpoint_path(options).empty() ? 0 : frame_key(*scene, options);
   std::string left;
   const std::shared_ptr<Frame> frame = begin_or_renew(scene, devices, options, key, left);
   run(frame);

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "device/devices.h"
+#include "render/values/tile.h"
 #include "render/values/tuning.h"
 
 namespace sundog {
@@ -43,6 +45,7 @@ struct RenderOptions {
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
   PartOfFrame part;               // what to render of the frame
+  std::optional<Tile> region;     // of the picture, which is all of the frame then; none: the whole
   std::vector<std::string> aovs;  // of aov_names()
   int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
   std::filesystem::path resume;      // a checkpoint: read when it exists

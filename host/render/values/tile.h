@@ -1,0 +1,12 @@
+// A rectangle of pixels.
+#pragma once
+
+namespace sundog {
+
+/// Row 0 is at the top.
+struct Tile {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const Tile&, const Tile&) = default;
+};
+
+}  // namespace sundog
