@@ -130,12 +130,14 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   film->tone_map = description->image.tone_map;
   film->transparent = description->image.transparent;
   film->shot = sundog::shot_of(*description);
+  film->shot->next = sundog::next_shot(*description, nullptr);
+  sundog::find_motion(film->result.aovs, *film->shot);
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
   std::vector<std::string> objects, materials;
   for (const auto& object : description->objects) objects.push_back(object.name);
   for (const auto& material : description->materials) materials.push_back(material.name);
-  film->texts = sundog::name_cryptomattes(film->result.aovs, objects, materials);
+  film->texts = sundog::name_cryptomattes(film->result.aovs, {objects, materials});
   for (auto& [name, image] : film->result.aovs) film->aovs.emplace(name, share(std::move(image)));
   return film;
 }

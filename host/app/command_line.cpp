@@ -120,6 +120,22 @@ void check_format(PictureOptions& picture) {
   if (picture.format.empty()) picture.format = "png";
 }
 
+constexpr const char* light_parts = "light_parts";  // stands for all parts of light
+
+/// The AOVs, each once.
+std::vector<std::string> with_parts_named(const std::vector<std::string>& typed) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::count(all, name) == 0) all.push_back(name);
+  };
+  for (const std::string& name : typed) {
+    if (name != light_parts) add(name);
+    for (const std::string& part : aov_names())
+      if (name == light_parts && is_light(part)) add(part);
+  }
+  return all;
+}
+
 RenderCommand checked(const TypedRender& typed) {
   RenderCommand command = typed.command;
   check_format(command);
@@ -141,6 +157,7 @@ RenderCommand checked(const TypedRender& typed) {
   if (!typed.write_every.empty()) command.write_every = parse_amount("--write-every", typed.write_every);
   if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
   if (command.devices.empty()) command.devices = devices_of_environment();
+  command.aovs = with_parts_named(command.aovs);
   for (const std::string& name : command.aovs)
     if (std::ranges::count(aov_names(), name) == 0)
       throw UsageError(
@@ -203,7 +220,8 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--stats", "FILE", command.stats,
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,
-         fmt::format("an extra image in the .exr: {}", fmt::join(aov_names(), ", ")));
+         fmt::format("an extra image in the .exr: {}; {}: all ten parts of light",
+                     fmt::join(aov_names(), ", "), light_parts));
   app->add_flag("--transparent", command.transparent,
                 "leave what is behind the scene out of .png and .exr: their alpha says what covers it");
   app->add_flag("--denoise", command.denoise,

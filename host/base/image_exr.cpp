@@ -75,7 +75,7 @@ bool is_light_part(std::string_view aov) {
 /// Names of a layer's channels.
 Suffixes channel_suffixes(const std::string& aov, int channels) {
   if (channels == 1) return {aov == "depth" ? "Z" : "Y"};
-  if (channels == 2) return {"U", "V"};
+  if (channels == 2) return aov == "motion" ? Suffixes{"X", "Y"} : Suffixes{"U", "V"};
   const bool color = aov == "albedo" || aov == "variance" || channels == 4 || is_light_part(aov);
   const Suffixes all = color ? Suffixes{"R", "G", "B", "A"} : Suffixes{"X", "Y", "Z"};
   return {all.begin(), all.begin() + channels};

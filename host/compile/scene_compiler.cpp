@@ -61,6 +61,7 @@ u32 sampler_of(const RenderSettings& settings) {
 
 void set_view(const SceneDescription& scene, CompiledScene& out) {
   set_camera(scene, out.origin, out.info);
+  out.features.clear_glass = scene.image.transparent_glass;
   out.features.lens = scene.camera.lens.radius > 0;
   out.features.camera_motion = scene.camera.moves_to.has_value();
   out.sampling = scene.render.sampling;

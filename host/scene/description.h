@@ -57,8 +57,9 @@ struct Camera {
 struct ImageSettings {
   int width = 640, height = 480;
   dvec3 background_bottom{0, 0, 0}, background_top{0, 0, 0};  // equal: one colour
-  bool transparent = false;  // what is behind the scene is left out of the colours
-  ToneMap tone_map;          // for files of 8 bits a channel; no part of the compiled scene
+  bool transparent = false;        // what is behind the scene is left out of the colours
+  bool transparent_glass = false;  // alpha counts what is behind smooth glass as behind the scene
+  ToneMap tone_map;                // for files of 8 bits a channel; no part of the compiled scene
 };
 
 enum class Tracer { automatic, wide, compact };

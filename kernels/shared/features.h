@@ -14,6 +14,7 @@
   FEATURE(bool, HAS_ABSORPTION, absorption)         /* some medium absorbs */                           \
   FEATURE(bool, HAS_SHADOW_FILTERS, shadow_filters) /* shadow rays pass transmissive objects */         \
   FEATURE(bool, HAS_FRACTIONAL_EXPONENTS, fractional_exponents) /* some highlight has a fractional exponent */ \
+  FEATURE(bool, HAS_CLEAR_GLASS, clear_glass)       /* alpha leaves out what smooth glass lets through */ \
   FEATURE(bool, HAS_DISPERSION, dispersion)         /* paths carry wavelengths: some medium disperses */ \
   FEATURE(bool, HAS_SCATTERING, scattering)         /* paths: some medium scatters */                   \
   FEATURE(bool, HAS_GUIDES, guides)                 /* paths are guided to balls that light comes from */ \

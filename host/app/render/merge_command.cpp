@@ -10,6 +10,8 @@
 #include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "render/film/cryptomatte.h"
+#include "render/film/motion.h"
 #include "render/film/part.h"
 
 namespace sundog {
@@ -28,7 +30,9 @@ int merge_command(const MergeCommand& command) {
   AovImages aovs;
   for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
   end_depth(command, aovs);
+  find_motion(aovs, whole.shot);
   FileOptions file = file_options(command);
+  file.texts = name_cryptomattes(aovs, whole.names);
   file.shot = whole.shot;
   save_image({image, aovs, whole.film, whole.key, {}, command.format, file}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());

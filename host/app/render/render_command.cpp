@@ -47,7 +47,7 @@ void check_extras(const RenderCommand& command) {
                                  command.part ? "a part keeps its infinite depths: give --far to merge"
                                               : "is for the AOV depth: give --aov depth as well"));
   for (const std::string& name : command.aovs)
-    if (command.part && (name.starts_with("crypto_") || name == "samples" || name == "variance"))
+    if (command.part && (name == "samples" || name == "variance"))
       throw UsageError(fmt::format("--aov {}: wants a whole frame: leave --tiles out", name));
   if (command.metadata && !keeps_texts(format_name(command)))
     throw UsageError(fmt::format("{}: --metadata is for .png and .exr files", command.out));

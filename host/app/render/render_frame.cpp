@@ -193,7 +193,8 @@ FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup
 
   times.render = result.times;
   const Stopwatch writing;
-  save_result(command, *scene.description, *scene.flat, result, checkpoint);
+  save_result(command, *scene.description, *scene.flat, frame_shot(command, *scene.description, scene.next),
+              result, checkpoint);
   times.write = writing.seconds();
   warn_of_losses(*scene.description, result);
   if (const std::string& left = result.checkpoint_left; !left.empty())

@@ -11,6 +11,7 @@
 #include "app/process/interrupt.h"
 #include "app/process/progress.h"
 #include "app/render/stats.h"
+#include "base/pixels/shot.h"
 #include "compile/parts/content_key.h"
 #include "compile/scene_compiler.h"
 #include "render/remote/kept_channels.h"
@@ -41,6 +42,7 @@ struct Setup {
 struct LoadedScene {
   std::shared_ptr<const SceneDescription> description;
   std::shared_ptr<const CompiledScene> flat;
+  std::optional<NextShot> next{};  // for the AOV motion
   int times = 1;  // at which the scene is seen while the shutter is open, `flat` at the first
   std::optional<Moment> moment{};             // the first
   std::function<LoadedScene(int)> at_time{};  // the others

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,8 @@
 #include "app/render/frame_log.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "compile/placing/next_shot.h"
+#include "render/film/film.h"
 #include "render/film/hash.h"
 #include "scene/load.h"
 
@@ -23,6 +26,20 @@ namespace sundog {
 namespace {
 
 constexpr auto look_again = std::chrono::milliseconds(200);
+
+/// The numbers of the next frame's shot.
+std::string next_text(const NextShot& next) {
+  std::string text;
+  const auto add = [&](const glm::dmat4& matrix) {
+    for (int i = 0; i < 16; ++i) text += fmt::format(" {}", matrix[i / 4][i % 4]);
+  };
+  add(next.world_to_ndc);
+  for (const auto& [object, matrix] : next.moves) {
+    text += fmt::format(" {}:", object);
+    add(matrix);
+  }
+  return text;
+}
 
 /// All that shapes the frame's file.
 std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
@@ -42,6 +59,7 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   if (const auto& at = command.region)
     text += fmt::format(" {},{},{}x{}", at->x, at->y, at->width, at->height);
   for (const std::string& name : command.aovs) text += " " + name;
+  if (scene.next) text += next_text(*scene.next);
   for (const Object& object : scene.description->objects) text += "\n" + object.name;  // of Cryptomatte
   for (const MaterialDescription& material : scene.description->materials) text += "\n" + material.name;
   return fmt::format("{:016x}", hash_bytes(text.data(), text.size()));
@@ -71,6 +89,7 @@ class FrameRun {
   Outcome take(int frame);
   LoadedScene load(const RenderCommand& one, int frame, TimeLedger& times);
   LoadedScene load_at(const RenderCommand& one, int frame, int time, TimeLedger& times);
+  NextShot next_of(const LoadedScene& scene, int frame);
   void tell_waiting(const std::vector<int>& frames) const;
   void tell_end() const;
 
@@ -122,7 +141,8 @@ Outcome FrameRun::take(int frame) {
   const FrameLock lock = log_.lock(frame);
   if (!lock) return Outcome::elsewhere;
   if (command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume)) return Outcome::kept;
-  const LoadedScene scene = load(one, frame, times);
+  LoadedScene scene = load(one, frame, times);
+  if (std::ranges::count(one.aovs, motion_aov) > 0) scene.next = next_of(scene, frame);
   const auto [width, height] = picture_size(one, *scene.flat);
   const FramePicture picture{one.out, log_.keeps() ? frame_key(one, scene) : "", width, height};
   if (log_.done(picture)) return Outcome::kept;
@@ -163,6 +183,17 @@ LoadedScene FrameRun::load(const RenderCommand& one, int frame, TimeLedger& time
   scene.times = shutter_.steps;
   scene.at_time = [this, one, frame, &times](int time) { return load_at(one, frame, time, times); };
   return scene;
+}
+
+/// The scene a frame later. Where it cannot be read, such as behind the last file of a sequence, nothing
+/// moves.
+NextShot FrameRun::next_of(const LoadedScene& scene, int frame) {
+  try {
+    const auto next = frames_->read((scene.moment ? scene.moment->frame : frame) + 1);
+    return next_shot(*scene.description, next.get());
+  } catch (const SceneError&) {
+    return next_shot(*scene.description, scene.description.get());
+  }
 }
 
 void FrameRun::tell_waiting(const std::vector<int>& frames) const {

@@ -19,8 +19,10 @@
 #include "app/render/metadata.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "compile/placing/next_shot.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/hash.h"
+#include "render/film/motion.h"
 #include "render/film/part.h"
 #include "render/film/sampling_report.h"
 #include "scene/shot.h"
@@ -98,11 +100,18 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
   return names;
 }
 
+std::optional<Region> region_of(const RenderCommand& command, const ImageSettings& image) {
+  if (!command.region) return std::nullopt;
+  return Region{command.region->x, command.region->y, image.width, image.height};
+}
+
 /// Takes the AOVs, without those that only the denoiser wanted; of a part none are developed.
-AovImages take_aovs(const RenderCommand& command, RenderResult& result) {
+AovImages take_aovs(const RenderCommand& command, const Shot& shot, const std::optional<Region>& region,
+                    RenderResult& result) {
   std::erase_if(result.aovs,
                 [&](const auto& aov) { return std::ranges::count(command.aovs, aov.first) == 0; });
   end_depth(command, result.aovs);
+  find_motion(result.aovs, shot, region);
   return std::move(result.aovs);
 }
 
@@ -124,15 +133,22 @@ FrameOutput frame_output(const RenderCommand& command, const ImageSettings& imag
           command.bits};
 }
 
+Shot frame_shot(const RenderCommand& command, const SceneDescription& scene,
+                const std::optional<NextShot>& next) {
+  Shot shot = shot_of(scene, command.frame);
+  if (std::ranges::count(command.aovs, motion_aov) > 0) shot.next = next ? *next : next_shot(scene, nullptr);
+  return shot;
+}
+
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
-                 RenderResult& result, const std::string& checkpoint) {
+                 const Shot& shot, RenderResult& result, const std::string& checkpoint) {
   const Image image = take_image(command, scene.image.tone_map, result);
-  AovImages aovs = take_aovs(command, result);
   FileOptions file = file_options(command);
-  file.texts = name_cryptomattes(aovs, names_of(scene.objects), names_of(scene.materials));
-  file.shot = shot_of(scene, command.frame);
-  if (command.region)
-    file.region = {command.region->x, command.region->y, scene.image.width, scene.image.height};
+  file.region = region_of(command, scene.image);
+  AovImages aovs = take_aovs(command, shot, file.region, result);
+  const MatteNames names{names_of(scene.objects), names_of(scene.materials)};
+  file.texts = name_cryptomattes(aovs, names);
+  file.shot = shot;
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
   Picture picture{image, aovs, result.film, result.key, checkpoint, command.format, file};
@@ -140,10 +156,10 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   if (!command.part && !is_empty(result))
     save_image(picture, command.out);
   else if (command.part && result.complete)
-    save_part(
-        picture,
-        {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs, *file.shot},
-        command.out);
+    save_part(picture,
+              {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs, shot,
+               aov_layout(command.aovs).mattes ? names : MatteNames()},
+              command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
   std::error_code stays;  // the picture is there
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint, stays);

@@ -4,6 +4,7 @@
 
 #include "app/options/options.h"
 #include "app/render/stats.h"
+#include "base/pixels/shot.h"
 #include "compile/compiled_scene.h"
 #include "render/film/frame_memory.h"
 #include "render/render.h"
@@ -16,10 +17,14 @@ std::string samples_file(const RenderCommand& command);
 /// What the command's frame takes memory for.
 FrameOutput frame_output(const RenderCommand& command, const ImageSettings& image, bool passes);
 
+/// The frame's camera, with `next` for motion.
+Shot frame_shot(const RenderCommand& command, const SceneDescription& scene,
+                const std::optional<NextShot>& next);
+
 /// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
 /// Image and AOVs of the result are gone afterwards.
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
-                 RenderResult& result, const std::string& checkpoint);
+                 const Shot& shot, RenderResult& result, const std::string& checkpoint);
 
 /// Writes the picture as far as it is made; what fails is reported when the whole one is written.
 void write_so_far(const RenderCommand& command, const ImageSettings& settings, const Film& film);

@@ -1,9 +1,17 @@
 // Shot: the camera of a picture and its place in a film, as OpenEXR's standard attributes hold them.
 #pragma once
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 
 namespace sundog {
+
+/// The camera of the next frame, and the transforms of world points of objects (by their index) that move
+/// until then.
+struct NextShot {
+  glm::dmat4 world_to_ndc{1};
+  std::map<int, glm::dmat4> moves;
+};
 
 struct Shot {
   /// Of column vectors. Camera space: x to the right, y up, z along the view, left-handed.
@@ -14,7 +22,8 @@ struct Shot {
   std::optional<double> focus;  // in metres; none: everything is sharp
   std::optional<int> frame;     // of a film; with it:
   double frames_per_second = 24;
-  double exposure_seconds = 0;  // while the shutter is open; 0: not at all
+  double exposure_seconds = 0;   // while the shutter is open; 0: not at all
+  std::optional<NextShot> next;  // for the AOV motion
 };
 
 }  // namespace sundog

@@ -88,11 +88,10 @@ std::uint32_t id_bits(std::string_view name) {
   return (hash & 0x807fffffu) | exponent << 23;
 }
 
-ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,
-                             const std::vector<std::string>& materials) {
+ImageTexts name_cryptomattes(AovImages& aovs, const MatteNames& names) {
   ImageTexts texts;
-  split(aovs, "object", objects, texts);
-  split(aovs, "material", materials, texts);
+  split(aovs, "object", names.objects, texts);
+  split(aovs, "material", names.materials, texts);
   return texts;
 }
 

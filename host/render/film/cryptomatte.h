@@ -17,12 +17,16 @@ std::uint32_t hash_name(std::string_view name);
 /// denormal.
 std::uint32_t id_bits(std::string_view name);
 
+/// Names in the order of the indices.
+struct MatteNames {
+  std::vector<std::string> objects, materials;
+};
+
 /// Replaces each of the AOVs crypto_object and crypto_material (Film::develop_aov(): pairs of an index and
 /// the share of the pixel that it covers) by layers of two pairs, crypto_object00, crypto_object01 and so on,
 /// whose ids are those of the names. Returns what an EXR's header says of them: hash,
 /// conversion, and a manifest of all names. What has no name is called "object 3" or "material 3" by its
 /// index.
-ImageTexts name_cryptomattes(AovImages& aovs, const std::vector<std::string>& objects,
-                             const std::vector<std::string>& materials);
+ImageTexts name_cryptomattes(AovImages& aovs, const MatteNames& names);
 
 }  // namespace sundog

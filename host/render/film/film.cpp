@@ -93,6 +93,7 @@ static_assert(all_parts == LIGHT_PART_COUNT && 3 * all_parts <= 4 * LIGHT_VECTOR
 #define PLACE_OF_PART(name) {#name, 3 * part_##name, 3, AovKind::light},
 
 constexpr AovPlace places[] = {LIGHT_PARTS(PLACE_OF_PART){"depth", 3, 1},
+                               {motion_aov, 3, 5},  // find_motion() makes it of depth and object
                                {"normal", 0, 3},
                                {"position", 4, 3},
                                {"albedo", 8, 3},

@@ -116,6 +116,9 @@ AovLayout aov_layout(const std::vector<std::string>& names);
 /// Those that a denoiser takes: albedo and normal as the pixels' samples see them.
 constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "denoise_normal";
 
+/// The pixels' ways to the next frame (render/film/motion.h).
+constexpr const char* motion_aov = "motion";
+
 /// Whether they are among these AOVs.
 bool shows_features(const std::vector<std::string>& names);
 

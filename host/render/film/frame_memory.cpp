@@ -24,6 +24,7 @@ std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.ao
 std::uint64_t aov_floats(const std::string& name) {
   if (name.starts_with("crypto_")) return 2 * MATTE_RANKS;
   if (name == "uv") return 2;
+  if (name == motion_aov) return 5;
   return name == feature_albedo || name == feature_normal || name == "geometric_normal" ||
                  name == "variance" || is_light(name) || name == "normal" || name == "position" ||
                  name == "albedo"

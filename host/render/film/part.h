@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/pixels/shot.h"
+#include "render/film/cryptomatte.h"
 #include "render/film/film.h"
 #include "render/film/rows.h"
 #include "render/values/options.h"
@@ -24,6 +25,7 @@ struct PartHeader {
   std::map<std::string, std::string> settings;  // what was set and may differ, for messages
   std::vector<std::string> aovs;                // in the order they were asked for
   Shot shot{};                                  // for an EXR of the whole frame
+  MatteNames names{};                           // with AOVs of Cryptomatte
 };
 
 struct PartFile : PartHeader {

@@ -22,9 +22,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* format_name = "sundog part 2";
+constexpr const char* format_name = "sundog part 3";
 constexpr std::size_t checksum_digits = 16;
-constexpr std::size_t most_header = std::size_t{1} << 20;  // of its JSON, which takes more as values
+constexpr std::size_t most_header = std::size_t{1} << 26;  // of its JSON, which takes more as values
 
 template <class T>
 void append_done(std::string& bytes, const std::vector<T>& values, const std::vector<std::uint8_t>& done) {
@@ -81,6 +81,20 @@ glm::dmat4 read_matrix(const json& numbers) {
   return m;
 }
 
+json next_json(const std::optional<NextShot>& next) {
+  if (!next) return {};
+  json moves = json::array();
+  for (const auto& [object, matrix] : next->moves) moves.push_back({object, matrix_json(matrix)});
+  return {{"ndc", matrix_json(next->world_to_ndc)}, {"moves", moves}};
+}
+
+std::optional<NextShot> read_next(const json& value) {
+  if (value.is_null()) return std::nullopt;
+  NextShot next{read_matrix(value.at("ndc")), {}};
+  for (const json& move : value.at("moves")) next.moves[move.at(0).get<int>()] = read_matrix(move.at(1));
+  return next;
+}
+
 json shot_json(const Shot& shot) {
   return {{"camera", matrix_json(shot.world_to_camera)},
           {"ndc", matrix_json(shot.world_to_ndc)},
@@ -88,7 +102,8 @@ json shot_json(const Shot& shot) {
           {"focus", shot.focus ? json(*shot.focus) : json()},
           {"frame", shot.frame ? json(*shot.frame) : json()},
           {"rate", shot.frames_per_second},
-          {"exposure", shot.exposure_seconds}};
+          {"exposure", shot.exposure_seconds},
+          {"next", next_json(shot.next)}};
 }
 
 Shot read_shot(const json& value) {
@@ -100,6 +115,7 @@ Shot read_shot(const json& value) {
   shot.frame = whole(value, "frame", 0, 999999);
   shot.frames_per_second = value.at("rate").get<double>();
   shot.exposure_seconds = value.at("exposure").get<double>();
+  shot.next = read_next(value.at("next"));
   return shot;
 }
 
@@ -118,9 +134,12 @@ std::optional<PartFile> read_header(const json& head) {
   file.aovs = head.at("aovs").get<std::vector<std::string>>();
   file.settings = head.at("settings").get<std::map<std::string, std::string>>();
   file.shot = read_shot(head.at("shot"));
+  file.names.objects = head.at("objects").get<std::vector<std::string>>();
+  file.names.materials = head.at("materials").get<std::vector<std::string>>();
   file.film.width = *width;
   file.film.height = *height;
   if (!are_aovs(file.aovs)) return std::nullopt;
+  if (std::ranges::count(file.aovs, motion_aov) > 0 && !file.shot.next) return std::nullopt;
   return file;
 }
 
@@ -155,11 +174,18 @@ bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::
 
 void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film,
                 const std::shared_ptr<Faults>& faults) {
-  const json head = {{"format", format_name},       {"part", header.part.index},
-                     {"parts", header.part.count},  {"key", header.key},
-                     {"scene", header.scene},       {"aovs", header.aovs},
-                     {"width", film.width},         {"height", film.height},
-                     {"settings", header.settings}, {"shot", shot_json(header.shot)}};
+  const json head = {{"format", format_name},
+                     {"part", header.part.index},
+                     {"parts", header.part.count},
+                     {"key", header.key},
+                     {"scene", header.scene},
+                     {"aovs", header.aovs},
+                     {"width", film.width},
+                     {"height", film.height},
+                     {"settings", header.settings},
+                     {"shot", shot_json(header.shot)},
+                     {"objects", header.names.objects},
+                     {"materials", header.names.materials}};
   std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
   const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
   bytes.reserve(bytes.size() + film.done.size() +

@@ -115,7 +115,26 @@ std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& pl
   return double_samples(film, plan, last);
 }
 
+bool is_zero(const float4& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
+
+bool has_texture(const MaterialMaps& maps, MapSlot slot) { return maps.slot[slot] != NO_TEXTURE; }
+
 }  // namespace
+
+std::vector<std::uint8_t> clear_materials(const CompiledScene& scene) {
+  constexpr u32 straight = MATERIAL_TRANSMITS | MATERIAL_THIN;
+  std::vector<std::uint8_t> clear;
+  for (const Material& material : scene.materials) {
+    bool lets_through = !is_zero(material.transmission);
+    if (material.maps != NO_MAPS) {
+      const MaterialMaps& maps = scene.material_maps[material.maps];
+      const bool open = maps.opacity < 1 || has_texture(maps, MAP_OPACITY);
+      lets_through |= has_texture(maps, MAP_TRANSMISSION) || (open && maps.cutoff == 0);
+    }
+    clear.push_back((material.flags & straight) == straight && lets_through);
+  }
+  return clear;
+}
 
 bool in_passes(const Sampling& settings) {
   return settings.threshold > 0 || settings.progressive || settings.subsample;

@@ -1,7 +1,10 @@
 // Decides which pixels get which samples next, from a growing film; independent of who renders them.
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "compile/compiled_scene.h"
 #include "render/film/growing_film.h"
 #include "scene/description.h"
 
@@ -10,11 +13,15 @@ namespace sundog {
 /// Sampling parameters of a frame.
 struct SamplingPlan {
   Sampling settings;
-  u32 samples = 1;        // maximum per pixel
-  double noise = 0;       // the frame ends when its mean error is below; 0: never
-  bool surfaces = false;  // AOVs are needed for every pixel
-  bool sums = false;      // and have sums over all of its samples
+  u32 samples = 1;                       // maximum per pixel
+  double noise = 0;                      // the frame ends when its mean error is below; 0: never
+  bool surfaces = false;                 // AOVs are needed for every pixel
+  bool sums = false;                     // and have sums over all of its samples
+  std::vector<std::uint8_t> panes = {};  // of materials; 1: partly clear, see clear_materials()
 };
+
+/// Marks materials through which the camera sees other surfaces straight on.
+std::vector<std::uint8_t> clear_materials(const CompiledScene& scene);
 
 /// Whether a frame is rendered in passes.
 bool in_passes(const Sampling& settings);

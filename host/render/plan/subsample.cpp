@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "render/plan/passes.h"
 #include "render/plan/pixel_rules.h"
@@ -17,6 +18,7 @@ constexpr float even_cosine = 0.98f;
 struct Grid {
   const GrowingFilm& film;
   float threshold;
+  std::span<const std::uint8_t> panes = {};  // SamplingPlan::panes
   int width = film.film.width, height = film.film.height;
 
   std::size_t at(int x, int y) const {
@@ -32,8 +34,16 @@ struct Grid {
     return {at(left, top), at(right, top), at(left, bottom), at(right, bottom)};
   }
 
+  /// Whether the pixel's ray meets a pane, behind which it sees no surfaces.
+  bool meets_pane(std::size_t p) const {
+    const float material = film.film.aovs[film.film.layout.vectors() * p + 2].w;
+    return material >= 0 && static_cast<std::size_t>(material) < panes.size() &&
+           panes[static_cast<std::size_t>(material)];
+  }
+
   /// Whether four corners agree.
   bool agree(const std::array<std::size_t, 4>& four) const {
+    if (meets_pane(four[0])) return false;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t k = i + 1; k < 4; ++k) {
         if (!same_surface(film.film, four[i], four[k], even_cosine)) return false;
@@ -175,7 +185,7 @@ Pass corner_pass(const GrowingFilm& film, u32 samples) {
 void interpolate_rest(GrowingFilm& film) { interpolate(film, Grid{film, 0}); }
 
 std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan) {
-  const Grid grid{film, static_cast<float>(plan.settings.subsample_contrast)};
+  const Grid grid{film, static_cast<float>(plan.settings.subsample_contrast), plan.panes};
   if (film.step == 0) {
     ++film.step;
     return corner_pass(film, plan.samples);

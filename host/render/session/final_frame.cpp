@@ -68,8 +68,12 @@ FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devi
                          const RenderOptions& options, std::uint64_t key, Film& film) {
   FramePasses passes;
   const auto [x, y, width, height] = area_of(*scene, options);
-  passes.plan = {scene->sampling, scene->info.samples, options.noise, show_surfaces(options.aovs),
-                 aov_layout(options.aovs).sums() > 0};
+  passes.plan = {scene->sampling,
+                 scene->info.samples,
+                 options.noise,
+                 show_surfaces(options.aovs),
+                 aov_layout(options.aovs).sums() > 0,
+                 clear_materials(*scene)};
   const bool with_earlier = options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
                             !checkpoint_path(options).empty();
   passes.film = GrowingFilm(width, height, show_surfaces(options.aovs) || needs_surfaces(scene->sampling),

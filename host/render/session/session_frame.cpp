@@ -25,7 +25,8 @@ RenderOptions options_of(const SessionSettings& settings) {
 /// Samples of a scene that is not made in passes of its own double from pass to pass: sums grow in the order
 /// in which one pass would add them.
 SamplingPlan sampling_of(const CompiledScene& scene) {
-  SamplingPlan plan{scene.sampling, scene.info.samples, 0, false};
+  SamplingPlan plan{scene.sampling, scene.info.samples};
+  plan.panes = clear_materials(scene);
   if (!in_passes(scene.sampling)) plan.settings.progressive = true;
   return plan;
 }

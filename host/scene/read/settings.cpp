@@ -187,6 +187,7 @@ ImageSettings read_image(const JsonValue& value) {
     image.width = object.integer("width", image.width, 1, most_edge);
     image.height = object.integer("height", image.height, 1, most_edge);
     image.transparent = object.boolean("transparent", image.transparent);
+    image.transparent_glass = object.boolean("transparent_glass", image.transparent_glass);
     if (const auto tone_map = object.find("tone_map")) image.tone_map = read_tone_map(*tone_map);
     const auto background = object.find("background");
     if (!background) return image;

@@ -52,6 +52,13 @@ NEVER_INLINE MASK spawn(__global const SceneInfo* restrict info, RayStack* stack
   return lanes_of(bits);
 }
 
+// The surfaces that cover what is behind them if they bend light.
+#if HAS_CLEAR_GLASS && HAS_ROUGH
+static inline MASK covers_behind(const MetFacets* facets) { return facets->rough; }
+#else
+static inline MASK covers_behind(const MetFacets* facets) { return HAS_CLEAR_GLASS ? NO_LANES : ALL_LANES; }
+#endif
+
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted). Returns the surfaces that are
 // not there.
 static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
@@ -93,7 +100,7 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   start_on_hits(scene->info, &child, &met->hit, s->entering, split.transmits);
   enter_behind(met, rays, split.transmits, &child);
   const MASK nothing = cut_away(&facets.bsdf, &split, lanes), free = nothing & may_cross(rays, lanes);
-  const MASK bends = MASK_OF(split.eta != 1.0f);
+  const MASK bends = MASK_OF(split.eta != 1.0f) & covers_behind(&facets);
   cross_further(rays, &child, free);
   state.depth = select(paths->depth + 1, (paths->depth + 1) | TURNED, bends) + free;
   const MASK gone = spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);

@@ -86,7 +86,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     if (!(passes && (straight || (filtered && path->scatterings > 0))))
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
-  path->straight = path->straight && passes && lobes->split.eta == 1.0f;
+  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || lobes->split.eta == 1.0f);
   bool going = free;
   if (some && !free) going = survives(scene, path, dimension);
   if (!free) ++path->depth;

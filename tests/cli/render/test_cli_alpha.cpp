@@ -135,3 +135,38 @@ TEST_CASE("--adaptive sees edges that only alpha shows") {
     worst = std::max(worst, std::abs(double(full.data[i]) - double(adaptive.data[i])));
   CHECK(worst < 0.15);
 }
+
+TEST_CASE("by option, smooth glass covers only what it holds back of the background") {
+  const AlphaFolder folder;
+  // A clear ball, a grey block, glass that is rough, and a wall behind a part of the ball.
+  const std::string glass = R"({"camera": {"position": [0, 0, 10], "target": [0, 0, 0], "fov": 20},
+    "image": {"width": 24, "height": 16, "background": [0.2, 0.6, 0.4], "transparent_glass": true},
+    "render": {"samples": 16}, "materials": {
+      "ball": {"type": "dielectric", "ior": 1.5}, "wall": {"color": [0.5, 0.5, 0.5]},
+      "block": {"type": "dielectric", "ior": 1.3, "transmission": 0.5},
+      "rough": {"type": "dielectric", "ior": 1.5, "roughness": 0.3}},
+    "lights": [{"type": "directional", "direction": [0, 0, -1]}],
+    "objects": [{"type": "sphere", "center": [-1, 0, 0], "radius": 1, "material": "ball"},
+      {"type": "box", "min": [0.2, -1, -1], "max": [1.1, 1, 0], "material": "block"},
+      {"type": "box", "min": [1.4, -1, -1], "max": [2.4, 1, 0], "material": "rough"},
+      {"type": "sphere", "center": [-1.3, 0, -3], "radius": 0.4, "material": "wall"}]})";
+  for (const char* integrator : {"whitted", "path"}) {
+    CAPTURE(integrator);
+    const std::vector<std::string> whole = {"--float", "--integrator", integrator, "--max-depth", "32"};
+    std::vector<std::string> more = whole;
+    more.insert(more.end(), {"--transparent", "--aov", "crypto_object"});
+    const Image seen = folder.render(glass.c_str(), "a.exr", whole),
+                cut = folder.render(glass.c_str(), "b.exr", more);
+    const float background[] = {0.2f, 0.6f, 0.4f};
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 24; ++x)
+        for (std::size_t c = 0; c < 3; ++c)
+          CHECK(cut.pixel(x, y)[c] + (1 - cut.pixel(x, y)[3]) * background[c] ==
+                Approx(seen.pixel(x, y)[c]).margin(2e-3));
+    const double f = std::pow(0.3 / 2.3, 2);  // what a face of the block reflects
+    CHECK(cut.pixel(15, 8)[3] == Approx(1 - 0.25 * (1 - f) * (1 - f)).margin(0.03));
+    CHECK(cut.pixel(7, 8)[3] > 0.9f);   // the wall
+    CHECK(cut.pixel(19, 8)[3] > 0.9f);  // rough glass covers
+    CHECK(cut.pixel(7, 4)[3] < 0.2f);
+  }
+}

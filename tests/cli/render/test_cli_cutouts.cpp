@@ -93,3 +93,23 @@ TEST_CASE("--subsample keeps what stands behind a cut-out in the middle of a sin
   CHECK(picture.pixel(19, 13)[3] == 1);
   CHECK(picture.pixel(5, 13)[3] == 0);
 }
+
+TEST_CASE("--subsample keeps what stands behind a pane of opacity 0.5 in the middle of a single pixel") {
+  const CliFolder folder;
+  nlohmann::json scene = nlohmann::json::parse(screens);
+  scene["render"]["samples"] = 1;
+  scene["materials"]["hole"]["opacity"] = 0.5;
+  const double pixel = 20 * std::tan(0.17453292519943295) / 16;
+  scene["objects"].push_back({{"type", "sphere"},
+                              {"radius", 0.3 * pixel},
+                              {"center", {(3 + 0.5 - 12) * pixel, (8 - 12.5 - 1) * pixel, 0}},
+                              {"material", "white"}});
+  const std::string file = folder.write("dots.json", scene.dump()).string();
+  const CommandResult result =
+      run_sundog({"render", file, "-o", folder.file("a.exr"), "--subsample", "--quiet"});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  const Image picture = read_image(folder / "a.exr");
+  CHECK(picture.pixel(3, 13)[3] == 1);
+  CHECK(picture.pixel(5, 13)[3] == Approx(0.5));
+}

@@ -98,3 +98,14 @@ TEST_CASE("Whitted's integrator does not know parts of light, and says so") {
   CHECK(result.status == 2);
   CHECK(result.err.find("the AOV 'diffuse_direct' wants the integrator path") != std::string::npos);
 }
+
+TEST_CASE("the AOV light_parts is all parts of light") {
+  const LightFolder folder;
+  const CommandResult result =
+      run_sundog({"render", folder.scene_file, "-o", folder.file("a.exr"), "--quiet", "--device", "0:0",
+                  "--aov", "light_parts", "--aov", "sky", "--float"});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  CHECK(read_aovs(folder / "a.exr").size() == light_part_names.size());
+  CHECK(folder.sums_to_picture());
+}

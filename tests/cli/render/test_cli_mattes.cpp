@@ -98,10 +98,19 @@ TEST_CASE("opacity splits a pixel between a pane and the wall behind it") {
   }
 }
 
-TEST_CASE("mattes have the same bits whatever the tiles") {
+TEST_CASE("mattes have the same bits whatever the tiles, and in parts that are merged") {
   const MatteFolder folder;
   folder.render({});
   const std::string whole = read_file(folder / "a.exr");
   folder.render({"--tile", "7"});
   CHECK(read_file(folder / "a.exr") == whole);
+  for (const char* which : {"1", "2"})
+    REQUIRE(run_sundog({"render", folder.scene_file, "-o", folder.file(std::string(which) + ".part"),
+                        "--tiles", std::string(which) + "/2", "--aov", "crypto_object", "--aov",
+                        "crypto_material", "--quiet", "--device", "0:0"})
+                .status == 0);
+  REQUIRE(run_sundog(
+              {"merge", folder.file("2.part"), folder.file("1.part"), "-o", folder.file("m.exr"), "--float"})
+              .status == 0);
+  CHECK(read_file(folder / "m.exr") == whole);
 }

@@ -15,9 +15,9 @@ namespace {
 
 json good_header() {
   const json matrix = std::vector<double>(16, 0.5);
-  const json shot = {{"camera", matrix}, {"ndc", matrix}, {"window", 1},  {"focus", nullptr},
-                     {"frame", 1},       {"rate", 24},    {"exposure", 0}};
-  return {{"format", "sundog part 2"},
+  const json shot = {{"camera", matrix}, {"ndc", matrix}, {"window", 1},   {"focus", nullptr},
+                     {"frame", 1},       {"rate", 24},    {"exposure", 0}, {"next", nullptr}};
+  return {{"format", "sundog part 3"},
           {"part", 1},
           {"parts", 1},
           {"key", 7},
@@ -26,6 +26,8 @@ json good_header() {
           {"scene", "a.json"},
           {"aovs", json::array()},
           {"shot", shot},
+          {"objects", json::array()},
+          {"materials", json::array()},
           {"settings", json::object()}};
 }
 
@@ -57,7 +59,8 @@ TEST_CASE("a part whose header cannot be true is refused with status 3 and the f
   many_pixels["height"] = 65536;
   json many_aovs = changed("aovs", json::array());
   for (int i = 0; i < 7; ++i) many_aovs["aovs"].push_back("depth");
-  for (const json& header : {changed("parts", 536870912),
+  for (const json& header : {changed("aovs", {"motion"}),
+                             changed("parts", 536870912),
                              changed("parts", 100000000),
                              changed("parts", 0),
                              changed("part", 2),

@@ -27,7 +27,7 @@ TEST_CASE("four pairs of index and share become two layers of ids, and a header 
   Image pairs(2, 1, 8);
   pairs.data = {1, 0.5f, 0, 0.25f, 2, 0.125f, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
   aovs["crypto_object"] = pairs;
-  const ImageTexts texts = name_cryptomattes(aovs, {"red", "blue \"one\"", ""}, {});
+  const ImageTexts texts = name_cryptomattes(aovs, {{"red", "blue \"one\"", ""}, {}});
   REQUIRE(aovs.size() == 3);
   const Image &first = aovs.at("crypto_object00"), &second = aovs.at("crypto_object01");
   const auto id = [](const char* name) { return std::bit_cast<float>(id_bits(name)); };
@@ -39,5 +39,5 @@ TEST_CASE("four pairs of index and share become two layers of ids, and a header 
   CHECK(texts[0].first.size() == 12 + 7 + 5);
   CHECK(texts[0].second == "crypto_object");
   CHECK(texts[3].second.find("\"blue \\\"one\\\"\":\"") != std::string::npos);
-  CHECK(name_cryptomattes(aovs, {}, {}).empty());
+  CHECK(name_cryptomattes(aovs, {}).empty());
 }

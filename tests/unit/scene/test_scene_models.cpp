@@ -132,7 +132,7 @@ TEST_CASE("a model with a camera or lights of its own, or seen from below, has n
 TEST_CASE("a model's own camera, lights and image go before made-up ones") {
   Model model = two_spheres();
   model.camera = Camera{{1, 2, 3}, {4, 5, 7}, {0, 0, 1}, 33.25, 0.125, 1e6, {}, {}};
-  model.image = ImageSettings{513, 257, {0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, false, {}};
+  model.image = ImageSettings{513, 257, {0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, false, false, {}};
   LightDescription spot;
   spot.type = LightType::spot;
   spot.color = {0.1, 0.7, 0.3};
