@@ -101,7 +101,6 @@ function(sundog_embed_page target)
     get_filename_component(base ${name} NAME)
     list(APPEND pairs "/vendor/${base}=${PROJECT_SOURCE_DIR}/third_party/${name}")
   endforeach()
-  list(APPEND pairs "scene.schema.json=${PROJECT_SOURCE_DIR}/scenes/scene.schema.json")
   sundog_embed_files(${target} page_files PageFile app/serve/page_files.h ${pairs})
 endfunction()
 

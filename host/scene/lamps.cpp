@@ -10,56 +10,9 @@
 #include "base/error.h"
 #include "scene/kinds.h"
 #include "scene/pack.h"
-#include "scene/read/parts.h"
 
 namespace sundog {
 namespace {
-
-// Keys in scene files.
-
-/// Products of two such lengths are finite floats.
-constexpr Range lamp_range{.low = 1e-15, .high = 1e15};
-
-/// Reads the direction of emission, given directly or by a target point.
-void read_aim(JsonObject& object, LightDescription& light) {
-  static constexpr std::string_view aims[] = {"direction", "target"};
-  const std::string aim = object.one_of(aims);
-  const JsonValue value = *object.find(aim);
-  if (aim == "direction") {
-    light.direction = value.direction();
-  } else {
-    light.direction = value.vec3() - light.position;
-    if (!(glm::length(light.direction) > 1e-12)) value.fail("wanted a point away from the light's position");
-    light.direction = glm::normalize(light.direction);
-  }
-}
-
-void read_rectangle(JsonObject& object, LightDescription& light) {
-  if (const auto up = object.find("up")) light.up = up->direction();
-  const JsonValue size = object.at("size", "the two edges [width, height]");
-  const auto edges = size.items("2 lengths");
-  if (edges.size() != 2) size.wanted("an array of 2 lengths");
-  light.size = {edges[0].number(lamp_range), edges[1].number(lamp_range)};
-}
-
-void read_radius(JsonObject& object, LightDescription& light) {
-  light.radius = object.number("radius", light.radius, lamp_range);
-}
-
-void read_range(JsonObject& object, LightDescription& light) {
-  light.range = object.number("range", light.range, {.low = 0, .high = 1e15});
-}
-
-void read_spot(JsonObject& object, LightDescription& light) {
-  const Range angle{.low = 0, .high = 90, .low_open = true, .high_open = true};
-  light.square_edge = object.boolean("square_edge", light.square_edge);
-  light.outer_angle = object.number("outer_angle", light.outer_angle, angle);
-  light.inner_angle =
-      object.number("inner_angle", light.outer_angle * 2 / 3, {.low = 0, .high = 90, .high_open = true});
-  if (light.inner_angle > light.outer_angle)
-    object.value().fail(fmt::format("wanted an \"inner_angle\" not above the \"outer_angle\" of {}, found {}",
-                                    light.outer_angle, light.inner_angle));
-}
 
 // Visible objects.
 
@@ -159,49 +112,6 @@ LampAxes lamp_axes(const LightDescription& light) {
   axes.u = side * (round ? light.radius : light.size.x);
   axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
   return axes;
-}
-
-void read_light_sampling(JsonObject& object, int& samples) {
-  samples = object.integer("samples", samples, 1, 1024);
-}
-
-void read_light_visible(JsonObject& object, bool& visible, bool& hidden) {
-  visible = object.boolean("visible", visible);
-  hidden = object.boolean("hidden", hidden);
-}
-
-void read_light_kind(JsonObject& object, LightDescription& light) {
-  if (facts_of(light.type).has_extent()) read_light_sampling(object, light.samples);
-  if (facts_of(light.type).can_be_met()) read_light_visible(object, light.visible, light.hidden);
-  switch (light.type) {
-    case LightType::ambient:
-      break;
-    case LightType::point:
-      read_range(object, light);
-      break;
-    case LightType::directional:
-      light.direction = object.at("direction", "the way the light travels [x, y, z]").direction();
-      light.angle = object.number("angle", light.angle, {.low = 0, .high = 90});
-      read_light_sampling(object, light.samples);
-      read_light_visible(object, light.visible, light.hidden);
-      break;
-    case LightType::spot:
-      read_aim(object, light);
-      read_spot(object, light);
-      read_range(object, light);
-      break;
-    case LightType::rectangle:
-      read_rectangle(object, light);
-      read_aim(object, light);
-      break;
-    case LightType::disk:
-      read_radius(object, light);
-      read_aim(object, light);
-      break;
-    case LightType::sphere:
-      read_radius(object, light);
-      break;
-  }
 }
 
 Light pack_light(const NamedLight& named, const dvec3& origin) {

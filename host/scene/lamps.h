@@ -1,5 +1,4 @@
-// Per-kind code of lights: keys in scene files, the row in the lights table, and, for area lights, bounds and
-// the visible object.
+// Per-kind code of lights: the row in the lights table, and, for area lights, bounds and the visible object.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
@@ -7,17 +6,6 @@
 #include "scene/description.h"
 
 namespace sundog {
-
-class JsonObject;
-
-/// Reads a light's keys other than type, color, intensity and position.
-void read_light_kind(JsonObject& object, LightDescription& light);
-
-/// Reads the number of shadow rays for area lights and environments.
-void read_light_sampling(JsonObject& object, int& samples);
-
-/// Reads whether rays hit the light.
-void read_light_visible(JsonObject& object, bool& visible, bool& hidden);
 
 /// A light and its place in the scene file, for messages.
 struct NamedLight {

@@ -1,5 +1,6 @@
 // Textures as plain values: images, and nodes that combine them.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
@@ -45,16 +46,16 @@ struct RampStop {
 struct TextureDescription {
   std::string name;
   TextureKind kind = TEXTURE_COLOR;
-  int of[2] = {-1, -1};  // operands: a pattern's colours, a product's factors, a ramp's [0]
-  int image = -1;        // index into SceneDescription::images
-  Wrap wrap[2] = {Wrap::repeat, Wrap::repeat};
+  std::array<int, 2> of{-1, -1};  // operands: a pattern's colours, a product's factors, a ramp's [0]
+  int image = -1;                 // index into SceneDescription::images
+  std::array<Wrap, 2> wrap{Wrap::repeat, Wrap::repeat};
   TextureFilter filter = TextureFilter::trilinear;
   int channel = -1;  // 0..3: replicate that channel
   Mapping mapping = Mapping::uv;
   int uv_set = 0;
-  glm::dmat3 uv{1};          // from the mapping's (u, v, 1) to the texture's, v up
-  glm::dmat4 placement{1};   // from object units to the mapping's
-  double parameter[6] = {};  // by kind, as in shared/textures.h
+  glm::dmat3 uv{1};                   // from the mapping's (u, v, 1) to the texture's, v up
+  glm::dmat4 placement{1};            // from object units to the mapping's
+  std::array<double, 6> parameter{};  // by kind, as in shared/textures.h
   std::vector<RampStop> stops{};
   PatternFormula formula{};
   glm::dvec4 factor{1}, offset{0};

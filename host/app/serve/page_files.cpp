@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "base/file.h"
+#include "scene/json/schema.h"
 
 namespace sundog {
 namespace {
@@ -35,6 +36,6 @@ WebAnswer page_answer(std::string_view path) {
           own ? read_file(std::string(folder) + std::string(path)) : std::string(file->bytes), ""};
 }
 
-std::string scene_schema() { return std::string(find_file("scene.schema.json")->bytes); }
+std::string scene_schema() { return std::string(embedded_schema().front().bytes); }
 
 }  // namespace sundog

@@ -346,7 +346,8 @@ class FieldsEmitter {
     r.iterations = static_cast<u32>(std::max(1, iterations_of(d.root)));
     r.step_limit = static_cast<u32>(d.step_limit);
     r.flags = (smooth ? SDF_SMOOTH : 0u) | (d.sphere ? SDF_CUT_SPHERE : 0u);
-    r.color_by = d.coloring.palette.empty() ? SDF_COLOR_NONE : static_cast<u32>(d.coloring.by);
+    r.color_by =
+        d.coloring.palette.empty() ? SDF_COLOR_NONE : SDF_COLOR_POINT + static_cast<u32>(d.coloring.by);
     std::vector<double> stops;
     for (const glm::dvec3& stop : d.coloring.palette) stops.insert(stops.end(), {stop.x, stop.y, stop.z});
     r.palette_first = static_cast<u32>(table(stops));

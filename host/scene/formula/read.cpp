@@ -24,15 +24,9 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
 
 SdfNode read_child(const JsonValue& value, int depth, std::array<double, 6>* bounds = nullptr) {
   if (depth > deepest) value.fail(fmt::format("fields nested deeper than {} levels", deepest));
-  static const auto operands = [] {
-    std::vector<std::string_view> result(types.begin(), types.end());
-    result.insert(result.end(), solid_types().begin(), solid_types().end());
-    return result;
-  }();
-  const std::string type = value.member("type", operands).choice(operands);
+  const std::string type = value.type();
   const bool solid = std::find(types.begin(), types.end(), type) == types.end();
   return value.object(solid ? type : type + "_field", [&](JsonObject& object) {
-    object.at("type", "");
     return solid ? read_solid_field(object, type) : read_node(object, type, bounds, depth);
   });
 }
@@ -42,23 +36,20 @@ SdfNode read_joint(JsonObject& object, std::string_view type, int depth) {
   node.kind = type == "union"          ? SdfNode::Kind::unite
               : type == "intersection" ? SdfNode::Kind::intersect
                                        : SdfNode::Kind::subtract;
-  const JsonValue list = object.at("fields", "an array of fields");
-  for (const JsonValue& item : list.items("fields")) node.children.push_back(read_child(item, depth + 1));
-  if (node.children.size() < 2) list.wanted("an array of two fields or more");
-  node.smooth = object.number("smooth", 0, at_least_0);
+  for (const JsonValue& item : object.at("fields").items("fields"))
+    node.children.push_back(read_child(item, depth + 1));
+  object.read("smooth", node.smooth);
   return node;
 }
 
 SdfNode read_moved(JsonObject& object) {
   SdfNode node;
   node.kind = SdfNode::Kind::transform;
-  node.offset = object.vec3("translate", glm::dvec3(0));
-  node.scale = object.number("scale", 1, {.low = 1e-6, .high = 1e6});
+  object.read("translate", node.offset, "scale", node.scale);
   if (const auto rotate = object.find("rotate"))
     rotate->object("rotate", [&](JsonObject& r) {
-      const glm::dvec3 axis = r.at("axis", "a direction [x, y, z]").direction();
-      node.rotation = glm::dmat3(
-          glm::rotate(glm::dmat4(1), glm::radians(r.at("degrees", "an angle in degrees").number()), axis));
+      const glm::dvec3 axis = r.at("axis").direction();
+      node.rotation = glm::dmat3(glm::rotate(glm::dmat4(1), glm::radians(r.at("degrees").number()), axis));
     });
   return node;
 }
@@ -71,7 +62,7 @@ SdfNode read_native(JsonObject& object) {
   SdfNode node;
   node.kind = SdfNode::Kind::native;
   node.code = read_text(object, "code");
-  if (node.code.empty()) object.at("code", "the body of a function of REAL3 p that returns REAL");
+  if (node.code.empty()) object.at("code");
   return node;
 }
 
@@ -90,29 +81,21 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
     node = read_moved(object);
   } else if (type == "repeat") {
     node.kind = SdfNode::Kind::repeat;
-    node.period = object.at("period", "an array of 3 numbers").vec3(at_least_0);
-    node.count = object.vec3("count", glm::dvec3(0), at_least_0);
+    object.read("period", node.period, "count", node.count);
   } else {
     node.kind = type == "thicken" ? SdfNode::Kind::thicken : SdfNode::Kind::shell;
-    node.amount = object.at("amount", "a length").number(type == "shell" ? above_0 : any_number);
+    object.read("amount", node.amount);
   }
-  node.children.push_back(read_child(object.at("field", "a field"), depth + 1));
+  node.children.push_back(read_child(object.at("field"), depth + 1));
   return node;
 }
 
 SdfColoring read_coloring(const JsonValue& value) {
   return value.object("coloring", [](JsonObject& object) {
-    using By = NamedValue<SdfColorBy>;
-    static constexpr std::array traps = {
-        By{"point", SdfColorBy::point}, By{"plane", SdfColorBy::plane}, By{"axis", SdfColorBy::axis},
-        By{"iterations", SdfColorBy::iterations}, By{"radius", SdfColorBy::radius}};
     SdfColoring coloring;
-    coloring.by = object.choose("by", SdfColorBy::point, traps);
-    const JsonValue palette = object.at("palette", "an array of colours");
-    for (const JsonValue& stop : palette.items("colours")) coloring.palette.push_back(stop.color());
-    if (coloring.palette.empty() || coloring.palette.size() > 64) palette.wanted("1 to 64 colours");
-    coloring.scale = object.number("scale", 1);
-    coloring.offset = object.number("offset", 0);
+    object.read("by", coloring.by, "scale", coloring.scale, "offset", coloring.offset);
+    for (const JsonValue& stop : object.at("palette").items("colours"))
+      coloring.palette.push_back(stop.vec3());
     return coloring;
   });
 }
@@ -122,10 +105,7 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
       required ? object.at("interval", "an object with \"min\" and \"max\": where the field is built")
                : object.find("interval");
   if (!interval) return;
-  interval->object("interval", [&](JsonObject& o) {
-    field.lower = o.at("min", "the corner beside \"max\"").vec3({.low = -1e6, .high = 1e6});
-    field.upper = o.at("max", "the corner beside \"min\"").vec3({.low = -1e6, .high = 1e6});
-  });
+  interval->object("interval", [&](JsonObject& o) { o.read("min", field.lower, "max", field.upper); });
   if (!glm::all(glm::lessThan(field.lower, field.upper)))
     interval->fail("wanted each of \"min\" below its part of \"max\"");
 }
@@ -133,10 +113,10 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
 /// Reads the field's shading effects; `size` is half its interval's diagonal.
 void read_light(JsonObject& object, SdfDescription& field, double size) {
   field.occlusion = object.number("occlusion", 0, {.low = 0, .high = size});
-  field.soft_shadow = object.number("soft_shadow", 0, {.low = 0, .high = 1e4});
+  object.read("soft_shadow", field.soft_shadow);
   if (const auto glow = object.find("glow"))
     glow->object("glow", [&](JsonObject& o) {
-      field.glow = o.at("color", "a colour [r, g, b]").color();
+      o.read("color", field.glow);
       field.glow_width = o.number("width", 0.05 * size, {.low = 0, .high = size, .low_open = true});
     });
 }
@@ -156,15 +136,17 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   read_interval(object, field, !is_leaf);
   if (const auto ball = object.find("ball"))
     field.sphere = ball->object("ball", [](JsonObject& o) {
-      return glm::dvec4(o.vec3("center", glm::dvec3(0)), o.at("radius", "a length").number(above_0));
+      glm::dvec3 center(0);
+      double radius = 0;
+      o.read("center", center, "radius", radius);
+      return glm::dvec4(center, radius);
     });
   const double size = glm::length(field.upper - field.lower) / 2;
-  if (const auto detail = object.find("detail")) field.detail = detail->number({.low = 0.01, .high = 16});
   field.least = object.number("least_threshold", 3e-5 * size, {.low = 1e-7 * size, .high = size});
   field.greatest = object.number("greatest_threshold", std::max(0.03 * size, field.least),
                                  {.low = field.least, .high = size});
   const bool has_limit = object.has("step_limit");
-  field.step_limit = object.integer("step_limit", field.step_limit, 16, 65536);
+  object.read("step_limit", field.step_limit, "detail", field.detail);
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
   read_light(object, field, size);
   try {
@@ -197,7 +179,7 @@ SdfDescription read_named_field(const JsonValue& value, std::string name) {
   field.name = std::move(name);
   value.object("field_entry", [&](JsonObject& object) {
     std::array<double, 6> bounds{};
-    const JsonValue root = object.at("field", "a field");
+    const JsonValue root = object.at("field");
     field.root = read_child(root, 1, &bounds);
     read_whole(object, field, root, bounds);
   });

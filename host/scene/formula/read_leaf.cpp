@@ -95,12 +95,10 @@ FormulaParameter read_declaration(const std::string& name, const JsonValue& valu
     return p;
   }
   value.object("formula_parameter", [&](JsonObject& object) {
-    const Range limits{.low = -1e6, .high = 1e6};
-    p.minimum = object.number("min", p.minimum, limits);
-    p.maximum = object.number("max", p.maximum, {.low = p.minimum, .high = 1e6});
-    const JsonValue given = object.at("value", "a number or an array of numbers");
+    object.read("min", p.minimum, "max", p.maximum, "whole", p.whole);
+    if (p.maximum < p.minimum) object.at("max").wanted(fmt::format("a number not below {}", p.minimum));
+    const JsonValue given = object.at("value");
     p.value = read_components(given, component_count(given), {.low = p.minimum, .high = p.maximum});
-    p.whole = object.boolean("whole", false);
     if (p.whole) require_whole(given, p.value);
   });
   return p;
@@ -121,21 +119,14 @@ bool reads_clock(std::span<const std::string> texts) {
   return false;
 }
 
-FormulaDerivative read_derivative(JsonObject& object, FormulaDerivative fallback) {
-  using Derivative = NamedValue<FormulaDerivative>;
-  static constexpr std::array derivatives = {Derivative{"automatic", FormulaDerivative::automatic},
-                                             Derivative{"running", FormulaDerivative::running},
-                                             Derivative{"radial", FormulaDerivative::radial},
-                                             Derivative{"jacobian", FormulaDerivative::jacobian}};
-  return object.choose("derivative", fallback, derivatives);
-}
-
 /// Reads a user's formula.
 FormulaDefinition read_definition(JsonObject& object) {
   FormulaDefinition d;
-  d.name = object.text("name", "formula");
-  static constexpr std::array<std::string_view, 2> spaces{"vec3", "quat"}, estimates{"logarithmic", "linear"};
-  d.quaternion = object.choice("space", "vec3", spaces) == "quat";
+  std::string space;
+  d.name = "formula";
+  object.read("name", d.name, "space", space, "estimate", d.estimate, "derivative", d.derivative);
+  object.read("normalize", d.normalize);
+  d.quaternion = space == "quat";
   d.start = read_text(object, "start");
   d.map = read_text(object, "map");
   d.distance = read_text(object, "distance");
@@ -145,15 +136,11 @@ FormulaDefinition read_definition(JsonObject& object) {
   d.kind = d.map.empty()        ? FormulaKind::direct
            : d.distance.empty() ? FormulaKind::escape
                                 : FormulaKind::folded;
-  d.estimate = object.choice("estimate", "logarithmic", estimates) == "linear" ? EscapeEstimate::linear
-                                                                               : EscapeEstimate::logarithmic;
   if (d.estimate == EscapeEstimate::linear) {  // r / dr ignores the size of the set itself
     d.bailout = 1000;
     d.inside_radius = 1e9;
     d.inside_safety = 0.5;
   }
-  d.derivative = read_derivative(object, d.derivative);
-  d.normalize = object.boolean("normalize", false);
   d.smooth = d.kind == FormulaKind::direct;
   d.safety = d.kind == FormulaKind::direct          ? (d.normalize ? 0.8 : 1)
              : d.estimate == EscapeEstimate::linear ? 0.85
@@ -163,8 +150,7 @@ FormulaDefinition read_definition(JsonObject& object) {
 }
 
 FormulaDefinition read_listed(JsonObject& object) {
-  const JsonValue name =
-      object.at("formula", "the name of a surface of the list (sundog formulas prints it)");
+  const JsonValue name = object.at("formula");
   const FormulaDefinition* listed = find_formula(name.text());
   if (!listed) {
     std::vector<std::string> names;
@@ -175,7 +161,7 @@ FormulaDefinition read_listed(JsonObject& object) {
   }
   FormulaDefinition d = *listed;
   read_arguments(object, d);
-  d.derivative = read_derivative(object, d.derivative);
+  object.read("derivative", d.derivative);
   return d;
 }
 
@@ -189,10 +175,12 @@ bool suits_radial(const FormulaDefinition& d, const LoweredFormula& lowered) {
 /// Reads iterations, bailout and safety; checks the formula by lowering it.
 FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   FormulaLeaf leaf{{}, d.bounds};
-  leaf.field.iterations = object.integer("iterations", d.iterations, 1, FormulaDefinition::max_iterations);
+  leaf.field.iterations = d.iterations;
+  object.read("iterations", leaf.field.iterations);
   leaf.field.bailout =
       object.number("bailout", d.bailout, {.low = d.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
-  leaf.field.safety = object.number("safety", d.safety, {.low = 1e-3, .high = 1});
+  leaf.field.safety = d.safety;
+  object.read("safety", leaf.field.safety);
   leaf.field.steps.push_back({d, default_values(d), 1});
   try {
     const LoweredFormula lowered = lower(d, leaf.field.steps[0].values);
@@ -245,14 +233,10 @@ FormulaLeaf read_single(JsonObject& object, std::string_view type) {
 }
 
 FormulaLeaf read_hybrid(JsonObject& object) {
-  const JsonValue list = object.at("steps", "an array of formulas");
   FormulaLeaf all{};
-  for (const JsonValue& item : list.items("formulas")) {
-    if (all.field.steps.size() == 8) item.fail("a hybrid may have 8 formulas");
-    static constexpr std::array<std::string_view, 2> kinds{"fractal", "formula"};
-    const std::string type = item.member("type", kinds).choice(kinds);
+  for (const JsonValue& item : object.at("steps").items("formulas")) {
+    const std::string type = item.type();
     item.object(type + "_step", [&](JsonObject& step) {
-      step.at("type", "");
       FormulaDefinition d = type == "formula" ? read_definition(step) : read_listed(step);
       if (d.kind == FormulaKind::direct)
         item.fail(fmt::format("{} is no iteration and cannot be a step", d.name));
@@ -261,18 +245,19 @@ FormulaLeaf read_hybrid(JsonObject& object) {
       // The radial derivative is too small near its poles, which folds would copy everywhere.
       if (d.derivative == FormulaDerivative::radial && !item.json().contains("derivative"))
         d.derivative = FormulaDerivative::running;
-      const int times = step.integer("times", 1, 1, 100);
+      int times = 1;
+      step.read("times", times);
       if (all.field.steps.empty()) all.bounds = d.bounds;
       all.field.steps.push_back({d, default_values(d), times});
     });
   }
-  if (all.field.steps.empty()) list.wanted("an array of one formula or more");
   FormulaDefinition& last = all.field.steps.back().definition;
   const double bailout = bailout_of(all.field.steps);
-  all.field.iterations = object.integer("iterations", last.iterations, 1, FormulaDefinition::max_iterations);
+  all.field.iterations = last.iterations;
+  all.field.safety = 0.8;
+  object.read("iterations", all.field.iterations, "safety", all.field.safety);
   all.field.bailout =
       object.number("bailout", bailout, {.low = last.kind == FormulaKind::escape ? 1e-3 : 0, .high = 1e9});
-  all.field.safety = object.number("safety", 0.8, {.low = 1e-3, .high = 1});
   return all;
 }
 

@@ -53,11 +53,11 @@ struct SdfNode {
   static constexpr int max_depth = 16, max_formulas = 64;
 };
 
-enum class SdfColorBy { none, point, plane, axis, iterations, radius };
+enum class SdfColorBy { point, plane, axis, iterations, radius };
 
 /// Colours from the orbit: palette(fract(trap * scale + offset)), linear between the stops, cyclic.
 struct SdfColoring {
-  SdfColorBy by = SdfColorBy::none;
+  SdfColorBy by = SdfColorBy::point;
   std::vector<glm::dvec3> palette;  // linear RGB, 1..64 stops
   double scale = 1, offset = 0;
 };

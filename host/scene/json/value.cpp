@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "base/names.h"
@@ -41,15 +43,13 @@ bool inside(double x, const Range& range) {
          (range.high_open ? x < range.high : x <= range.high);
 }
 
-std::string describe(const Range& range) {
-  const bool low = range.low > any_number.low, high = range.high < any_number.high;
-  if (low && high && !range.low_open && !range.high_open)
-    return fmt::format("from {} to {}", range.low, range.high);
-  const std::string below = fmt::format("{} {}", range.high_open ? "below" : "up to", range.high);
-  if (!low) return high ? below : fmt::format("of magnitude up to {}", range.high);
-  const std::string above =
-      range.low_open ? fmt::format("above {}", range.low) : fmt::format("not below {}", range.low);
-  return fmt::format("{} and {}", above, below);
+/// The first sentence of a description, as the end of another.
+std::string brief(std::string_view description) {
+  std::string text(description.substr(0, std::min(description.find(". "), description.find_first_of(";:"))));
+  if (text.ends_with('.')) text.pop_back();
+  if (text.size() > 1 && (text[1] == ' ' || std::islower(static_cast<unsigned char>(text[1]))))
+    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 }  // namespace
@@ -71,15 +71,6 @@ std::string join_pointer(std::string_view pointer, std::string_view key) {
   return result;
 }
 
-std::string list_names(Names names, std::string_view conjunction) {
-  std::string result;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) result += i + 1 == names.size() ? fmt::format(" {} ", conjunction) : ", ";
-    result += fmt::format("\"{}\"", names[i]);
-  }
-  return result;
-}
-
 void JsonValue::fail(std::string_view reason) const {
   throw SceneError(context_->file.string(), pointer_, std::string(reason));
 }
@@ -93,8 +84,19 @@ void JsonValue::wanted(std::string_view what) const {
   fail(fmt::format("wanted {}, found {}", what, describe(*json_)));
 }
 
-JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value) const {
-  return {value, *context_, join_pointer(pointer_, key)};
+JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const {
+  return {value, *context_, join_pointer(pointer_, key), rule};
+}
+
+const SchemaRule& JsonValue::rule_of(SchemaRule::Type type) const {
+  static const SchemaRule free;
+  const SchemaRule* rule = rule_ ? rule_->as(type) : nullptr;
+  return rule ? *rule : free;
+}
+
+double JsonValue::number() const {
+  const SchemaRule& rule = rule_of(SchemaRule::Type::number);
+  return rule.type == SchemaRule::Type::integer ? integer() : number(rule.range);
 }
 
 double JsonValue::number(const Range& range) const {
@@ -102,6 +104,11 @@ double JsonValue::number(const Range& range) const {
   const double x = json_->get<double>();
   if (!inside(x, range)) wanted(fmt::format("a number {}", describe(range)));
   return x;
+}
+
+int JsonValue::integer() const {
+  const Range& range = rule_of(SchemaRule::Type::integer).range;
+  return integer(static_cast<int>(range.low), static_cast<int>(range.high));
 }
 
 int JsonValue::integer(int low, int high) const {
@@ -122,22 +129,28 @@ std::string JsonValue::text() const {
 }
 
 std::string JsonValue::choice(Names names) const {
-  if (json_->is_string()) {
-    const auto& text = json_->get_ref<const std::string&>();
-    if (std::find(names.begin(), names.end(), text) != names.end()) return text;
-    if (const auto near = nearest_name(text, {names.begin(), names.end()}))
-      fail(fmt::format("wanted {}, found {}: did you mean \"{}\"?", list_names(names), describe(*json_),
-                       *near));
-  }
-  wanted(list_names(names));
+  const auto* text = json_->get_ptr<const std::string*>();
+  if (text && std::ranges::find(names, *text) != names.end()) return *text;
+  const std::string all = rule_ && !rule_->options.empty() ? rule_->describe() : list_names(names);
+  if (text)
+    if (const auto near = nearest_name(*text, {names.begin(), names.end()}))
+      fail(fmt::format("wanted {}, found {}: did you mean \"{}\"?", all, describe(*json_), *near));
+  wanted(all);
 }
 
-glm::dvec3 JsonValue::vec3(const Range& each) const {
-  if (!json_->is_array() || json_->size() != 3) wanted("an array of 3 numbers");
-  glm::dvec3 result{};
-  for (int i = 0; i < 3; ++i)
-    result[i] = child(std::to_string(i), (*json_)[static_cast<std::size_t>(i)]).number(each);
-  return result;
+void JsonValue::get(std::string& to) const {
+  to = rule_of(SchemaRule::Type::string).names.empty() ? text() : choice();
+}
+
+void JsonValue::read_numbers(double* to, std::size_t count) const {
+  if (json_->is_number() && rule_ && rule_->as(SchemaRule::Type::number)) {
+    std::fill_n(to, count, number());
+    return;
+  }
+  const SchemaRule& rule = rule_of(SchemaRule::Type::array);
+  if (!json_->is_array()) wanted(rule_ ? rule_->describe() : fmt::format("an array of {} numbers", count));
+  if (json_->size() != count) wanted(rule_ ? rule.describe() : fmt::format("an array of {} numbers", count));
+  for (std::size_t i = 0; i < count; ++i) to[i] = child(std::to_string(i), (*json_)[i], rule.items).number();
 }
 
 glm::dvec3 JsonValue::direction() const {
@@ -146,26 +159,25 @@ glm::dvec3 JsonValue::direction() const {
   return glm::normalize(v);
 }
 
-glm::dvec3 JsonValue::color(const Range& each) const {
-  if (!json_->is_array() || json_->size() != 3) wanted("a colour [r, g, b]");
-  return vec3(each);
-}
-
 JsonItems JsonValue::items(std::string_view what) const {
-  if (!json_->is_array()) wanted(fmt::format("an array of {}", what));
+  const SchemaRule& rule = rule_of(SchemaRule::Type::array);
+  if (!json_->is_array() || json_->size() < rule.least_items || json_->size() > rule.most_items)
+    wanted(fmt::format("an array of {}{}", rule.count(), what));
   return JsonItems(*this);
 }
 
 std::size_t JsonItems::size() const { return array_.json().size(); }
 
 JsonValue JsonItems::operator[](std::size_t index) const {
-  return array_.child(std::to_string(index), array_.json()[index]);
+  const SchemaRule* items = array_.rule_of(SchemaRule::Type::array).items;
+  return array_.child(std::to_string(index), array_.json()[index], items);
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::members(std::string_view what) const {
   if (!json_->is_object()) wanted(fmt::format("an object of {}", what));
   std::vector<std::pair<std::string, JsonValue>> result;
-  for (const auto& [key, value] : json_->items()) result.emplace_back(key, child(key, value));
+  const SchemaRule* others = rule_of(SchemaRule::Type::object).others;
+  for (const auto& [key, value] : json_->items()) result.emplace_back(key, child(key, value, others));
   return result;
 }
 
@@ -173,38 +185,78 @@ JsonValue JsonValue::member(std::string_view key, std::string_view what) const {
   if (!json_->is_object()) wanted("an object");
   const auto found = json_->find(key);
   if (found == json_->end()) fail(fmt::format("missing key \"{}\": wanted {}", key, what));
-  return child(key, *found);
+  const SchemaRule& rule = rule_of(SchemaRule::Type::object);
+  const auto known = rule.keys.find(key);
+  return child(key, *found, known == rule.keys.end() ? nullptr : known->second.rule);
 }
 
-JsonValue JsonValue::member(std::string_view key, Names names) const {
-  const bool there = json_->is_object() && json_->contains(key);
-  return member(key, there ? "" : list_names(names));
+std::string JsonValue::type() const {
+  const SchemaRule& rule = rule_of(SchemaRule::Type::object);
+  const bool missing = json_->is_object() && !json_->contains("type");
+  return member("type", missing ? rule.keys.at("type").rule->describe() : "").choice();
 }
 
-JsonObject::JsonObject(const JsonValue& value, std::string_view kind) : value_(value), kind_(kind) {
+JsonObject::JsonObject(const JsonValue& value, std::string_view kind)
+    : value_(value), kind_(kind), rule_(schema_rule(kind)) {
   if (!value.json().is_object()) value.wanted("an object");
+  if (rule_) asked_.reserve(rule_->keys.size());
+  if (knows("type") && rule_->keys.at("type").rule->names.size() == 1) find("type");
 }
 
-void JsonObject::ask(std::string_view key) {
-  asked_.emplace_back(key);
+const SchemaRule::Key* JsonObject::ask(std::string_view key) {
   if (auto* all = value_.context().asked) (*all)[kind_].emplace(key);
+  if (!rule_) {
+    asked_.push_back(key);
+    return nullptr;
+  }
+  const auto found = rule_->keys.find(key);
+  if (found == rule_->keys.end())
+    throw std::logic_error(fmt::format("the schema's {} has no {}", kind_, key));
+  asked_.push_back(found->first);
+  return &found->second;
 }
 
 std::optional<JsonValue> JsonObject::find(std::string_view key) {
-  ask(key);
+  const SchemaRule::Key* known = ask(key);
   const auto found = value_.json().find(key);
-  if (found == value_.json().end()) return std::nullopt;
-  return value_.child(key, *found);
+  if (found != value_.json().end()) return value_.child(key, *found, known ? known->rule : nullptr);
+  if (known && known->required) at(key);
+  return std::nullopt;
+}
+
+std::optional<JsonValue> JsonObject::find_or_standard(std::string_view key) {
+  if (const auto found = find(key)) return found;
+  const auto& [rule, description, standard, required] = rule_->keys.find(key)->second;
+  if (!standard) return std::nullopt;
+  return JsonValue(*standard, value_.context(), "", rule);
+}
+
+bool JsonObject::has(std::string_view key) {
+  ask(key);
+  return value_.json().contains(key);
 }
 
 JsonValue JsonObject::at(std::string_view key, std::string_view what) {
-  if (auto found = find(key)) return *found;
+  if (has(key)) return *find(key);
+  const SchemaRule::Key* known = ask(key);
   std::vector<std::string> unknown;
   for (const auto& [name, value] : value_.json().items())
     if (std::ranges::find(asked_, name) == asked_.end()) unknown.push_back(name);
   const auto near = nearest_name(key, unknown);
-  value_.fail(fmt::format("missing key \"{}\": wanted {}{}", key, what,
+  std::string wanted(what);
+  if (wanted.empty()) wanted = known->rule->describe(false);
+  if (what.empty() && !known->description.empty()) wanted += ": " + brief(known->description);
+  value_.fail(fmt::format("missing key \"{}\": wanted {}{}", key, wanted,
                           near ? fmt::format(", found {}", json(*near).dump()) : std::string()));
+}
+
+void JsonObject::check(std::string_view key) {
+  const auto found = find(key);
+  if (!found) return;
+  if (rule_->keys.at(key).rule->type == SchemaRule::Type::integer)
+    found->integer();
+  else
+    found->text();
 }
 
 double JsonObject::number(std::string_view key, double fallback, const Range& range) {
@@ -217,31 +269,6 @@ int JsonObject::integer(std::string_view key, int fallback, int low, int high) {
   return found ? found->integer(low, high) : fallback;
 }
 
-bool JsonObject::boolean(std::string_view key, bool fallback) {
-  const auto found = find(key);
-  return found ? found->boolean() : fallback;
-}
-
-std::string JsonObject::text(std::string_view key, std::string_view fallback) {
-  const auto found = find(key);
-  return found ? found->text() : std::string(fallback);
-}
-
-std::string JsonObject::choice(std::string_view key, std::string_view fallback, Names names) {
-  const auto found = find(key);
-  return found ? found->choice(names) : std::string(fallback);
-}
-
-glm::dvec3 JsonObject::vec3(std::string_view key, const glm::dvec3& fallback, const Range& each) {
-  const auto found = find(key);
-  return found ? found->vec3(each) : fallback;
-}
-
-glm::dvec3 JsonObject::color(std::string_view key, const glm::dvec3& fallback, const Range& each) {
-  const auto found = find(key);
-  return found ? found->color(each) : fallback;
-}
-
 std::string JsonObject::one_of(Names keys) {
   std::vector<std::string_view> found;
   for (const std::string_view key : keys)
@@ -249,7 +276,7 @@ std::string JsonObject::one_of(Names keys) {
   if (found.size() == 1) return std::string(found.front());
   for (const auto& [name, value] : value_.json().items())  // a misspelt key explains a missing one
     if (const auto near = nearest_name(name, {keys.begin(), keys.end()}); found.empty() && near)
-      value_.child(name, value)
+      value_.child(name, value, nullptr)
           .fail(fmt::format("unknown key {}: did you mean \"{}\"?", json(name).dump(), *near));
   value_.fail(fmt::format("wanted one of {}, found {}", list_names(keys),
                           found.empty() ? "none" : list_names(found, "and")));
@@ -266,7 +293,7 @@ void JsonObject::refuse_unasked() const {
     const std::set<std::string> wanted(asked_.begin(), asked_.end());
     const std::string mend =
         did_you_mean(name, {wanted.begin(), wanted.end()}, fmt::format("wanted {}", fmt::join(wanted, ", ")));
-    value_.child(name, value).fail(fmt::format("unknown key {}: {}", json(name).dump(), mend));
+    value_.child(name, value, nullptr).fail(fmt::format("unknown key {}: {}", json(name).dump(), mend));
   }
 }
 

@@ -1,8 +1,9 @@
-// Strict JSON reading: a JsonValue knows its place (file and JSON pointer) for error messages; a JsonObject
-// records the keys it was asked for and rejects all others at the end.
+// Strict JSON reading: a JsonValue knows its place (file and JSON pointer) for error messages and the
+// schema's rule for it; a JsonObject records the keys it was asked for and rejects all others at the end.
 #pragma once
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
@@ -17,19 +18,11 @@
 #include <vector>
 
 #include "base/named_values.h"
+#include "scene/json/schema.h"
 
 namespace sundog {
 
-/// Allowed numbers. The default limits keep every square finite as a float.
-struct Range {
-  double low = -1e18, high = 1e18;
-  bool low_open = false, high_open = false;
-};
-inline constexpr Range any_number{};
 inline constexpr Range at_least_0{.low = 0};
-inline constexpr Range above_0{.low = 0, .low_open = true};
-inline constexpr Range zero_to_one{.low = 0, .high = 1};
-inline constexpr Range color_range{.low = 0, .high = 1e6};
 
 class FrameCache;
 
@@ -47,19 +40,20 @@ struct JsonContext {
   bool* plays = nullptr;                         // when set, whether a value was read that follows them
 };
 
-inline constexpr std::string_view quaternion_text = "a quaternion of 4 numbers x, y, z, w that are not all 0";
+/// Appends a reference token to `pointer`, escaped by RFC 6901.
+std::string join_pointer(std::string_view pointer, std::string_view key);
 
-/// Allowed keys or choices, in a static array.
-using Names = std::span<const std::string_view>;
+inline constexpr std::string_view quaternion_text = "a quaternion of 4 numbers x, y, z, w that are not all 0";
 
 class JsonItems;
 class JsonObject;
 
-/// A JSON value and its place. The document and the context must outlive it.
+/// A JSON value, its place and its rule. The document and the context must outlive it.
 class JsonValue {
  public:
-  JsonValue(const nlohmann::json& json, const JsonContext& context, std::string pointer = "")
-      : json_(&json), context_(&context), pointer_(std::move(pointer)) {}
+  JsonValue(const nlohmann::json& json, const JsonContext& context, std::string pointer = "",
+            const SchemaRule* rule = nullptr)
+      : json_(&json), context_(&context), pointer_(std::move(pointer)), rule_(rule) {}
 
   const nlohmann::json& json() const { return *json_; }
   const JsonContext& context() const { return *context_; }
@@ -72,32 +66,58 @@ class JsonValue {
   /// Throws "wanted `what`, found <this value, shortened>".
   [[noreturn]] void wanted(std::string_view what) const;
 
-  double number(const Range& range = any_number) const;
+  /// By the rule's range, or the given one.
+  double number() const;
+  double number(const Range& range) const;
+  int integer() const;
   int integer(int low, int high) const;
   bool boolean() const;
   /// A non-empty string.
   std::string text() const;
-  /// The string, which must be one of `names`.
-  std::string choice(std::span<const std::string_view> names) const;
+  /// The string, which must be one of the rule's names, or of `names`.
+  std::string choice() const { return choice(rule_of(SchemaRule::Type::string).names); }
+  std::string choice(Names names) const;
   /// The value of the table row that the string names.
   template <class Row, std::size_t N>
   auto choose(const std::array<Row, N>& table) const {
     return std::ranges::find(table, choice(names_of(table)), &Row::name)->value;
   }
-  glm::dvec3 vec3(const Range& each = any_number) const;
+  /// Three numbers; one for all where the schema has one, too.
+  glm::dvec3 vec3() const { return vector<3>(); }
   /// A nonzero [x, y, z], normalised.
   glm::dvec3 direction() const;
-  /// Linear [r, g, b], each from 0.
-  glm::dvec3 color(const Range& each = color_range) const;
+
+  /// Sets `to` to the value, which must keep the rule. Enumerators are in the order of the schema's names.
+  void get(double& to) const { to = number(); }
+  template <std::integral T>
+  void get(T& to) const {
+    to = static_cast<T>(integer());
+  }
+  void get(bool& to) const { to = boolean(); }
+  void get(std::string& to) const;
+  template <glm::length_t N>
+  void get(glm::vec<N, double>& to) const {
+    to = vector<N>();
+  }
+  template <class T>
+  void get(std::optional<T>& to) const {
+    get(to.emplace());
+  }
+  template <class T>
+    requires std::is_enum_v<T>
+  void get(T& to) const {
+    to = static_cast<T>(std::ranges::find(rule_of(SchemaRule::Type::string).names, choice()) -
+                        rule_of(SchemaRule::Type::string).names.begin());
+  }
 
   /// Items of an array; `what` completes "wanted an array of ...".
   JsonItems items(std::string_view what) const;
   /// Members of an object with arbitrary keys.
   std::vector<std::pair<std::string, JsonValue>> members(std::string_view what) const;
-  /// A required member, not recorded as asked for; used to look at an object's type before reading it.
+  /// A required member, not recorded as asked for.
   JsonValue member(std::string_view key, std::string_view what) const;
-  /// Likewise; the error lists `names`.
-  JsonValue member(std::string_view key, Names names) const;
+  /// The required "type" of an object that has no other keys in common with its alternatives.
+  std::string type() const;
 
   /// Passes this value, which must be an object, to `read(JsonObject&)`, then rejects unread keys. `kind` is
   /// the object's name in the JSON Schema's $defs.
@@ -107,11 +127,21 @@ class JsonValue {
  private:
   friend class JsonItems;
   friend class JsonObject;
-  JsonValue child(std::string_view key, const nlohmann::json& value) const;
+  JsonValue child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const;
+  /// The rule for a value of that type; one without limits where the schema has none.
+  const SchemaRule& rule_of(SchemaRule::Type type) const;
+  void read_numbers(double* to, std::size_t count) const;
+  template <glm::length_t N>
+  glm::vec<N, double> vector() const {
+    glm::vec<N, double> result{};
+    read_numbers(&result[0], N);
+    return result;
+  }
 
   const nlohmann::json* json_;
   const JsonContext* context_;
   std::string pointer_;
+  const SchemaRule* rule_;
 };
 
 /// Items of an array, created on access, so that the first bad one of millions is found without memory for
@@ -145,30 +175,42 @@ class JsonItems {
   JsonValue array_;
 };
 
-/// A JSON object whose keys must all be read. Created by JsonValue::object().
+/// A JSON object whose keys must all be read; a "type" that tells its kind is. Created by
+/// JsonValue::object().
 class JsonObject {
  public:
   const JsonValue& value() const { return value_; }
 
-  /// An optional key's value.
-  std::optional<JsonValue> find(std::string_view key);
-  /// A required key's value; `what` completes "missing key: wanted ...".
-  JsonValue at(std::string_view key, std::string_view what);
-  bool has(std::string_view key) { return find(key).has_value(); }
-
-  double number(std::string_view key, double fallback, const Range& range = any_number);
-  int integer(std::string_view key, int fallback, int low, int high);
-  bool boolean(std::string_view key, bool fallback);
-  std::string text(std::string_view key, std::string_view fallback);
-  std::string choice(std::string_view key, std::string_view fallback,
-                     std::span<const std::string_view> names);
-  template <class Row, std::size_t N>
-  auto choose(std::string_view key, decltype(Row::value) fallback, const std::array<Row, N>& table) {
-    const auto found = find(key);
-    return found ? found->choose(table) : fallback;
+  /// The value of a key of a document's object that is not at hand.
+  static JsonValue section(std::string_view kind, std::string_view key, const nlohmann::json& value,
+                           const JsonContext& context) {
+    return {value, context, join_pointer("", key), schema_rule(kind)->keys.at(key).rule};
   }
-  glm::dvec3 vec3(std::string_view key, const glm::dvec3& fallback, const Range& each = any_number);
-  glm::dvec3 color(std::string_view key, const glm::dvec3& fallback, const Range& each = color_range);
+  /// Whether the schema has the key.
+  bool knows(std::string_view key) const { return rule_ && rule_->keys.contains(key); }
+  /// A key's value; an error if the schema requires it and it is missing.
+  std::optional<JsonValue> find(std::string_view key);
+  /// A required key's value; `what`, otherwise the schema, completes "missing key: wanted ...".
+  JsonValue at(std::string_view key, std::string_view what = "");
+  bool has(std::string_view key);
+
+  /// Sets `to` to the key's value, else to the schema's default, else leaves it. Further pairs likewise.
+  template <class T, class... More>
+  void read(std::string_view key, T& to, More&&... more) {
+    if (const auto found = find_or_standard(key)) found->get(to);
+    if constexpr (sizeof...(more) > 0) read(std::forward<More>(more)...);
+  }
+  /// Likewise, by the table's row of that name.
+  template <class T, class Row, std::size_t N>
+  void read(std::string_view key, T& to, const std::array<Row, N>& table) {
+    if (const auto found = find_or_standard(key)) to = found->choose(table);
+  }
+  /// Checks a value that is not used.
+  void check(std::string_view key);
+
+  /// For ranges and defaults that other values decide.
+  double number(std::string_view key, double fallback, const Range& range);
+  int integer(std::string_view key, int fallback, int low, int high);
 
   /// Returns which of `keys` is present; exactly one must be.
   std::string one_of(std::span<const std::string_view> keys);
@@ -178,19 +220,16 @@ class JsonObject {
  private:
   friend class JsonValue;
   JsonObject(const JsonValue& value, std::string_view kind);
-  void ask(std::string_view key);
+  /// The schema's entry of a key, which it must have if it has the kind.
+  const SchemaRule::Key* ask(std::string_view key);
+  std::optional<JsonValue> find_or_standard(std::string_view key);
   void refuse_unasked() const;
 
   JsonValue value_;
   std::string kind_;
-  std::vector<std::string> asked_;  // may repeat
+  const SchemaRule* rule_;
+  std::vector<std::string_view> asked_;  // of the schema's strings; may repeat
 };
-
-/// "a, b or c", each in quotes.
-std::string list_names(Names names, std::string_view conjunction = "or");
-
-/// Appends a reference token to `pointer`, escaped by RFC 6901.
-std::string join_pointer(std::string_view pointer, std::string_view key);
 
 template <class Read>
 auto JsonValue::object(std::string_view kind, Read read) const {

@@ -89,9 +89,8 @@ Model ModelLibrary::read(const std::string& key, const fs::path& file, const Mod
 const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValue& from, const fs::path& file,
                                               const ModelOptions& options) {
   Playing playing;
+  object.read("animation", playing.animation, "cycle", playing.cycle);
   const auto name = object.find("animation"), cycle = object.find("cycle");
-  if (name) playing.animation = name->text();
-  if (cycle) playing.cycle = cycle->boolean();
   const std::tuple key(file_key(file), options.crease_angle, playing.animation, playing.cycle);
   if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
   Model model = read(std::get<0>(key), file, options, from.pointer());

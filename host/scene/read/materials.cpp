@@ -21,15 +21,13 @@ Pattern scale(const Pattern& pattern, double coefficient) {
 }
 
 dvec3 read_absorption(const JsonValue& value) {
-  if (value.json().is_array()) return value.vec3(at_least_0);
+  if (value.json().is_array()) return value.vec3();
   if (!value.json().is_object())
     value.wanted(
         "absorption per unit of length [r, g, b] or {\"color\": transmittance, \"distance\": its length}");
   return value.object("absorption", [](JsonObject& object) {
-    const dvec3 left =
-        object.at("color", "a colour [r, g, b]").color({.low = 0, .high = 1, .low_open = true});
     // + 0.0 turns the -0 of a colour of 1 into 0
-    return -glm::log(left) / object.at("distance", "a length").number(above_0) + 0.0;
+    return -glm::log(object.at("color").vec3()) / object.at("distance").number() + 0.0;
   });
 }
 
@@ -44,24 +42,13 @@ void check_indices(const JsonValue& value, MediumDescription& medium) {
   medium.ior = index_at(medium.dispersion, medium.ior, line_d);
 }
 
-Dispersion read_substance(const JsonValue& value) {
-  const std::string name = value.text();
-  if (const auto found = find_substance(name)) return *found;
-  std::vector<std::string> known;
-  for (const Substance& substance : substances()) known.emplace_back(substance.name);
-  value.wanted(fmt::format("an index of refraction or one of \"{}\"", fmt::join(known, "\", \"")));
-}
-
 /// Two or three Cauchy coefficients, or pairs for Sellmeier.
 Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
   const bool cauchy = kind == DispersionKind::cauchy;
-  const auto items = value.items(cauchy ? "2 or 3 numbers" : "2, 4, 6 or 8 numbers");
-  const bool good = cauchy ? items.size() == 2 || items.size() == 3
-                           : items.size() >= 2 && items.size() <= 8 && items.size() % 2 == 0;
-  if (!good) value.wanted(cauchy ? "an array of 2 or 3 numbers" : "an array of 2, 4, 6 or 8 numbers");
+  const auto items = value.items("numbers");
+  if (!cauchy && items.size() % 2 != 0) value.wanted("an array of 2, 4, 6 or 8 numbers");
   Dispersion dispersion{kind, {}};
-  for (std::size_t i = 0; i < items.size(); ++i)
-    dispersion.coefficients[i] = items[i].number({.low = -1e3, .high = 1e3});
+  for (std::size_t i = 0; i < items.size(); ++i) dispersion.coefficients[i] = items[i].number();
   return dispersion;
 }
 
@@ -72,13 +59,13 @@ void read_ior(JsonObject& object, MediumDescription& medium) {
   if (!ior) return;
   if (ior->json().is_string()) {
     if (abbe) abbe->fail("the \"ior\" is a substance's, which has its own dispersion");
-    medium.dispersion = read_substance(*ior);
+    medium.dispersion = *find_substance(ior->choice());
     check_indices(*ior, medium);
     return;
   }
-  medium.ior = ior->number(ior_range);
+  medium.ior = ior->number();
   if (!abbe) return;
-  medium.dispersion = cauchy_of_abbe(medium.ior, abbe->number({.low = 1, .high = 1e4}));
+  medium.dispersion = cauchy_of_abbe(medium.ior, abbe->number());
   check_indices(*abbe, medium);
 }
 
@@ -105,18 +92,21 @@ void refuse_texture_object(const JsonValue& value) {
 
 }  // namespace
 
-Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range) {
+Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures) {
   refuse_texture_object(value);
   if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
-  const dvec3 color = value.color(range);
+  const dvec3 color = value.vec3();
   return {color, color, -1};
 }
 
-double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture) {
-  refuse_texture_object(value);
-  if (!value.json().is_string()) return value.number(range);
-  *texture = textures.use(value, TextureUse::number);
-  return 1;
+void read_number(JsonObject& object, std::string_view key, double& to, int& texture,
+                 TextureLibrary& textures) {
+  const auto value = object.find(key);
+  if (!value) return object.read(key, to);
+  refuse_texture_object(*value);
+  if (!value->json().is_string()) return value->get(to);
+  texture = textures.use(*value, TextureUse::number);
+  to = 1;
 }
 
 namespace {
@@ -125,7 +115,7 @@ namespace {
 struct TermRules {
   Pattern color;
   double coefficient = 1;  // for an object or a texture without one
-  Range range = color_range;
+  const char* kind = "term";
   double* exponent = nullptr;
   int* exponent_texture = nullptr;
 };
@@ -134,23 +124,18 @@ struct TermRules {
 /// (specular: also "exponent").
 Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRules& rules) {
   refuse_texture_object(value);
-  if (value.json().is_number()) return scale(rules.color, value.number(rules.range));
+  if (value.json().is_number()) return scale(rules.color, value.number());
   if (value.json().is_string()) return scale(read_plain_color(value, textures), rules.coefficient);
   if (!value.json().is_object())
     value.wanted("a coefficient, a texture's name or {\"color\": [r, g, b], \"coefficient\": number}");
-  return value.object(rules.exponent          ? "specular_term"
-                      : rules.range.high <= 1 ? "ray_term"
-                                              : "term",
-                      [&](JsonObject& object) {
-                        Pattern result = rules.color;
-                        if (const auto own = object.find("color"))
-                          result = read_plain_color(*own, textures, rules.range);
-                        if (rules.exponent)
-                          if (const auto exponent = object.find("exponent"))
-                            *rules.exponent = read_number(*exponent, textures, {.low = 0, .high = 1e6},
-                                                          rules.exponent_texture);
-                        return scale(result, object.number("coefficient", rules.coefficient, rules.range));
-                      });
+  return value.object(rules.kind, [&](JsonObject& object) {
+    Pattern result = rules.color;
+    if (const auto own = object.find("color")) result = read_plain_color(*own, textures);
+    if (rules.exponent) read_number(object, "exponent", *rules.exponent, *rules.exponent_texture, textures);
+    double coefficient = rules.coefficient;
+    object.read("coefficient", coefficient);
+    return scale(result, coefficient);
+  });
 }
 
 Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
@@ -163,12 +148,10 @@ Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLib
         "a colour [r, g, b], a texture's name or {\"checker\": [colour, colour], \"size\": number}");
   refuse_texture_object(*color);
   color->object("checker", [&](JsonObject& checker) {
-    const JsonValue pair = checker.at("checker", "two colours");
-    const auto colors = pair.items("2 colours");
-    if (colors.size() != 2) pair.wanted("an array of 2 colours");
-    pattern = {colors[0].color(), colors[1].color()};
+    const auto colors = checker.at("checker").items("colours");
+    pattern = {colors[0].vec3(), colors[1].vec3()};
     material.checker = true;
-    material.checker_size = checker.number("size", 1, above_0);
+    checker.read("size", material.checker_size);
   });
   return pattern;
 }
@@ -183,8 +166,11 @@ void read_local_terms(JsonObject& object, MaterialDescription& material, Texture
   };
   const Pattern ambient = term("ambient", 0.1, {.color = color, .coefficient = 0.1});
   const Pattern diffuse = term("diffuse", 0.8, {.color = color, .coefficient = 0.8});
-  const Pattern specular =
-      term("specular", 0, {.color = {}, .exponent = &material.exponent, .exponent_texture = &maps.exponent});
+  const Pattern specular = term("specular", 0,
+                                {.color = {},
+                                 .kind = "specular_term",
+                                 .exponent = &material.exponent,
+                                 .exponent_texture = &maps.exponent});
   material.ambient = ambient.even, material.checker_ambient = ambient.odd, maps.ambient = ambient.texture;
   material.diffuse = diffuse.even, material.checker_diffuse = diffuse.odd, maps.diffuse = diffuse.texture;
   material.specular = specular.even, maps.specular = specular.texture;
@@ -232,65 +218,55 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
 
 /// {"texture": name, KEY: number}, or the name only.
 int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
-                const char* key, double* number, const Range& range = {.low = -1e6, .high = 1e6}) {
+                MaterialDescription& material, const char* key, double& number) {
   if (value.json().is_string()) return textures.use(value, use);
   if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
   return value.object(kind, [&](JsonObject& object) {
-    *number = object.number(key, *number, range);
-    return textures.use(object.at("texture", "the name of a texture"), use);
-  });
-}
-
-int read_displacement(const JsonValue& value, TextureLibrary& textures, MaterialDescription& material) {
-  if (value.json().is_string()) return textures.use(value, TextureUse::number);
-  if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
-  return value.object("displacement_map", [&](JsonObject& object) {
-    material.displacement = object.number("height", material.displacement, {.low = -1e6, .high = 1e6});
-    material.displacement_middle = object.number("middle", 0, zero_to_one);
-    material.displacement_edge = object.number("edge", 0, {.low = 0, .high = 1e6});
-    return textures.use(object.at("texture", "the name of a texture"), TextureUse::number);
+    object.read(key, number);
+    if (object.knows("edge"))
+      object.read("middle", material.displacement_middle, "edge", material.displacement_edge);
+    return textures.use(object.at("texture"), use);
   });
 }
 
 }  // namespace
 
 void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
-  static constexpr std::string_view sides[] = {"both", "front"}, shadows[] = {"filter", "opaque"};
   if (const auto map = object.find("normal_map"))
     material.textures.normal =
-        read_relief(*map, textures, TextureUse::data, "normal_map", "scale", &material.normal_scale);
+        read_relief(*map, textures, TextureUse::data, "normal_map", material, "scale", material.normal_scale);
   if (const auto bump = object.find("bump"))
     material.textures.height =
-        read_relief(*bump, textures, TextureUse::number, "bump_map", "height", &material.bump);
+        read_relief(*bump, textures, TextureUse::number, "bump_map", material, "height", material.bump);
   if (const auto parallax = object.find("parallax")) {
     object.not_both("bump", "parallax");
     material.parallax = 1;
-    material.textures.height = read_relief(*parallax, textures, TextureUse::number, "parallax_map", "depth",
-                                           &material.parallax, {.low = 0, .high = 1e6});
+    material.textures.height = read_relief(*parallax, textures, TextureUse::number, "parallax_map", material,
+                                           "depth", material.parallax);
     material.bump = material.textures.normal < 0 ? material.parallax : 0;
   }
   if (const auto displacement = object.find("displacement"))
-    material.displaced_by = read_displacement(*displacement, textures, material);
+    material.displaced_by = read_relief(*displacement, textures, TextureUse::number, "displacement_map",
+                                        material, "height", material.displacement);
   if (const auto occlusion = object.find("occlusion"))
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
-  material.one_sided = object.choice("sides", "both", sides) == "front";
+  std::string sides, shadow;
+  object.read("sides", sides, "shadow", shadow, "vertex_color", material.vertex_color);
+  material.one_sided = sides == "front";
   if (material.one_sided && (material.medium >= 0 || material.wall_ior > 0))
     object.find("sides")->fail("a material with a \"medium\" or an \"ior\" has both sides");
-  material.shadow_opaque = object.choice("shadow", "filter", shadows) == "opaque";
+  material.shadow_opaque = shadow == "opaque";
   material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
-  material.vertex_color = object.boolean("vertex_color", false);
 }
 
 namespace {
 
 void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
-  const auto opacity = object.find("opacity");
-  material.cutoff = object.number("cutoff", 0, zero_to_one);
-  if (!opacity) return;
-  material.opacity = read_number(*opacity, textures, zero_to_one, &material.textures.opacity);
+  object.read("cutoff", material.cutoff);
+  read_number(object, "opacity", material.opacity, material.textures.opacity, textures);
   if ((material.medium >= 0 || material.wall_ior > 0) &&
       (material.opacity < 1 || material.textures.opacity >= 0))
-    opacity->fail(
+    object.at("opacity").fail(
         "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" "
         "instead");
 }
@@ -316,36 +292,33 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
     MediumDescription medium{.name = std::move(name)};
     read_index(object, medium);
     if (const auto absorption = object.find("absorption")) medium.absorption = read_absorption(*absorption);
-    if (const auto scattering = object.find("scattering")) medium.scattering = scattering->vec3(at_least_0);
-    medium.anisotropy = object.number("anisotropy", medium.anisotropy, mean_cosines);
-    medium.priority = object.integer("priority", medium.priority, -1000, 1000);
+    object.read("scattering", medium.scattering, "anisotropy", medium.anisotropy, "priority",
+                medium.priority);
     return medium;
   });
 }
 
 MaterialDescription read_material(const JsonValue& value, std::string name, const NameTable& medium_names,
                                   std::vector<MediumDescription>& media, TextureLibrary& textures) {
-  static constexpr std::string_view types[] = {"phong", "dielectric", "openpbr"},
-                                    shadings[] = {"phong", "blinn"};
-  if (value.json().is_object() && value.json().contains("type") && value.json()["type"] == "openpbr")
+  if (value.json().is_object() && value.json().contains("type") && value.type() == "openpbr")
     return read_openpbr(value, std::move(name), media, textures);
   return value.object("material", [&](JsonObject& object) {
     MaterialDescription material;
     material.name = std::move(name);
-    const bool dielectric = object.choice("type", "phong", types) == "dielectric";
-    material.type = dielectric ? MaterialType::dielectric : MaterialType::phong;
+    std::string shading;
+    object.read("type", material.type, "shading", shading, "roughness", material.roughness);
+    object.read("multiple_scattering", material.multiple_scattering);
+    const bool dielectric = material.type == MaterialType::dielectric;
     read_local_terms(object, material, textures);
-    material.blinn = object.choice("shading", "phong", shadings) == "blinn";
+    material.blinn = shading == "blinn";
     const auto ray_term = [&](std::string_view key) {
       const auto found = object.find(key);
       if (!found) return Pattern{dvec3(dielectric ? 1 : 0), dvec3(1), -1};
-      return read_term(*found, textures, {.color = {}, .range = zero_to_one});
+      return read_term(*found, textures, {.color = {}, .kind = "ray_term"});
     };
     const Pattern reflection = ray_term("reflection"), transmission = ray_term("transmission");
     material.reflection = reflection.even, material.textures.reflection = reflection.texture;
     material.transmission = transmission.even, material.textures.transmission = transmission.texture;
-    material.roughness = object.number("roughness", material.roughness, zero_to_one);
-    material.multiple_scattering = object.boolean("multiple_scattering", material.multiple_scattering);
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
     read_surface(object, material, textures);

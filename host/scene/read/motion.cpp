@@ -4,14 +4,11 @@
 namespace sundog {
 namespace {
 
-constexpr Range turned_degrees{.low = -36000, .high = 36000};
-constexpr Range grown_sizes{.low = 1e-3, .high = 1e3};
-
 /// Returns whether the turn's centre is given.
 bool read_turn(const JsonValue& value, const dmat4& world_from_parent, TurnDescription& turn) {
   return value.object("turns_by", [&](JsonObject& object) {
-    turn.axis = object.at("axis", "a direction [x, y, z]").direction();
-    turn.degrees = object.at("degrees", "an angle in degrees").number(turned_degrees);
+    turn.axis = object.at("axis").direction();
+    object.read("degrees", turn.degrees);
     const auto about = object.find("about");
     if (about) turn.about = dvec3(world_from_parent * glm::dvec4(about->vec3(), 1));
     return about.has_value();
@@ -30,7 +27,7 @@ void read_motion(JsonObject& object, const dmat4& world_from_parent, Placement& 
   turn.about = dvec3(placement.world_from_object[3]);
   bool placed = false;
   if (const auto turns = object.find("turns_by")) placed = read_turn(*turns, world_from_parent, turn);
-  turn.growth = object.number("grows_to", 1, grown_sizes);
+  object.read("grows_to", turn.growth);
   placement.turns_about_middle = false;
   if (turn.degrees == 0 && turn.growth == 1) return;
   placement.turns_about_middle = !placed;

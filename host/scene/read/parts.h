@@ -27,8 +27,6 @@ LightDescription read_light(const JsonValue& value);
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);
-/// Of scattering; at 1 nothing would be scattered.
-inline constexpr Range mean_cosines{.low = -0.99, .high = 0.99};
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);

@@ -50,12 +50,12 @@ class SceneReader {
 
  private:
   void read_root(JsonObject& object) {
-    object.text("$schema", " ");
+    object.check("$schema");
     if (const auto image = object.find("image")) scene_.image = read_image(*image);
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
     const auto animate = object.find("animate");
     if (animate) read_tracks(*animate);  // animate.cpp has applied them
-    scene_.frames_per_second = object.number("frames_per_second", default_frames_per_second, above_0);
+    object.read("frames_per_second", scene_.frames_per_second, "unit", scene_.unit);
     bool placed = false;
     if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
     if (const auto lights = object.find("lights"))
@@ -64,8 +64,7 @@ class SceneReader {
       scene_.environment =
           read_environment(*environment, [&](const JsonValue& file) { return read_picture(file); });
     read_tables(object);
-    for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
-      read_object(item, Placement{});
+    for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, Placement{});
     if (const bool* plays = root_.context().plays) scene_.plays = scene_.plays || *plays;
     if (root_.context().seconds && !animate && !scene_.plays)
       root_.member("animate", "an array of tracks: what the frames change");
@@ -77,7 +76,6 @@ class SceneReader {
   }
 
   void read_tables(JsonObject& object) {
-    scene_.unit = object.number("unit", default_unit, above_0);
     names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
@@ -138,8 +136,7 @@ class SceneReader {
       if (source == "file") {
         const fs::path file = find_model(from);
         ModelOptions options = model_options();
-        if (const auto angle = object.find("crease_angle"))
-          options.crease_angle = angle->number({.low = 0, .high = 180});
+        object.read("crease_angle", options.crease_angle);
         return library_.load(object, from, file, options);
       }
       const auto generate = [&] { return model_of(generate_mesh(from), name); };
@@ -176,29 +173,20 @@ class SceneReader {
   }
 
   void read_object(const JsonValue& value, const Placement& parent) {
-    static const auto types = [] {
-      std::vector<std::string_view> result(solid_types().begin(), solid_types().end());
-      result.insert(result.end(), field_types().begin(), field_types().end());
-      result.insert(result.end(), {"field", "mesh", "model", "group"});
-      return result;
-    }();
-    const std::string type = value.member("type", types).choice(types);
+    const std::string type = value.type();
     const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
     value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
-      object.at("type", "");
       const Placement placement = read_placement(object, parent);
       if (type == "group") {
-        for (const JsonValue& item : object.at("objects", "an array of objects").items("objects"))
-          read_object(item, placement);
+        for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, placement);
       } else if (type == "mesh") {
-        const JsonValue name = object.at("mesh", "the name of a mesh");
+        const JsonValue name = object.at("mesh");
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
-        const JsonValue file = object.at("file", "the path of a model file");
+        const JsonValue file = object.at("file");
         library_.place(library_.load(object, file, find_model(file), model_options()), placement);
       } else if (type == "field") {
-        place_field(object, find_name(object.at("field", "the name of a field"), fields_, "field"),
-                    placement);
+        place_field(object, find_name(object.at("field"), fields_, "field"), placement);
       } else if (field) {
         place_field(object, add_field(object, type), placement);
       } else {
@@ -217,7 +205,7 @@ class SceneReader {
   Placement read_placement(JsonObject& object, const Placement& parent) {
     Placement placement = parent;
     placement.place = object.value().pointer();
-    placement.name = object.text("name", parent.name);
+    object.read("name", placement.name);
     if (const auto material = object.find("material"))
       placement.material = find_name(*material, names_.materials, "material");
     if (const auto transform = object.find("transform")) {

@@ -17,7 +17,11 @@ namespace sundog {
 
 namespace {
 
-dmat4 read_center(JsonObject& object) { return glm::translate(dmat4(1), object.vec3("center", dvec3(0))); }
+dmat4 read_point(JsonObject& object, std::string_view key) {
+  dvec3 point(0);
+  object.read(key, point);
+  return glm::translate(dmat4(1), point);
+}
 
 /// The rotation from +y to the direction under `key`.
 dmat4 read_axis(JsonObject& object, std::string_view key) {
@@ -26,19 +30,12 @@ dmat4 read_axis(JsonObject& object, std::string_view key) {
 }
 
 PlacedShape read_shape(SphereShape sphere, JsonObject& object) {
-  sphere.radius = object.number("radius", sphere.radius, above_0);
-  return {sphere, read_center(object)};
+  object.read("radius", sphere.radius);
+  return {sphere, read_point(object, "center")};
 }
 
 PlacedShape read_shape(PlaneShape plane, JsonObject& object) {
-  const dmat4 moved = glm::translate(dmat4(1), object.vec3("point", dvec3(0)));
-  return {plane, moved * read_axis(object, "normal")};
-}
-
-dvec3 read_half(const JsonValue& value) {
-  if (value.json().is_number()) return dvec3(value.number(above_0));
-  if (!value.json().is_array()) value.wanted("a half size or an array of 3 half sizes");
-  return value.vec3(above_0);
+  return {plane, read_point(object, "point") * read_axis(object, "normal")};
 }
 
 /// A box's half sizes, from "half" (and "center") or from the corners "min" and "max"; moves it into place.
@@ -46,13 +43,13 @@ dvec3 read_extent(JsonObject& object, dmat4& placed) {
   object.not_both("half", "min");
   object.not_both("half", "max");
   if (!object.has("min") && !object.has("max")) {
-    placed = read_center(object);
+    placed = read_point(object, "center");
     const auto half = object.find("half");
-    return half ? read_half(*half) : dvec3(1);
+    return half ? half->vec3() : dvec3(1);
   }
   object.not_both("center", "min");
-  const dvec3 low = object.at("min", "the corner beside \"max\"").vec3();
-  const dvec3 high = object.at("max", "the corner beside \"min\"").vec3();
+  const dvec3 low = object.at("min").vec3();
+  const dvec3 high = object.at("max").vec3();
   if (!glm::all(glm::lessThan(low, high)))
     object.value().fail("wanted each of \"min\" below its part of \"max\"");
   placed = glm::translate(dmat4(1), (low + high) * 0.5);
@@ -81,12 +78,14 @@ double read_span(JsonObject& object, dmat4& placed) {
   object.not_both("height", "from");
   object.not_both("height", "to");
   if (!object.has("from") && !object.has("to")) {
-    placed = read_center(object);
-    return object.number("height", 2, above_0) / 2;
+    placed = read_point(object, "center");
+    double height = 0;
+    object.read("height", height);
+    return height / 2;
   }
   object.not_both("center", "from");
-  const dvec3 from = object.at("from", "the end beside \"to\"").vec3();
-  const JsonValue end = object.at("to", "the end beside \"from\"");
+  const dvec3 from = object.at("from").vec3();
+  const JsonValue end = object.at("to");
   const dvec3 axis = end.vec3() - from;
   if (!(glm::length(axis) > 1e-12)) end.fail("wanted a point away from \"from\", found the same one");
   placed = glm::translate(dmat4(1), from + axis * 0.5) * rotation_from_y(glm::normalize(axis));
@@ -95,45 +94,40 @@ double read_span(JsonObject& object, dmat4& placed) {
 
 PlacedShape read_shape(CylinderShape cylinder, JsonObject& object) {
   PlacedShape result;
-  cylinder.radius = object.number("radius", cylinder.radius, above_0);
+  object.read("radius", cylinder.radius, "capped", cylinder.capped);
   cylinder.half_height = read_span(object, result.placed);
-  cylinder.capped = object.boolean("capped", cylinder.capped);
   result.shape = cylinder;
   return result;
 }
 
 PlacedShape read_shape(ConeShape cone, JsonObject& object) {
   PlacedShape result;
-  cone.bottom_radius = object.number("bottom_radius", cone.bottom_radius, at_least_0);
-  cone.top_radius = object.number("top_radius", cone.top_radius, at_least_0);
+  object.read("bottom_radius", cone.bottom_radius, "top_radius", cone.top_radius, "capped", cone.capped);
   if (cone.bottom_radius == 0 && cone.top_radius == 0)
     object.value().fail("wanted a \"bottom_radius\" or a \"top_radius\" above 0, found both 0");
   cone.half_height = read_span(object, result.placed);
-  cone.capped = object.boolean("capped", cone.capped);
   result.shape = cone;
   return result;
 }
 
 PlacedShape read_shape(DiskShape disk, JsonObject& object) {
-  disk.radius = object.number("radius", disk.radius, above_0);
+  object.read("radius", disk.radius);
   disk.inner_radius = object.number("inner_radius", 0, {.low = 0, .high = disk.radius, .high_open = true});
-  return {disk, read_center(object) * read_axis(object, "normal")};
+  return {disk, read_point(object, "center") * read_axis(object, "normal")};
 }
 
 PlacedShape read_shape(RectangleShape rectangle, JsonObject& object) {
-  if (const auto size = object.find("size")) {
-    const auto edges = size->items("2 lengths");
-    if (edges.size() != 2) size->wanted("an array of 2 lengths");
-    rectangle.half = dvec2(edges[0].number(above_0), edges[1].number(above_0)) / 2.0;
-  }
-  return {rectangle, read_center(object) * read_axis(object, "normal")};
+  dvec2 size(0);
+  object.read("size", size);
+  rectangle.half = size / 2.0;
+  return {rectangle, read_point(object, "center") * read_axis(object, "normal")};
 }
 
 PlacedShape read_shape(TorusShape torus, JsonObject& object) {
-  torus.major_radius = object.number("major_radius", torus.major_radius, above_0);
+  object.read("major_radius", torus.major_radius);
   const Range range{.low = 0, .high = torus.major_radius, .low_open = true, .high_open = true};
   torus.minor_radius = object.number("minor_radius", torus.major_radius / 4, range);
-  return {torus, read_center(object) * read_axis(object, "axis")};
+  return {torus, read_point(object, "center") * read_axis(object, "axis")};
 }
 
 // Distance fields of the solids that may have an inside.

@@ -13,9 +13,10 @@ struct Pattern {
 inline constexpr Range ior_range{.low = 0.01, .high = 100};
 
 /// Reads a colour, or the name of a texture.
-Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures, const Range& range = color_range);
+Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures);
 /// Reads a number, or the name of a texture (a factor on 1).
-double read_number(const JsonValue& value, TextureLibrary& textures, const Range& range, int* texture);
+void read_number(JsonObject& object, std::string_view key, double& to, int& texture,
+                 TextureLibrary& textures);
 /// Reads a surface's relief, sides, treatment of shadow rays and use of vertex colours.
 void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures);
 

@@ -45,7 +45,7 @@ Head read_head(const json& document, const JsonContext& context, const SceneDesc
   const auto find = [&](std::string_view key) -> std::optional<JsonValue> {
     const auto found = document.find(key);
     if (found == document.end()) return std::nullopt;
-    return JsonValue(*found, own, join_pointer("", key));
+    return JsonObject::section("scene", key, *found, own);
   };
   head.names = read_surfaces(JsonValue(document, own), find, head.scene, textures);
   head.lacks_images = textures.lacks_images();
@@ -101,7 +101,7 @@ SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find_own, S
   const auto find = [&](std::string_view key) {
     const auto own = find_own(key);
     const auto found = with_presets.find(key);
-    return found == with_presets.end() ? own : JsonValue(*found, root.context(), join_pointer("", key));
+    return found == with_presets.end() ? own : JsonObject::section("scene", key, *found, root.context());
   };
   if (const auto media = find("media"))
     for (const auto& [name, value] : media->members("media")) {

@@ -24,30 +24,17 @@ namespace sundog {
 namespace fs = std::filesystem;
 namespace {
 
-/// Kinds that mix two colours.
-constexpr std::array<std::string_view, 9> pattern_types{"checker", "stripes", "gradient", "brick",  "noise",
-                                                        "cells",   "marble",  "wood",     "formula"};
-
 constexpr std::uintmax_t most_image_bytes = std::uintmax_t{1} << 31;
-
-glm::dvec2 read_pair(const JsonValue& value, const Range& range) {
-  if (value.json().is_number()) return glm::dvec2(value.number(range));
-  const auto items = value.items("2 numbers");
-  if (items.size() != 2) value.wanted("a number or an array of 2 numbers");
-  return {items[0].number(range), items[1].number(range)};
-}
 
 /// From the mapping's u and v to the texture's. The scene scales, rotates and moves the picture, so
 /// coordinates are transformed inversely.
 glm::dmat3 read_uv(JsonObject& object) {
   glm::dvec2 offset(0), scale(1);
-  if (const auto found = object.find("offset")) offset = read_pair(*found, {.low = -1e6, .high = 1e6});
-  const double angle = object.number("rotate", 0, {.low = -1e6, .high = 1e6}) * std::numbers::pi / 180;
-  if (const auto found = object.find("scale")) {
-    scale = read_pair(*found, {.low = -1e6, .high = 1e6});
-    if (std::abs(scale.x) < 1e-6 || std::abs(scale.y) < 1e-6)
-      found->wanted("scales of 1e-6 or more, or -1e-6 or less");
-  }
+  double degrees = 0;
+  object.read("offset", offset, "scale", scale, "rotate", degrees);
+  if (std::abs(scale.x) < 1e-6 || std::abs(scale.y) < 1e-6)
+    object.at("scale").wanted("scales of 1e-6 or more, or -1e-6 or less");
+  const double angle = degrees * std::numbers::pi / 180;
   const double c = std::cos(angle), s = std::sin(angle);
   const glm::dmat3 moved(glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(-offset, 1));
   const glm::dmat3 turned(glm::dvec3(c, -s, 0), glm::dvec3(s, c, 0), glm::dvec3(0, 0, 1));
@@ -55,23 +42,16 @@ glm::dmat3 read_uv(JsonObject& object) {
   return scaled * turned * moved;
 }
 
-Wrap read_wrap(const JsonValue& value) {
-  static constexpr std::array wraps = {NamedValue<Wrap>{"repeat", Wrap::repeat},
-                                       NamedValue<Wrap>{"mirror", Wrap::mirror},
-                                       NamedValue<Wrap>{"clamp", Wrap::clamp}};
-  return value.choose(wraps);
-}
-
 void read_wraps(JsonObject& object, TextureDescription& texture) {
   const auto found = object.find("wrap");
   if (!found) return;
   if (!found->json().is_array()) {
-    texture.wrap[0] = texture.wrap[1] = read_wrap(*found);
+    found->get(texture.wrap[0]);
+    texture.wrap[1] = texture.wrap[0];
     return;
   }
-  const auto items = found->items("2 ways to wrap");
-  if (items.size() != 2) found->wanted("\"repeat\", \"mirror\" or \"clamp\", or an array of 2 of them");
-  for (std::size_t i = 0; i < 2; ++i) texture.wrap[i] = read_wrap(items[i]);
+  const auto items = found->items("ways to wrap");
+  for (std::size_t i = 0; i < 2; ++i) items[i].get(texture.wrap[i]);
 }
 
 /// An image file named in the scene, relative to the scene's folder.
@@ -86,14 +66,8 @@ fs::path find_image(const JsonValue& value) {
 }  // namespace
 
 void TextureLibrary::read(const JsonValue& value, const std::string& name) {
-  static constexpr auto types = [] {
-    std::array<std::string_view, pattern_types.size() + 4> all{"image", "vertex_color", "ramp", "product"};
-    std::copy(pattern_types.begin(), pattern_types.end(), all.begin() + 4);
-    return all;
-  }();
-  const std::string type = value.member("type", types).choice(types);
+  const std::string type = value.type();
   Entry entry = value.object(type + "_texture", [&](JsonObject& object) {
-    object.at("type", "");
     if (type == "image") return read_image(object);
     if (type == "vertex_color") return read_vertex_color(object);
     if (type == "ramp") return read_ramp(object);
@@ -133,24 +107,24 @@ std::string TextureLibrary::named(const JsonValue& name) const {
 
 /// Reads a pattern's parameters, such as its octaves.
 static void read_parameters(JsonObject& object, const std::string& type, TextureDescription& texture) {
-  double* to = texture.parameter;
-  if (type == "stripes") to[0] = object.number("share", 0.5, zero_to_one);
+  auto& to = texture.parameter;
+  if (type == "stripes") object.read("share", to[0]);
   if (type == "brick") {
-    to[0] = object.number("mortar", 0.05, zero_to_one);
+    object.read("mortar", to[0]);
     to[1] = std::min(1.0, 2 * to[0]);  // bricks are twice as long as high
   }
-  if (type != "noise" && type != "marble" && type != "wood") return;
-  to[0] = object.integer("octaves", type == "noise" ? 1 : 4, 1, 12);
-  to[1] = object.number("gain", 0.5, zero_to_one);
-  static constexpr std::string_view kinds[] = {"gradient", "value"};
-  if (type == "noise") to[2] = object.choice("kind", "gradient", kinds) == "gradient" ? 1 : 0;
-  if (type == "marble") to[2] = object.number("turbulence", 1, {.low = 0, .high = 1e3});
-  if (type == "wood") to[2] = object.number("turbulence", 0.3, {.low = 0, .high = 1e3});
+  if (!object.knows("octaves")) return;
+  object.read("octaves", to[0], "gain", to[1]);
+  if (object.knows("turbulence")) object.read("turbulence", to[2]);
+  if (type != "noise") return;
+  std::string kind;
+  object.read("kind", kind);
+  to[2] = kind == "gradient" ? 1 : 0;
 }
 
 /// Reads a formula and lowers it as a check. Returns whether it gives colours, which are not mixed.
 static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
-  object.at("formula", "a text of the formula language");
+  object.at("formula");
   formula.text = read_text(object, "formula");
   formula.parameters = read_declarations(object, {&formula.text, 1});
   try {
@@ -163,13 +137,8 @@ static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
 }
 
 /// Reads a texture's projection and placement.
-static void read_mapping(JsonObject& object, Mapping standard, TextureDescription& texture) {
-  static constexpr std::array projections = {
-      NamedValue<Mapping>{"uv", Mapping::uv}, NamedValue<Mapping>{"object", Mapping::object},
-      NamedValue<Mapping>{"spherical", Mapping::spherical},
-      NamedValue<Mapping>{"cylindrical", Mapping::cylindrical}, NamedValue<Mapping>{"box", Mapping::box}};
-  texture.mapping = object.choose("projection", standard, projections);
-  texture.uv_set = object.integer("uv_set", 0, 0, 3);
+static void read_mapping(JsonObject& object, TextureDescription& texture) {
+  object.read("projection", texture.mapping, "uv_set", texture.uv_set);
   if (const auto placed = object.find("transform")) {
     const dmat4 transform = read_transform(*placed);
     check_transform(transform, *placed);
@@ -184,8 +153,9 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
   if (type == #name) texture.kind = TEXTURE_##constant;
   TEXTURES(SUNDOG_KIND)
 #undef SUNDOG_KIND
-  read_mapping(object, Mapping::object, texture);
-  const double size = object.number("size", 1, {.low = 1e-6, .high = 1e6});
+  read_mapping(object, texture);
+  double size = 0;
+  object.read("size", size);
   texture.placement = glm::scale(dmat4(1), dvec3(1 / size)) * texture.placement;
   texture.uv = glm::dmat3(glm::dvec3(1 / size, 0, 0), glm::dvec3(0, 1 / size, 0), glm::dvec3(0, 0, 1));
   if (texture.mapping == Mapping::spherical || texture.mapping == Mapping::cylindrical)
@@ -199,16 +169,15 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
   const auto colors = object.find("colors");
   if (!colors) return entry;
   if (colored) colors->fail("the formula gives colours by itself; only a number mixes two");
-  const auto items = colors->items("2 colours or names of textures");
-  if (items.size() != 2) colors->wanted("an array of 2 colours or names of textures");
+  const auto items = colors->items("colours or names of textures");
   if (!items[0].json().is_string() && !items[1].json().is_string()) {
-    const dvec3 a = items[0].color(), b = items[1].color();
+    const dvec3 a = items[0].vec3(), b = items[1].vec3();
     texture.factor = glm::dvec4(b - a, 0);
     texture.offset = glm::dvec4(a, 1);
     return entry;
   }
   for (std::size_t i = 0; i < 2; ++i)
-    entry.of[i] = items[i].json().is_string() ? refer(items[i]) : add_color(items[i].color());
+    entry.of[i] = items[i].json().is_string() ? refer(items[i]) : add_color(items[i].vec3());
   return entry;
 }
 
@@ -224,36 +193,30 @@ std::string TextureLibrary::add_color(const dvec3& color) {
 TextureLibrary::Entry TextureLibrary::read_ramp(JsonObject& object) {
   Entry entry;
   entry.texture.kind = TEXTURE_RAMP;
-  entry.of[0] = refer(object.at("of", "the name of a texture"));
-  const JsonValue stops = object.at("stops", "an array of places and colours");
-  for (const JsonValue& item : stops.items("places and colours"))
+  entry.of[0] = refer(object.at("of"));
+  for (const JsonValue& item : object.at("stops").items("places and colours"))
     item.object("ramp_stop", [&](JsonObject& stop) {
       RampStop made;
-      made.at = stop.at("at", "a number from 0 to 1").number(zero_to_one);
-      made.color = stop.at("color", "a colour [r, g, b]").color();
+      stop.read("at", made.at, "color", made.color);
       if (!entry.texture.stops.empty() && made.at < entry.texture.stops.back().at)
         item.wanted("places in their order");
       entry.texture.stops.push_back(made);
     });
-  if (entry.texture.stops.empty()) stops.wanted("a stop or more");
   return entry;
 }
 
 TextureLibrary::Entry TextureLibrary::read_product(JsonObject& object) {
   Entry entry;
   entry.texture.kind = TEXTURE_PRODUCT;
-  const JsonValue of = object.at("of", "the names of two textures");
-  const auto items = of.items("2 names of textures");
-  if (items.size() != 2) of.wanted("an array of 2 names of textures");
+  const auto items = object.at("of").items("names of textures");
   for (std::size_t i = 0; i < 2; ++i) entry.of[i] = refer(items[i]);
   return entry;
 }
 
 static int read_channel(JsonObject& object) {
-  static constexpr std::array channels = {NamedValue<int>{"red", 0}, NamedValue<int>{"green", 1},
-                                          NamedValue<int>{"blue", 2}, NamedValue<int>{"alpha", 3},
-                                          NamedValue<int>{"all", -1}};
-  return object.choose("channel", -1, channels);
+  enum class Channel { red, green, blue, alpha, all } channel{};
+  object.read("channel", channel);
+  return channel == Channel::all ? -1 : static_cast<int>(channel);
 }
 
 TextureLibrary::Entry TextureLibrary::read_vertex_color(JsonObject& object) {
@@ -264,23 +227,15 @@ TextureLibrary::Entry TextureLibrary::read_vertex_color(JsonObject& object) {
 }
 
 TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
-  using Encoding = Entry::Encoding;
-  static constexpr std::array encodings = {NamedValue<Encoding>{"auto", Encoding::by_use},
-                                           NamedValue<Encoding>{"srgb", Encoding::srgb},
-                                           NamedValue<Encoding>{"linear", Encoding::linear}};
-  static constexpr std::array filters = {NamedValue<TextureFilter>{"trilinear", TextureFilter::trilinear},
-                                         NamedValue<TextureFilter>{"bilinear", TextureFilter::bilinear},
-                                         NamedValue<TextureFilter>{"nearest", TextureFilter::nearest}};
   Entry entry;
   TextureDescription& texture = entry.texture;
   texture.kind = TEXTURE_IMAGE;
-  const JsonValue file = object.at("file", "the path of an image");
+  const JsonValue file = object.at("file");
   entry.file = find_image(file).string();
   entry.place = file.pointer();
-  entry.encoding = object.choose("encoding", Encoding::by_use, encodings);
-  texture.filter = object.choose("filter", TextureFilter::trilinear, filters);
+  object.read("encoding", entry.encoding, "filter", texture.filter);
   read_wraps(object, texture);
-  read_mapping(object, Mapping::uv, texture);
+  read_mapping(object, texture);
   texture.uv = read_uv(object);
   texture.channel = read_channel(object);
   return entry;

@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Range frame_range{.low = -1e6, .high = 1e6};
 constexpr std::string_view numbers_text = "a number or an array of numbers";
 
 bool is_numeric(const json& value) {
@@ -45,16 +44,15 @@ std::optional<TrackHandle> read_handle(JsonObject& object, const char* name) {
   const auto value = object.find(name);
   if (!value) return std::nullopt;
   return value->object("track_handle", [](JsonObject& handle) {
-    return TrackHandle{handle.at("frame", "a frame's number").number(frame_range),
-                       numbers(handle.at("value", numbers_text))};
+    return TrackHandle{handle.at("frame").number(), numbers(handle.at("value"))};
   });
 }
 
 TrackKey read_key(const JsonValue& value, Track::Kind kind) {
   return value.object("track_key", [&](JsonObject& object) {
     TrackKey key;
-    key.frame = object.at("frame", "a frame's number").number(frame_range);
-    const JsonValue at = object.at("value", "the value at that frame");
+    object.read("frame", key.frame);
+    const JsonValue at = object.at("value");
     key.value = at.json();
     if (at.json().is_object() || at.json().is_null()) at.wanted("a number, an array, a text, true or false");
     if (is_numeric(at.json())) key.values = numbers(at);
@@ -81,8 +79,8 @@ void check_next(const JsonValue& place, const TrackKey& before, const TrackKey& 
 /// Curves that came back in time would have two values at a frame.
 void check_handles(const JsonValue& place, const Track& track, std::size_t i) {
   const TrackKey& key = track.keys[i];
-  const double from = i > 0 ? track.keys[i - 1].frame : frame_range.low,
-               to = i + 1 < track.keys.size() ? track.keys[i + 1].frame : frame_range.high;
+  const double from = i > 0 ? track.keys[i - 1].frame : any_number.low,
+               to = i + 1 < track.keys.size() ? track.keys[i + 1].frame : any_number.high;
   const auto check = [&](const std::optional<TrackHandle>& handle, double low, double high) {
     if (handle && !(handle->frame >= low && handle->frame <= high))
       place.fail(
@@ -97,46 +95,40 @@ void check_handles(const JsonValue& place, const Track& track, std::size_t i) {
 }
 
 void read_keys(JsonObject& object, Track& track) {
-  const JsonValue list = object.at("keys", "an array of keys");
+  const JsonValue list = object.at("keys");
   const JsonItems items = list.items("keys");
   for (const JsonValue& item : items) {
     TrackKey key = read_key(item, track.kind);
     if (!track.keys.empty()) check_next(item, track.keys.back(), key);
     track.keys.push_back(std::move(key));
   }
-  if (track.keys.empty()) list.wanted("an array of one key or more");
   for (std::size_t i = 0; i < track.keys.size(); ++i) check_handles(items[i], track, i);
-  track.whole = object.boolean("whole", false);
+  object.read("whole", track.whole);
 }
 
 void read_turn(JsonObject& object, Track& track) {
   if (const auto axis = object.find("axis")) track.axis = axis->direction();
-  track.center = object.vec3("center", track.center);
-  track.degrees = object.number("degrees", track.degrees);
-  track.first = object.number("first", track.first, frame_range);
-  const JsonValue last = object.at("last", "the frame at which the turn is complete");
-  track.last = last.number(frame_range);
+  object.read("center", track.center, "degrees", track.degrees, "first", track.first, "last", track.last);
   if (!(track.last > track.first))
-    last.fail(fmt::format("wanted a frame after \"first\" ({}), found {}", track.first, track.last));
+    object.at("last").fail(
+        fmt::format("wanted a frame after \"first\" ({}), found {}", track.first, track.last));
 }
 
 Track read_track(const JsonValue& value) {
   using Kind = Track::Kind;
-  static constexpr std::array kinds = {
-      NamedValue<Kind>{"step", Kind::step},     NamedValue<Kind>{"linear", Kind::linear},
-      NamedValue<Kind>{"smooth", Kind::smooth}, NamedValue<Kind>{"bezier", Kind::bezier},
-      NamedValue<Kind>{"slerp", Kind::slerp},   NamedValue<Kind>{"rotate", Kind::rotate}};
-  const Kind kind = value.member("type", names_of(kinds)).choose(kinds);
-  return value.object(kind == Kind::rotate ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
+  const bool turns = value.type() == "rotate";
+  return value.object(turns ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
     Track track;
-    object.at("type", "");
-    track.kind = kind;
-    const JsonValue pointer = object.at("value", "the JSON pointer of a value, as \"/camera/fov\"");
+    if (turns)
+      track.kind = Kind::rotate;
+    else
+      object.read("type", track.kind);
+    const JsonValue pointer = object.at("value");
     track.pointer = pointer.text();
     if (!is_pointer(track.pointer) || track.pointer.starts_with("/animate"))
       pointer.wanted("the JSON pointer of a value of the scene, as \"/camera/fov\"");
-    track.cycle = object.boolean("cycle", false);
-    if (track.kind == Track::Kind::rotate)
+    object.read("cycle", track.cycle);
+    if (turns)
       read_turn(object, track);
     else
       read_keys(object, track);

@@ -13,8 +13,7 @@ namespace sundog {
 namespace {
 
 dmat4 read_quaternion(const JsonValue& value) {
-  const auto items = value.items("4 numbers");
-  if (items.size() != 4) value.wanted(quaternion_text);
+  const auto items = value.items("numbers x, y, z, w");
   const glm::dquat q(items[3].number(), items[0].number(), items[1].number(), items[2].number());
   if (!(glm::length(q) > 0)) value.wanted(quaternion_text);
   return glm::mat4_cast(glm::normalize(q));
@@ -24,22 +23,19 @@ dmat4 read_rotate(JsonObject& object) {
   object.not_both("quaternion", "axis");
   object.not_both("quaternion", "degrees");
   if (const auto quaternion = object.find("quaternion")) return read_quaternion(*quaternion);
-  const dvec3 axis = object.at("axis", "a direction [x, y, z]").direction();
-  const double degrees = object.at("degrees", "an angle in degrees").number();
+  const dvec3 axis = object.at("axis").direction();
+  const double degrees = object.at("degrees").number();
   return glm::rotate(dmat4(1), glm::radians(degrees), axis);
 }
 
 dmat4 read_scale(const JsonValue& value) {
-  const bool uniform = value.json().is_number();
-  if (!uniform && !value.json().is_array()) value.wanted("a factor or an array of 3 factors");
-  const dvec3 factors = uniform ? dvec3(value.number()) : value.vec3();
+  const dvec3 factors = value.vec3();
   if (factors.x * factors.y * factors.z == 0) value.fail("singular transform: wanted factors that are not 0");
   return glm::scale(dmat4(1), factors);
 }
 
 dmat4 read_matrix(const JsonValue& value) {
-  const auto items = value.items("16 numbers, row by row");
-  if (items.size() != 16) value.wanted("an array of 16 numbers, row by row");
+  const auto items = value.items("numbers, row by row");
   dmat4 matrix;
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)

@@ -1,0 +1,170 @@
+// See schema.h.
+#include "scene/json/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+using Type = SchemaRule::Type;
+
+constexpr unsigned any_count = std::numeric_limits<unsigned>::max();
+constexpr std::array<std::string_view, 7> type_names{"",       "object",  "array",  "string",
+                                                     "number", "integer", "boolean"};
+
+/// The schema's text as rules, which may form cycles.
+class Schema {
+ public:
+  Schema() : document_(json::parse(embedded_schema().front().bytes)) {
+    for (const auto& [name, node] : document_.at("$defs").items()) kinds_.emplace(name, compile(node));
+  }
+
+  const SchemaRule* find(std::string_view kind) const {
+    const auto found = kinds_.find(kind);
+    return found == kinds_.end() ? nullptr : found->second;
+  }
+
+ private:
+  const json& target(const json& node) const {
+    const auto& pointer = node.at("$ref").get_ref<const std::string&>();
+    return document_.at("$defs").at(pointer.substr(std::string_view("#/$defs/").size()));
+  }
+
+  /// The value of an annotation, which may stand at a reference or where it leads; nullptr: at neither.
+  const json* annotation(const json& node, const char* name) const {
+    if (const auto found = node.find(name); found != node.end()) return &*found;
+    return node.contains("$ref") ? annotation(target(node), name) : nullptr;
+  }
+
+  const SchemaRule* compile(const json& node) {
+    if (node.contains("$ref")) return compile(target(node));
+    const auto [found, is_new] = made_.try_emplace(&node, nullptr);
+    if (!is_new) return found->second;
+    SchemaRule& rule = rules_.emplace_back();
+    found->second = &rule;
+    if (node.contains("type"))
+      rule.type = static_cast<Type>(std::ranges::find(type_names, node["type"]) - type_names.begin());
+    if (node.contains("title")) rule.title = node["title"].get_ref<const std::string&>();
+    if (node.contains("enum"))
+      for (const json& name : node["enum"]) rule.names.emplace_back(name.get_ref<const std::string&>());
+    if (node.contains("const")) rule.names.emplace_back(node["const"].get_ref<const std::string&>());
+    if (!rule.names.empty()) rule.type = Type::string;
+    if (node.contains("anyOf") && !node.contains("properties"))
+      for (const json& option : node["anyOf"]) rule.options.push_back(compile(option));
+    rule.range = range_of(node);
+    compile_array(node, rule);
+    compile_object(node, rule);
+    return &rule;
+  }
+
+  static Range range_of(const json& node) {
+    constexpr double most = std::numeric_limits<double>::max();
+    Range range{.low_open = node.contains("exclusiveMinimum"),
+                .high_open = node.contains("exclusiveMaximum")};
+    range.low = node.value(range.low_open ? "exclusiveMinimum" : "minimum", -most);
+    range.high = node.value(range.high_open ? "exclusiveMaximum" : "maximum", most);
+    return range;
+  }
+
+  void compile_array(const json& node, SchemaRule& rule) {
+    if (node.contains("items")) rule.items = compile(node["items"]);
+    rule.least_items = node.value("minItems", 0u);
+    rule.most_items = node.value("maxItems", any_count);
+  }
+
+  void compile_object(const json& node, SchemaRule& rule) {
+    if (node.contains("additionalProperties") && node["additionalProperties"].is_object())
+      rule.others = compile(node["additionalProperties"]);
+    const json required = node.value("required", json::array());
+    if (node.contains("properties"))
+      for (const auto& [name, of] : node["properties"].items()) {
+        SchemaRule::Key& key = rule.keys[name];
+        key.rule = compile(of);
+        key.standard = annotation(of, "default");
+        key.required = std::find(required.begin(), required.end(), name) != required.end();
+        if (const json* text = annotation(of, "description"))
+          key.description = text->get_ref<const std::string&>();
+      }
+  }
+
+  json document_;
+  std::deque<SchemaRule> rules_;
+  std::map<const json*, const SchemaRule*> made_;
+  std::map<std::string, const SchemaRule*, std::less<>> kinds_;
+};
+
+}  // namespace
+
+const SchemaRule* schema_rule(std::string_view kind) {
+  static const Schema schema;
+  return schema.find(kind);
+}
+
+const SchemaRule* SchemaRule::as(Type wanted) const {
+  if (type == wanted || (wanted == Type::number && type == Type::integer)) return this;
+  for (const SchemaRule* option : options)
+    if (const SchemaRule* found = option->as(wanted)) return found;
+  return nullptr;
+}
+
+std::string SchemaRule::count() const {
+  if (least_items == most_items) return fmt::format("{} ", least_items);
+  if (most_items == least_items + 1) return fmt::format("{} or {} ", least_items, most_items);
+  if (least_items == 0 && most_items < any_count) return fmt::format("up to {} ", most_items);
+  if (most_items < any_count) return fmt::format("{} to {} ", least_items, most_items);
+  return least_items > 0 ? fmt::format("{} or more ", least_items) : "";
+}
+
+std::string SchemaRule::describe(bool limits) const {
+  if (!title.empty()) return std::string(title);
+  if (!names.empty()) return list_names(names);
+  std::string all;
+  switch (type) {
+    case Type::any:
+      for (const SchemaRule* option : options) all += (all.empty() ? "" : " or ") + option->describe(limits);
+      return all.empty() ? "a value" : all;
+    case Type::object:
+      return "an object";
+    case Type::array:
+      if (items && items->as(Type::number)) return fmt::format("an array of {}numbers", count());
+      return count().empty() ? "an array" : fmt::format("an array of {}items", count());
+    case Type::string:
+      return "a string";
+    case Type::number:
+      return limits ? "a number " + sundog::describe(range) : "a number";
+    case Type::integer:
+      return limits ? fmt::format("an integer from {} to {}", range.low, range.high) : "an integer";
+    case Type::boolean:
+      break;
+  }
+  return "true or false";
+}
+
+std::string list_names(Names names, std::string_view conjunction) {
+  std::string result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) result += i + 1 == names.size() ? fmt::format(" {} ", conjunction) : ", ";
+    result += fmt::format("\"{}\"", names[i]);
+  }
+  return result;
+}
+
+std::string describe(const Range& range) {
+  const bool low = range.low > any_number.low,
+             high = range.high<any_number.high, endless = range.high> any_number.high;
+  if (low && high && !range.low_open && !range.high_open)
+    return fmt::format("from {} to {}", range.low, range.high);
+  const std::string below = fmt::format("{} {}", range.high_open ? "below" : "up to", range.high);
+  if (!low) return high ? below : fmt::format("of magnitude up to {}", range.high);
+  const std::string above =
+      range.low_open ? fmt::format("above {}", range.low) : fmt::format("not below {}", range.low);
+  return endless ? above : fmt::format("{} and {}", above, below);
+}
+
+}  // namespace sundog

@@ -1,0 +1,67 @@
+// The rules of scenes/scene.schema.json, which is in the program: ranges, choices, defaults and keys. Readers
+// find them by the kind of an object (its name in the schema's $defs), compiled once.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sundog {
+
+/// Allowed numbers. The default limits keep every square finite as a float.
+struct Range {
+  double low = -1e18, high = 1e18;
+  bool low_open = false, high_open = false;
+};
+inline constexpr Range any_number{};
+
+/// Completes "wanted a number ".
+std::string describe(const Range& range);
+
+/// Allowed keys or choices.
+using Names = std::span<const std::string_view>;
+
+/// "a, b or c", each in quotes.
+std::string list_names(Names names, std::string_view conjunction = "or");
+
+/// What the schema says of one value.
+struct SchemaRule {
+  enum class Type { any, object, array, string, number, integer, boolean };
+  Type type = Type::any;
+  std::string_view title;                      // completes "wanted "; empty: follows from the rest
+  Range range;                                 // of a number
+  std::vector<std::string_view> names;         // of a string; empty: any
+  unsigned least_items = 0, most_items = ~0u;  // of an array
+  const SchemaRule* items = nullptr;           // of an array
+  const SchemaRule* others = nullptr;          // values of an object with keys of the user's own
+  struct Key {
+    const SchemaRule* rule = nullptr;
+    std::string_view description;
+    const nlohmann::json* standard = nullptr;  // the value of a missing key
+    bool required = false;
+  };
+  std::map<std::string_view, Key> keys;  // of an object
+  std::vector<const SchemaRule*> options;
+
+  /// This rule or its first option for values of that type; nullptr: none.
+  const SchemaRule* as(Type wanted) const;
+  /// Completes "wanted "; with or without a number's limits.
+  std::string describe(bool limits = true) const;
+  /// How many items an array may have, as "2 " or "1 to 64 "; empty: any number.
+  std::string count() const;
+};
+
+/// The rule of a kind of object; nullptr: the schema has none of that name.
+const SchemaRule* schema_rule(std::string_view kind);
+
+struct SchemaFile {
+  std::string_view path, bytes;
+};
+/// The schema's text.
+std::span<const SchemaFile> embedded_schema();
+
+}  // namespace sundog
