@@ -60,7 +60,7 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
     return choose_among(scene, &way, tile, paths, p, lanes, met);
   if (rays_meet(scene, way.light)) *met = lanes;
   REAL u_x = middle, u_y = middle;
-  if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
+  if (has_extent(scene->lights + way.light))
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
   LightSamples light = sample_light(scene, way.light, p, u_x, u_y, lanes);
   light.radiance = scale3(light.radiance, light_weight(&light, lanes) / (float)way.rays);
