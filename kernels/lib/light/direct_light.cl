@@ -9,12 +9,8 @@
 
 #if HAS_SHAFTS
 // The lanes of `lanes` whose surfaces have highlights.
-#if HAS_MAPS
 static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
-  return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);
-}
-#else
-static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  HAVING(HAS_MAPS, return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);)
   MASK shine = NO_LANES;
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
@@ -24,7 +20,6 @@ static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
   }
   return shine;
 }
-#endif
 
 // The lanes of `lanes` whose ways (o, d) meet one of `solids` before `t_max`.
 static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, REAL t_max, MASK lanes) {

@@ -12,10 +12,11 @@ static inline float3 lit_sky_along(UNIFORM const Scene* scene, float3 d, bool ca
   float pdf;
   const float3 behind = distant_along(scene, d, &pdf);
   float3 light = hide_environment(scene, d, behind, camera);
-  for (u32 index = 0; index < scene->info->table_lights; ++index) {
-    __global const Light* lamp = scene->lights + index;
-    if (HAS_AREA_LIGHTS && is_in_sky(lamp)) light += sky_light_radiance(lamp, d, camera);
-  }
+  if (HAS_AREA_LIGHTS)
+    for (u32 index = 0; index < scene->info->table_lights; ++index) {
+      __global const Light* lamp = scene->lights + index;
+      if (is_in_sky(lamp)) light += sky_light_radiance(lamp, d, camera);
+    }
   return light;
 }
 ENTRY static inline float3 sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {

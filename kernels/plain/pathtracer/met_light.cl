@@ -62,13 +62,14 @@ static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* pa
     light *= weight_of_met(scene, path, pdf_on_stretch(path, pdf * chance));
     light = hide_environment(scene, d, left_by_photons(path, light), camera);
   }
-  for (u32 index = 0; index < scene->info->table_lights; ++index) {
-    __global const Light* lamp = scene->lights + index;
-    if (HAS_AREA_LIGHTS && is_in_sky(lamp)) {
-      const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
-      light = along(light, weight, left_by_photons(path, sky_light_radiance(lamp, d, camera)));
+  if (HAS_AREA_LIGHTS)
+    for (u32 index = 0; index < scene->info->table_lights; ++index) {
+      __global const Light* lamp = scene->lights + index;
+      if (is_in_sky(lamp)) {
+        const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
+        light = along(light, weight, left_by_photons(path, sky_light_radiance(lamp, d, camera)));
+      }
     }
-  }
   return light;
 }
 static inline float3 met_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {
