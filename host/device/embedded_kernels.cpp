@@ -4,13 +4,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
+#include <vector>
 
 #include "base/file.h"
 
 namespace sundog {
 
+namespace {
+
+/// The .cl files directly below `top`, sorted.
+std::vector<std::string> files_below(const std::string& top, const std::filesystem::path& folder) {
+  std::vector<std::string> paths;
+  if (folder.empty()) {
+    for (const EmbeddedKernel& file : embedded_kernels())
+      if (file.path.starts_with(top) && file.path.find('/', top.size()) == std::string_view::npos)
+        paths.emplace_back(file.path);
+  } else {
+    std::error_code failed;
+    for (std::filesystem::directory_iterator at(folder / top, failed), end; !failed && at != end;
+         at.increment(failed))
+      paths.push_back(top + at->path().filename().string());
+  }
+  std::erase_if(paths, [](const std::string& path) { return !path.ends_with(".cl"); });
+  std::ranges::sort(paths);
+  return paths;
+}
+
+}  // namespace
+
 std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder) {
-  if (!folder.empty()) {
+  if (path.ends_with('/')) {
+    std::string includes;
+    for (const std::string& file : files_below(path, folder))
+      includes += fmt::format("#include \"{}\"\n", file);
+    if (!includes.empty()) return includes;
+  } else if (!folder.empty()) {
     try {
       return read_file(folder / path);
     } catch (const IoError& error) {

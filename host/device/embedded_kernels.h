@@ -21,7 +21,8 @@ struct EmbeddedKernel {
 /// All files, sorted by path.
 std::span<const EmbeddedKernel> embedded_kernels();
 
-/// A file's text, read from `folder` if given, for kernel development. Throws MissingKernelFile.
+/// A file's text, read from `folder` if given, for kernel development. Of a folder, whose path ends in a
+/// slash, a line that includes each of its .cl files. Throws MissingKernelFile.
 std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder = {});
 
 }  // namespace sundog

@@ -50,7 +50,7 @@ Specialisation::Specialisation(Specialisations& all, const Function& f, std::vec
     if (may_vary) letters += given[i] ? 'v' : 'u';
   }
   if (differs) name += "_" + letters;
-  masked = f.is_entry;
+  masked = f.is_entry && !f.uniform;
   result_varies = f.is_entry && !f.uniform && !f.result.is(Type::Kind::nothing);
   int at = 0;
   number(*f.body, at);
@@ -99,8 +99,10 @@ void Specialisation::analyse() {
       make_vary(only_result, only_result->place, "lanes return it one after the other");
     if (before ==
         std::tuple(varying_, result_varies, masked, divergent_break, divergent_continue, divergent_return))
-      return;
+      break;
   }
+  if (function.is_entry && function.uniform && result_varies)
+    fail(function.place, fmt::format("the result of {} is UNIFORM, but varies", function.name));
 }
 
 void Specialisation::make_vary(const Variable* v, const Place& place, const std::string& what) {

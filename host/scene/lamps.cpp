@@ -88,14 +88,6 @@ void pack_range(const LightDescription& light, Light& packed) {
   if (light.range > 0) packed.edge_v.x = static_cast<float>(1 / light.range);
 }
 
-/// Whether area lights come last in the list of lights, from LIGHT_RECTANGLE on: kernels rely on this.
-constexpr bool extents_come_last() {
-  for (u32 kind = 0; kind < LIGHT_KINDS; ++kind)
-    if (facts_of_kind(kind).has_extent() != (kind >= LIGHT_RECTANGLE)) return false;
-  return true;
-}
-static_assert(extents_come_last());
-
 glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace

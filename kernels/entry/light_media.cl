@@ -1,6 +1,7 @@
 // One stage: which media the lights are inside of, before photons leave them.
-#include "lib/light/area_light.cl"
+#include "lib/core/directions.cl"
 #include "lib/path/media_around.cl"
+#include "plain/light/emission.cl"
 
 // A work-item a light. Writes the MediaStack at the middle of each light to light_media, low word first, that
 // of the outside for lights without a place.

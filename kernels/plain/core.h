@@ -24,6 +24,8 @@ float3 renormalized3(float3 a);
 float3 direction_at(float3 axis, float cosine, float sine, float turn);
 float3 direction_about(float3 axis, float cosine, float turn);
 void tangent_frame(float3 n, float3* s, float3* t);
+UNIFORM float3 direction_beside(UNIFORM float3 axis, UNIFORM float drop, UNIFORM float side,
+                                UNIFORM float turn);
 float real_acos(float x);
 void sincos_of_turn(float turn, float* sine, float* cosine);
 void place_in_disk(float u_x, float u_y, float* x, float* y);

@@ -1,21 +1,40 @@
-// The list of lights that have a position or a direction, which generates LIGHT_*, the description's
-// LightType, and names in scene files and figures. Ambient lights are not included: they are summed in
-// SceneInfo.ambient.
+// Lights that have a position or a direction. The lists generate LIGHT_*, the description's LightType, names
+// in scene files and figures, and what kernels call for a light. A light is a row here and a file of
+// plain/light/lights/; host/scene/lamps.cpp reads its keys. Ambient lights are summed in SceneInfo.ambient.
 //   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, LightExtent)
 // LightExtent (host/scene/kinds.h): `none`: light from a point or direction, with a falloff if it has a
 // position; `sampled`: an area that is sampled but invisible to rays; `met`: sampled and visible to rays.
+// The file defines:
+//   sample_NAME(light, p)             delta lights: the way from the point p
+//   sample_NAME(light, p, u_x, u_y)   area lights; the sky's: (light, u_x, u_y)
+//   pdf_NAME(light, p, wi, d)         area lights: density of wi, which meets the light at the distance d
+//   pdf_NAME(light, chance)           the sky's: density of a light that is chosen with `chance`
+//   radiance_NAME(light, d, camera)   the sky's: what a ray sees in the direction d
+//   middle_NAME(light)                area lights: see middle_of_light()
+//   corners_NAME(light, p)            area lights of scene files: a square that holds what p sees of them
+//
+//   emit_NAME(light, c, e)            how photons leave it, by two numbers in [0, 1)
 #ifndef SUNDOG_SHARED_LIGHTS_H
 #define SUNDOG_SHARED_LIGHTS_H
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define LIGHTS(LIGHT)                         \
+#define DELTA_LIGHTS(LIGHT)                   \
   LIGHT(DIRECTIONAL, directional, 0, 1, none) \
   LIGHT(POINT, point, 1, 0, none)             \
-  LIGHT(SPOT, spot, 1, 1, none)               \
-  LIGHT(RECTANGLE, rectangle, 1, 1, met)      \
-  LIGHT(DISK, disk, 1, 1, met)                \
+  LIGHT(SPOT, spot, 1, 1, none)
+
+#define AREA_LIGHTS(LIGHT)               \
+  LIGHT(RECTANGLE, rectangle, 1, 1, met) \
+  LIGHT(DISK, disk, 1, 1, met)           \
   LIGHT(SPHERE, sphere, 1, 0, met)
+
+#define LIGHTS(LIGHT) DELTA_LIGHTS(LIGHT) AREA_LIGHTS(LIGHT)
+
+// Those that the host makes: a directional light from a disk in the sky; a triangle of an emissive mesh, by a
+// corner and two edges; the environment (shared/environment.h).
+#define SKY_LIGHTS(LIGHT) LIGHT(SUN, sun, 0, 1, met)
+#define MESH_LIGHTS(LIGHT) LIGHT(TRIANGLE, triangle, 1, 1, met)
 
 // Keys in scene files: the members of the host's LightDescription, with defaults.
 //   KEY(type, name, default)
@@ -40,12 +59,23 @@ SUNDOG_SHARED_BEGIN
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
-  LIGHTS(LIGHT_CONSTANT) LIGHT_KINDS,
-  LIGHT_SUN = LIGHT_KINDS,  // a directional light from a disk in the sky
-  LIGHT_ENVIRONMENT,        // the environment (shared/environment.h)
-  LIGHT_TRIANGLE            // of an emissive mesh: a corner and two edges
+  LIGHTS(LIGHT_CONSTANT) SKY_LIGHTS(LIGHT_CONSTANT) MESH_LIGHTS(LIGHT_CONSTANT) LIGHT_ENVIRONMENT
 } LightKind;
 #undef LIGHT_CONSTANT
+
+#define ONE_LIGHT(constant, name, placed, aimed, extent) +1u
+#define LIGHT_KINDS (0u LIGHTS(ONE_LIGHT))  // those of scene files come first
+
+// Bits by kind: lights that have a position, lights without an extent, lights with corners_NAME().
+#define PLACED_LIGHT(constant, name, placed, aimed, extent) | (u32)placed << LIGHT_##constant
+#define KIND_OF_LIGHT(constant, name, placed, aimed, extent) | 1u << LIGHT_##constant
+#define PLACED_LIGHTS (0u LIGHTS(PLACED_LIGHT) MESH_LIGHTS(PLACED_LIGHT))
+#define LIGHTS_OF_SKY (0u SKY_LIGHTS(KIND_OF_LIGHT))
+#define LIGHTS_WITHOUT_EXTENT (0u DELTA_LIGHTS(KIND_OF_LIGHT))
+#define LIGHTS_WITH_CORNERS (0u AREA_LIGHTS(KIND_OF_LIGHT))
+
+// The part of the way to a light that shadow rays go, since the light's own surface lies at its end.
+#define SHORT_OF_LIGHT 0x1.ffep-1f
 
 // 96 bytes. An area light emits from its front, the side that `direction` points to; a sphere, from its
 // outside. direction.w: spot: cosine of the outer half angle of the cone; area light: its area; sun: 1 -

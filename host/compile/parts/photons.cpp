@@ -91,15 +91,17 @@ double mean_luminance(const CompiledScene& out) {
   return sum / weights;
 }
 
+bool has_place(const Light& light) { return PLACED_LIGHTS >> light.kind & 1u; }
+
 /// Estimates the light from a light to a ball.
 double light_to_ball(const Light& light, const float4& ball, double environment) {
   const double radius = double(ball.w), across = pi * radius * radius;
   const double bright = luminance(light.color);
-  if (light.kind == LIGHT_DIRECTIONAL) return pi * bright * across;
-  if (light.kind == LIGHT_SUN) return 2 * pi * std::abs(double(light.direction.w)) * bright * across;
   if (light.kind == LIGHT_ENVIRONMENT) return 4 * pi * environment * across;
+  if (light.kind == LIGHT_SUN) return 2 * pi * std::abs(double(light.direction.w)) * bright * across;
+  if (!has_place(light)) return pi * bright * across;
   const double d = std::max(glm::distance(middle_of(light.position), middle_of(ball)), radius);
-  if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)
+  if (LIGHTS_WITHOUT_EXTENT >> light.kind & 1u)
     return pi * bright * across /
            (double(light.falloff_constant) + double(light.falloff_linear) * d +
             double(light.falloff_quadratic) * d * d);
@@ -167,9 +169,7 @@ double usual_radius(const std::vector<float4>& balls, double count) {
 }
 
 bool may_be_inside(const Light& light, std::span<const Bounds> boxes, const CompiledScene& out) {
-  if (light.kind == LIGHT_DIRECTIONAL || light.kind == LIGHT_SUN || light.kind == LIGHT_ENVIRONMENT)
-    return false;
-  return is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
+  return has_place(light) && is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
 }
 
 constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of a float

@@ -49,6 +49,23 @@
 #define FOR_WAVES
 #endif
 
+// HAVING: a member or statements for a feature alone. EITHER: one value with it, another without. Features
+// are 0 or 1, or ANY_OF() two.
+#define HAVING(feature, text) HAVING_IF(feature, text)
+#define HAVING_IF(feature, text) HAVING_##feature(text)
+#define HAVING_0(text)
+#define HAVING_1(text) text
+#define EITHER(feature, with, without) EITHER_IF(feature, with, without)
+#define EITHER_IF(feature, with, without) EITHER_##feature(with, without)
+#define EITHER_0(with, without) without
+#define EITHER_1(with, without) with
+#define ANY_OF(a, b) ANY_OF_IF(a, b)
+#define ANY_OF_IF(a, b) ANY_OF_##a##b
+#define ANY_OF_00 0
+#define ANY_OF_01 1
+#define ANY_OF_10 1
+#define ANY_OF_11 1
+
 // Rays per work-item: TILE_W x TILE_H pixels of the image. 16 on CPU-class devices, 1 on GPU-class ones.
 #ifndef TILE_W
 #define TILE_W 4
@@ -113,10 +130,14 @@
 #endif
 
 // Whether rays carry the pixel's cone, for texture filtering.
-#define HAS_CONES (HAS_MAPS && TEXTURE_KINDS)
+#if HAS_MAPS && TEXTURE_KINDS
+#define HAS_CONES 1
+#else
+#define HAS_CONES 0
+#endif
 
 // Whether a sample needs random numbers beyond the camera's.
-#define HAS_RANDOM (HAS_AREA_LIGHTS || HAS_ROUGH)
+#define HAS_RANDOM ANY_OF(HAS_AREA_LIGHTS, HAS_ROUGH)
 
 // Whether surfaces may test occlusion of lights by shafts (light/direct_light.cl). SceneInfo.shafts says
 // whether they do.
@@ -124,4 +145,7 @@
   (HAS_AREA_LIGHTS && !HAS_SDF && !HAS_OBJECT_MOTION && !HAS_RELIEF && !HAS_PARALLAX && !HAS_LAYERS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
-#define HAS_CROSSINGS (HAS_MEDIA || HAS_SHADOW_FILTERS)
+#define HAS_CROSSINGS ANY_OF(HAS_MEDIA, HAS_SHADOW_FILTERS)
+
+// Whether rays have a time.
+#define HAS_MOTION ANY_OF(HAS_CAMERA_MOTION, HAS_OBJECT_MOTION)

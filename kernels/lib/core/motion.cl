@@ -8,58 +8,39 @@
 #include "lib/core/turns.cl"
 
 // World points at these times, moved with instance `index` back to when the shutter opened.
-#if HAS_TURNS
 static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) {
-  return unturned_points(scene->turns, scene->moves[index], p, time);
+  HAVING(HAS_TURNS, return unturned_points(scene->turns, scene->moves[index], p, time);)
+  if (HAS_OBJECT_MOTION) return along3(p, -time, all3(scene->moves[index].xyz));
+  return p;
 }
 static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) {
+  if (HAS_OBJECT_MOTION & !HAS_TURNS) return p - time * scene->moves[index].xyz;
   const REAL3 still = still_points(scene, index, all3(p), (REAL)(time));
   return get3(&still, 0);
 }
-#elif HAS_OBJECT_MOTION
-static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) {
-  return along3(p, -time, all3(scene->moves[index].xyz));
-}
-static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) {
-  return p - time * scene->moves[index].xyz;
-}
-#else
-static inline REAL3 still_points(const Scene* scene, u32 index, REAL3 p, REAL time) { return p; }
-static inline float3 still_point(const Scene* scene, u32 index, float3 p, float time) { return p; }
-#endif
 
 // Moves directions back likewise; moves normals and surface vectors forward from when the shutter opened; the
 // instance's scale at the time, and the largest coordinate that limits its points' precision.
-#if HAS_TURNS
 static inline REAL3 still_vectors(const Scene* scene, u32 index, REAL3 d, REAL time) {
-  return unturned_vectors(scene->turns, scene->moves[index], d, time);
+  return EITHER(HAS_TURNS, unturned_vectors(scene->turns, scene->moves[index], d, time), d);
 }
 static inline float3 still_vector(const Scene* scene, u32 index, float3 d, float time) {
   const REAL3 still = still_vectors(scene, index, all3(d), (REAL)(time));
   return get3(&still, 0);
 }
 static inline REAL3 moved_normals(const Scene* scene, u32 index, REAL3 n, REAL time) {
-  return turned_normals(scene->turns, scene->moves[index], n, time);
+  return EITHER(HAS_TURNS, turned_normals(scene->turns, scene->moves[index], n, time), n);
 }
 static inline float3 moved_normal(const Scene* scene, u32 index, float3 n, float time) {
   const REAL3 moved = moved_normals(scene, index, all3(n), (REAL)(time));
   return get3(&moved, 0);
 }
 static inline REAL3 moved_vectors(const Scene* scene, u32 index, REAL3 a, REAL time) {
-  return turned_vectors(scene->turns, scene->moves[index], a, time);
+  return EITHER(HAS_TURNS, turned_vectors(scene->turns, scene->moves[index], a, time), a);
 }
 static inline REAL moved_size(const Scene* scene, u32 index, REAL time) {
-  return turned_size(scene->turns, scene->moves[index], time);
+  return EITHER(HAS_TURNS, turned_size(scene->turns, scene->moves[index], time), (REAL)(1.0f));
 }
 static inline float moved_extent(const Scene* scene, u32 index) {
-  return turned_extent(scene->turns, scene->moves[index]);
+  return EITHER(HAS_TURNS, turned_extent(scene->turns, scene->moves[index]), 0.0f);
 }
-#else
-static inline REAL3 still_vectors(const Scene* scene, u32 index, REAL3 d, REAL time) { return d; }
-static inline float3 still_vector(const Scene* scene, u32 index, float3 d, float time) { return d; }
-static inline REAL3 moved_normals(const Scene* scene, u32 index, REAL3 n, REAL time) { return n; }
-static inline float3 moved_normal(const Scene* scene, u32 index, float3 n, float time) { return n; }
-static inline REAL3 moved_vectors(const Scene* scene, u32 index, REAL3 a, REAL time) { return a; }
-static inline REAL moved_size(const Scene* scene, u32 index, REAL time) { return (REAL)(1.0f); }
-static inline float moved_extent(const Scene* scene, u32 index) { return 0.0f; }
-#endif

@@ -9,12 +9,8 @@
 
 #if HAS_SHAFTS
 // The lanes of `lanes` whose surfaces have highlights.
-#if HAS_MAPS
 static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
-  return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);
-}
-#else
-static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  HAVING(HAS_MAPS, return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);)
   MASK shine = NO_LANES;
   u32 index;
   for (u32 left = lane_bits(lanes); left;) {
@@ -24,7 +20,6 @@ static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
   }
   return shine;
 }
-#endif
 
 // The lanes of `lanes` whose ways (o, d) meet one of `solids` before `t_max`.
 static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, REAL t_max, MASK lanes) {
@@ -67,7 +62,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
   BounceNumbers numbers;
   begin_numbers(tile, paths, way->light, BOUNCE_LIGHT_POINT, lanes, &numbers);
   SphericalRectangles rectangle;
-  const bool flat = light->kind == LIGHT_RECTANGLE;
+  const bool flat = is_rectangle(light);
   if (flat) rectangle = see_rectangle(light, s->p, lanes);
   const REAL3 o = along3(s->p, s->offset, s->ng);
   REAL3 sum = all3((float3)(0.0f));
@@ -100,8 +95,7 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
                                REAL3* sum, u32* counts) {
   const SurfaceInteractions* s = &at->s;
   __global const Light* light = scene->lights + way->light;
-  SeenLights seen;
-  see_light(light, s->p, &seen);
+  const SeenLights seen = see_light(light, s->p, lanes);
   Shafts shafts;
   shafts.o = along3(s->p, s->offset, s->ng);
   shafts.slack = s->offset;
@@ -125,7 +119,7 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
   }
   MASK sampled = asking & ~hard, whole = NO_LANES;
   *sum = all3((float3)(0.0f));
-  if (light->kind == LIGHT_RECTANGLE) {
+  if (is_rectangle(light)) {
     REAL integral;
     whole = cosine_of_rectangle(light, &seen, s->ns, sampled & ~soft, &integral);
     const REAL3 diffuse = multiply3(all3(light->color.xyz), scale3(bsdf.diffuse, integral * (1.0f / M_PI_F)));
@@ -140,9 +134,7 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
 }
 
 static inline bool has_shafts(const Scene* scene, u32 light) {
-  if (light == LIGHT_CHOSEN) return false;
-  const u32 kind = scene->lights[light].kind;
-  return kind == LIGHT_RECTANGLE || kind == LIGHT_DISK || kind == LIGHT_SPHERE;
+  return light != LIGHT_CHOSEN && has_corners(scene->lights + light);
 }
 
 // The shadow ray *index is the next of the surfaces of `lanes`: returns whether any of them, `casting`, sends

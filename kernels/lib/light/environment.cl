@@ -1,4 +1,4 @@
-// Light from infinitely far away: the environment's picture and suns. A direction a lane.
+// Light of the environment's picture. A direction a lane.
 #pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
@@ -235,18 +235,6 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   return sample;
 }
 
-// The density of a sun that is chosen with `chance`, whose disk's size is 1 minus the cosine of its radius.
-static inline float sun_pdf(__global const Light* sun, float chance) {
-  return chance / (2.0f * M_PI_F * fabs(sun->direction.w));
-}
-
-// Whether directions lie in a sun that is seen. The square of the chord from its middle is twice 1 minus the
-// cosine, with more digits.
-static inline MASK in_sun(__global const Light* sun, REAL3 d) {
-  const REAL3 chord = add3(d, all3(sun->direction.xyz));
-  return MASK_OF(dot3(chord, chord) <= 2.0f * sun->direction.w);
-}
-
 // What lies behind everything: the environment where rays see it, with the density of choosing it, else the
 // background.
 static inline bool sees_environment(const Scene* scene) {
@@ -256,25 +244,8 @@ static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL*
   return sees_environment(scene) ? environment_along(scene, d, lanes, pdf) : background_along(scene->info, d);
 }
 
-// The same, where the rays of `camera` do not see what is hidden from them; and what they see of a sun.
+// The same, where the rays of `camera` do not see what is hidden from them.
 static inline REAL3 hide_environment(const Scene* scene, REAL3 d, REAL3 light, MASK camera) {
   if (scene->info->sees_environment != SEEN_OFF_CAMERA) return light;
   return select3(light, background_along(scene->info, d), camera);
-}
-static inline MASK sees_sun(__global const Light* sun, REAL3 d, MASK camera) {
-  return sun->position.w != 0.0f ? in_sun(sun, d) & ~camera : in_sun(sun, d);
-}
-
-// What the rays of `lanes` see, which meet nothing: that, and the suns in front of it. Those of `camera` are
-// its own.
-static inline REAL3 sky_along(const Scene* scene, REAL3 d, MASK camera, MASK lanes) {
-  if (!HAS_SKY) return background_along(scene->info, d);
-  REAL pdf;
-  REAL3 light = hide_environment(scene, d, distant_along(scene, d, lanes, &pdf), camera);
-  for (u32 index = 0; index < scene->info->table_lights; ++index) {
-    __global const Light* sun = scene->lights + index;
-    if (sun->kind != LIGHT_SUN) continue;
-    light = select3(light, add3(light, all3(sun->color.xyz)), sees_sun(sun, d, camera));
-  }
-  return light;
 }

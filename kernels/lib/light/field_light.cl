@@ -1,13 +1,11 @@
 // What fields do to light besides stopping it: soft shadows.
 #pragma once
 #include "lib/path/scene_ray.cl"
-#if HAS_SDF
+#if HAS_SOFT_SHADOWS
 #include "lib/path/fields.cl"
 #include "lib/sdf/light.cl"
-#endif
 
 // What the fields with soft shadows let pass along the rays.
-#if HAS_SOFT_SHADOWS
 NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   REAL through = (REAL)(1.0f);
   FieldSearch search = start_search(rays, rays->t_max, active);
@@ -28,9 +26,5 @@ NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK a
     through *= open;
   }
   return through;
-}
-#else
-static inline REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
-  return (REAL)(1.0f);
 }
 #endif

@@ -1,14 +1,12 @@
 // Crevices of fields that ambient light does not reach.
 #pragma once
 #include "lib/path/scene_ray.cl"
-#if HAS_SDF
+#if HAS_OCCLUSION
 #include "lib/path/fields.cl"
 #include "lib/sdf/light.cl"
-#endif
 
 // The part of ambient light that the field of a hit lets reach that point of it: 1 for everything else, and
 // where the field has no occlusion.
-#if HAS_OCCLUSION
 NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
   REAL open = (REAL)(1.0f);
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
@@ -24,9 +22,5 @@ NEVER_INLINE REAL field_openness(const Scene* scene, const SceneRays* rays, cons
     open = select(open, value, mine);
   }
   return open;
-}
-#else
-static inline REAL field_openness(const Scene* scene, const SceneRays* rays, const Hits* hits, MASK lanes) {
-  return (REAL)(1.0f);
 }
 #endif

@@ -68,12 +68,4 @@ NEVER_INLINE REAL walls_visibility(const Scene* scene, const SceneRays* rays, co
   const REAL reached = (top.sunk + PARALLAX_BIAS) * ways_through(&top, wi, depth);
   return select(one, zero, lanes & MASK_OF(reached < way));
 }
-#else
-static inline REAL relief_visibility(const Scene* scene, const SurfaceInteractions* s, REAL3 wi, MASK lanes) {
-  return (REAL)(1.0f);
-}
-static inline REAL walls_visibility(const Scene* scene, const SceneRays* rays, const SurfaceInteractions* s,
-                                    REAL3 wi, MASK lanes, u32* counts) {
-  return (REAL)(1.0f);
-}
 #endif

@@ -1,58 +1,6 @@
-// A light with an extent as points see it: the corners of what holds it, and the irradiance of one that
-// nothing hides. A point a lane.
+// The irradiance of a rectangle that nothing hides. A point a lane.
 #pragma once
-#include "lib/core/directions.cl"
-#include "lib/light/area_light.cl"
-
-typedef struct SeenLights {
-  REAL3 corner[4];  // from the point to the corners, in turn
-  MASK in_front;    // the light shines on the point, from a place that is clearly before it
-  MASK behind;      // it shines away from the point
-} SeenLights;
-
-static inline REAL sum_of_sizes(REAL3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
-
-static inline void set_corners(REAL3 to, REAL3 u, REAL3 v, SeenLights* seen) {
-  seen->corner[0] = to;
-  seen->corner[1] = add3(to, u);
-  seen->corner[2] = add3(seen->corner[1], v);
-  seen->corner[3] = add3(to, v);
-}
-
-static inline void see_flat_light(__global const Light* light, REAL3 p, SeenLights* seen) {
-  const REAL3 to = subtract3(all3(light->position.xyz), p), u = all3(light->edge_u.xyz),
-              v = all3(light->edge_v.xyz);
-  if (light->kind == LIGHT_DISK)
-    set_corners(subtract3(subtract3(to, u), v), scale3(u, (REAL)(2.0f)), scale3(v, (REAL)(2.0f)), seen);
-  else
-    set_corners(to, u, v, seen);
-  const REAL depth = -dot3(to, all3(light->direction.xyz));
-  const REAL near = 1e-4f * (sum_of_sizes(to) + light->edge_u.w + light->edge_v.w);
-  seen->in_front = MASK_OF(depth > near);
-  seen->behind = MASK_OF(depth < -near);
-}
-
-// The square around the cone in which a sphere is seen, at the distance of its middle.
-static inline void see_sphere_light(__global const Light* light, REAL3 p, SeenLights* seen) {
-  const REAL3 to = subtract3(all3(light->position.xyz), p), axis = safe_unit3(to);
-  const REAL middle = dot3(to, axis), sine = light->edge_u.w / nonzero(middle);
-  const REAL half_side = 1.001f * light->edge_u.w * real_rsqrt(real_max(1.0f - sine * sine, (REAL)(0.1f)));
-  REAL3 s, t;
-  tangent_frame(axis, &s, &t);
-  s = scale3(s, 2.0f * half_side);
-  t = scale3(t, 2.0f * half_side);
-  set_corners(along3(along3(to, (REAL)(-0.5f), s), (REAL)(-0.5f), t), s, t, seen);
-  seen->in_front = MASK_OF(sine < 0.9f) & MASK_OF(middle > 0.0f);
-  seen->behind = NO_LANES;
-}
-
-// What points p see of a rectangle, disk or sphere.
-static inline void see_light(__global const Light* light, REAL3 p, SeenLights* seen) {
-  if (light->kind == LIGHT_SPHERE)
-    see_sphere_light(light, p, seen);
-  else
-    see_flat_light(light, p, seen);
-}
+#include "lib/light/light.cl"
 
 // The angle between unit vectors whose cosine is x, over its sine: a polynomial on Chebyshev's nodes in
 // [0, 1] (error 3e-7), and the supplement below.

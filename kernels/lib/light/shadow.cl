@@ -43,11 +43,6 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   const MASK hidden = SHADOWS_AS_PATHS ? ~faces->entering : faces->entering;
   return mapped_filter(scene, &s, hidden, plain, lanes);
 }
-#else
-static inline REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                   const Faces* faces, MASK lanes, REAL3 plain) {
-  return plain;
-}
 #endif
 
 // What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
@@ -86,7 +81,9 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
     if (scene->materials[index].kind == MATERIAL_DIELECTRIC) dielectric |= mine;
     if (HAS_MAPS && scene->materials[index].maps != NO_MAPS) mapped |= mine;
   }
-  if (HAS_MAPS && any_lane(mapped)) passed = mapped_filters(scene, rays, hits, faces, mapped, passed);
+  if (HAS_MAPS && any_lane(mapped)) {
+    HAVING(HAS_MAPS, passed = mapped_filters(scene, rays, hits, faces, mapped, passed);)
+  }
   pass_layers(scene, rays, hits, faces, lanes, &passed);
   *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
@@ -112,9 +109,6 @@ static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits
     set_media(behind, i, seen.behind);
   }
 }
-#else
-static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
-                                 SceneRays* behind, MASK lanes) {}
 #endif
 
 #if HAS_MEDIA
@@ -143,12 +137,6 @@ static inline MASK change_media(const Scene* scene, SceneRays* rays, const Hits*
   rays->since = select(rays->since, hits->t, changes);
   return (passing & ~interface) | changes;
 }
-#else
-static inline MASK change_media(const Scene* scene, SceneRays* rays, const Hits* hits, const Faces* faces,
-                                const SceneRays* behind, MASK touching, MASK waiting, MASK passing, MASK here,
-                                MASK* there, REAL3* light) {
-  return passing;
-}
 #endif
 
 // The lanes of `waiting` at their next hits. Returns those that continue to the light, with the rest of it in
@@ -161,12 +149,13 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
   SceneRays behind = *rays;
   const MASK touching = may_touch(scene->instances, hits, passing);
-  pass_touching(scene, rays, hits, &faces, &behind, touching);
+  HAVING(HAS_TOUCHING, pass_touching(scene, rays, hits, &faces, &behind, touching);)
   passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
   *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
   MASK there = here;
-  const MASK through =
-      change_media(scene, rays, hits, &faces, &behind, touching, waiting, passing, here, &there, light);
+  MASK through = passing;
+  HAVING(HAS_MEDIA, through = change_media(scene, rays, hits, &faces, &behind, touching, waiting, passing,
+                                           here, &there, light);)
   if (!any_lane(passing)) return NO_LANES;
   filter_light(scene, rays, hits, &faces, here, there, through, light);
   continue_behind(scene->info, rays, hits, faces.entering, passing);
@@ -190,6 +179,20 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
   nearest_to_light(scene, rays, lanes, coherent, &hits, counts);
   return hits;
 }
+
+// The part of `light` that arrives at the ends of the shadow rays of `lanes`, taken all the way there.
+static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
+  REAL3 light = sent;
+  while (any_lane(lanes)) {
+    Hits hits = shadow_hits(scene, rays, lanes, false, counts);
+    const MASK passing = pass_filters(scene, rays, &hits, lanes, &light);
+    const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+    counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
+    light = select3(light, all3((float3)(0.0f)), too_many);
+    lanes = passing & ~too_many;
+  }
+  return light;
+}
 #else
 static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRays* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
@@ -209,23 +212,7 @@ static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, 
   hits.instance = select(hits.instance, NO_LANES, occluded);
   return hits;
 }
-#endif
 
-// The part of `light` that arrives at the ends of the shadow rays of `lanes`, taken all the way there.
-#if HAS_SHADOW_FILTERS
-static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
-  REAL3 light = sent;
-  while (any_lane(lanes)) {
-    Hits hits = shadow_hits(scene, rays, lanes, false, counts);
-    const MASK passing = pass_filters(scene, rays, &hits, lanes, &light);
-    const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
-    counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
-    light = select3(light, all3((float3)(0.0f)), too_many);
-    lanes = passing & ~too_many;
-  }
-  return light;
-}
-#else
 static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
   REAL3 light = sent;
   const MASK arriving = lanes & ~any_hits(scene, rays, lanes, false, counts);

@@ -60,7 +60,7 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
     return choose_among(scene, &way, tile, paths, p, lanes, met);
   if (rays_meet(scene, way.light)) *met = lanes;
   REAL u_x = middle, u_y = middle;
-  if (scene->lights[way.light].kind >= LIGHT_RECTANGLE)
+  if (has_extent(scene->lights + way.light))
     bounce_numbers(tile, paths, way.light, BOUNCE_LIGHT_POINT, way.ray, way.rays, lanes, &u_x, &u_y);
   LightSamples light = sample_light(scene, way.light, p, u_x, u_y, lanes);
   light.radiance = scale3(light.radiance, light_weight(&light, lanes) / (float)way.rays);
@@ -79,11 +79,10 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   if (!any_lane(facing)) return;
   const REAL3 wo = negate3(rays->d);
   REAL3 possible = multiply3(light.radiance, local_light(scene, &at->bsdf, wo, light.wi, met, facing));
-  if (HAS_RELIEF) possible = scale3(possible, terminator(s, light.wi));
-  if (HAS_PARALLAX) {
-    possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));
-    possible = scale3(possible, walls_visibility(scene, rays, s, light.wi, facing, counts));
-  }
+  HAVING(HAS_RELIEF, possible = scale3(possible, terminator(s, light.wi));)
+  HAVING(HAS_PARALLAX, possible = scale3(possible, relief_visibility(scene, s, light.wi, facing));)
+  HAVING(HAS_PARALLAX,
+         possible = scale3(possible, walls_visibility(scene, rays, s, light.wi, facing, counts));)
   // A high power of (r.v) may leave less than the least normal float, which some devices take for zero, or
   // too small a part of the light: not worth a ray.
   const REAL share = scene->info->cutoff * LEAST_OF_LIGHT * greatest3(light.radiance);
@@ -102,6 +101,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   WaitingRays weights = *paths;
   weights.depth = NO_LANES;
   weights.throughput = multiply3(paths->throughput, possible);
-  weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));
+  HAVING(HAS_SOFT_SHADOWS,
+         weights.throughput = scale3(weights.throughput, soft_shadows(scene, &to_light, lit, counts));)
   push_shadows(stack, &to_light, &weights, lit);
 }

@@ -7,19 +7,11 @@
 typedef struct Rays {
   REAL3 o, d;  // d unit
   REAL t_min, t_max;
-#if HAS_CONES
-  REAL spread;  // growth of their cones' width per unit of distance
-#endif
-#if HAS_OBJECT_MOTION
-  REAL time;  // from 0, when the shutter opens, to 1
-#endif
+  HAVING(HAS_CONES, REAL spread;)        // growth of their cones' width per unit of distance
+  HAVING(HAS_OBJECT_MOTION, REAL time;)  // from 0, when the shutter opens, to 1
 } Rays;
 
-#if HAS_OBJECT_MOTION
-static inline void set_ray_times(REAL time, Rays* rays) { rays->time = time; }
-#else
-static inline void set_ray_times(REAL time, Rays* rays) {}
-#endif
+static inline void set_ray_times(REAL time, Rays* rays) { HAVING(HAS_OBJECT_MOTION, rays->time = time;) }
 
 // Growth of a pixel's footprint per unit of a ray's distance.
 static inline float pixel_spread(__global const SceneInfo* restrict info) {
@@ -33,14 +25,9 @@ static inline float sample_spread(__global const SceneInfo* restrict info) {
   return pixel_spread(info) * fmax(rsqrt((float)info->samples), 0.125f);
 }
 
-// The cones of camera rays.
-#if HAS_CONES
 static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {
-  rays->spread = (REAL)(sample_spread(info));
+  HAVING(HAS_CONES, rays->spread = (REAL)(sample_spread(info));)
 }
-#else
-static inline void start_cones(__global const SceneInfo* restrict info, Rays* rays) {}
-#endif
 
 static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
   Rays rays;

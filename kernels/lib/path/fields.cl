@@ -17,13 +17,9 @@
 
 // A point for marching: in field space; in deep views relative to the world origin's place.
 #ifdef SDF_DEEP
-static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
-  return object_vectors(instance, p);
-}
+#define field_points object_vectors
 #else
-static inline REAL3 field_points(__global const Instance* instance, REAL3 p) {
-  return object_points(instance, p);
-}
+#define field_points object_points
 #endif
 
 // The search for the nearest hit among fields: the batch's rays, and the hit so far.
@@ -36,50 +32,24 @@ typedef struct FieldSearch {
   MASK winner;       // its instance, or -1
   MASK inside, cut;  // MarchRays.inside, MarchHits.cut
   REAL threshold;
-#if HAS_GLOW
   REAL3 glow;
-#endif
-#if HAS_OBJECT_MOTION
   REAL time;
-#endif
 } FieldSearch;
 
-#if HAS_OBJECT_MOTION
-static inline void set_search_times(const SceneRays* rays, FieldSearch* search) { search->time = rays->time; }
 static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
   return still_points(scene, index, search->o, search->time);
 }
 static inline REAL3 search_directions(const Scene* scene, u32 index, const FieldSearch* search) {
   return still_vectors(scene, index, search->d, search->time);
 }
-#else
-static inline void set_search_times(const SceneRays* rays, FieldSearch* search) {}
-static inline REAL3 search_origins(const Scene* scene, u32 index, const FieldSearch* search) {
-  return search->o;
-}
-static inline REAL3 search_directions(const Scene* scene, u32 index, const FieldSearch* search) {
-  return search->d;
-}
-#endif
 
 // Light of glowing fields, which rays gather as they pass.
-#if HAS_GLOW
-static inline void start_glow(FieldSearch* search) { search->glow = all3((float3)(0.0f)); }
 static inline void gather_glow(__global const SdfField* restrict field, const MarchHits* hits,
                                FieldSearch* search) {
-  if (field->glow.w <= 0.0f) return;
+  if (!HAS_GLOW || field->glow.w <= 0.0f) return;
   const REAL passed = select(exp(hits->nearest * (-1.0f / field->glow.w)), (REAL)(0.0f), hits->hit);
   search->glow = along3(search->glow, passed, all3(field->glow.xyz));
 }
-static inline void add_glow(SceneRays* rays, const FieldSearch* search, MASK lanes) {
-  rays->glow = select3(rays->glow, add3(rays->glow, search->glow), lanes);
-}
-#else
-static inline void start_glow(FieldSearch* search) {}
-static inline void gather_glow(__global const SdfField* restrict field, const MarchHits* hits,
-                               FieldSearch* search) {}
-static inline void add_glow(SceneRays* rays, const FieldSearch* search, MASK lanes) {}
-#endif
 
 static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK active) {
   FieldSearch search;
@@ -94,8 +64,8 @@ static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK 
   search.inside = NO_LANES;
   search.cut = NO_LANES;
   search.threshold = (REAL)(0.0f);
-  start_glow(&search);
-  set_search_times(rays, &search);
+  search.glow = all3((float3)(0.0f));
+  search.time = time_of_rays(rays);
   return search;
 }
 
@@ -107,7 +77,6 @@ static inline MASK starts_within(__global const SdfField* restrict field, const 
 }
 
 // Sets the side of the field's surface on which rays start.
-#if SDF_TWO_SIDED
 static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {
   const u32 place = scene->instances[index].root;
   __global const SdfField* restrict field = scene->sdf_fields + place;
@@ -122,9 +91,6 @@ static inline void start_on_side(const Scene* scene, u32 index, const FieldSearc
   const REAL threshold = march_threshold(field, rays, rays->t_min, length3(rays->direction));
   if (field->flags & SDF_FLAGS & SDF_SMOOTH) rays->leaving |= ask & MASK_OF(fabs(d) < threshold);
 }
-#else
-static inline void start_on_side(const Scene* scene, u32 index, const FieldSearch* search, MarchRays* rays) {}
-#endif
 
 // The rays in field space, and the side of its surface on which they start.
 static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided, const FieldSearch* search) {
@@ -144,7 +110,7 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   rays.active = search->active;
   rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
-  if (two_sided) start_on_side(scene, index, search, &rays);
+  if (SDF_TWO_SIDED && two_sided) start_on_side(scene, index, search, &rays);
   return rays;
 }
 
@@ -231,7 +197,7 @@ NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active,
   }
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
     shade_lanes(scene, index, &search, hits);
-  if (!to_light) add_glow(rays, &search, active);
+  HAVING(HAS_GLOW, if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, search.glow), active);)
 }
 
 // Sets the march budget of a sample.

@@ -17,12 +17,8 @@ static inline void place_in_polygon(float blades, REAL u_x, REAL u_y, REAL* x, R
 // Positions of samples in the image, on the lens, in time.
 typedef struct CameraSamples {
   REAL x, y;
-#if HAS_LENS
-  REAL lens_x, lens_y;
-#endif
-#if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
-  REAL time;
-#endif
+  HAVING(HAS_LENS, REAL lens_x; REAL lens_y;)
+  HAVING(HAS_MOTION, REAL time;)
 } CameraSamples;
 
 // The pinhole camera at one time, before lens and motion; `along` has length 1 along the view.
@@ -30,34 +26,17 @@ typedef struct CameraPlaces {
   REAL3 position, along, dx, dy;
 } CameraPlaces;
 
-#if HAS_CAMERA_MOTION || HAS_OBJECT_MOTION
-static inline void set_times(const LaneSamples* at, CameraSamples* samples) {
-  REAL free;
-  pair_lanes(at, (MASK)((int)DIMENSION_TIME), false, &samples->time, &free);
+static inline REAL sampled_time(const CameraSamples* samples) {
+  return EITHER(HAS_MOTION, samples->time, (REAL)(0.0f));
 }
-static inline REAL sampled_time(const CameraSamples* samples) { return samples->time; }
-#else
-static inline void set_times(const LaneSamples* at, CameraSamples* samples) {}
-static inline REAL sampled_time(const CameraSamples* samples) { return (REAL)(0.0f); }
-#endif
 
-#if HAS_CAMERA_MOTION
-static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
-                               CameraPlaces* camera) {
-  camera->position = along3(camera->position, samples->time, all3(info->moved_position.xyz));
-  camera->along = along3(camera->along, samples->time, all3(info->moved_corner.xyz));
-  camera->dx = along3(camera->dx, samples->time, all3(info->moved_dx.xyz));
-  camera->dy = along3(camera->dy, samples->time, all3(info->moved_dy.xyz));
+static inline void move_camera(__global const SceneInfo* restrict info, REAL time, CameraPlaces* camera) {
+  camera->position = along3(camera->position, time, all3(info->moved_position.xyz));
+  camera->along = along3(camera->along, time, all3(info->moved_corner.xyz));
+  camera->dx = along3(camera->dx, time, all3(info->moved_dx.xyz));
+  camera->dy = along3(camera->dy, time, all3(info->moved_dy.xyz));
 }
-#else
-static inline void move_camera(__global const SceneInfo* restrict info, const CameraSamples* samples,
-                               CameraPlaces* camera) {}
-#endif
 
-#if HAS_LENS
-static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {
-  pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), true, &samples->lens_x, &samples->lens_y);
-}
 // The origin's offset by the lens.
 static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_x, REAL u_y) {
   REAL x, y;
@@ -67,23 +46,18 @@ static inline REAL3 lens_offset(__global const SceneInfo* restrict info, REAL u_
     place_in_disk(u_x, u_y, &x, &y);
   return add3(scale3(all3(info->lens_x.xyz), x), scale3(all3(info->lens_y.xyz), y));
 }
-static inline void pass_lens(__global const SceneInfo* restrict info, const CameraSamples* samples,
+static inline void pass_lens(__global const SceneInfo* restrict info, REAL u_x, REAL u_y,
                              CameraPlaces* camera) {
-  const REAL3 offset = lens_offset(info, samples->lens_x, samples->lens_y);
+  const REAL3 offset = lens_offset(info, u_x, u_y);
   camera->position = add3(camera->position, offset);
   camera->along =
       along3(camera->along, (REAL)(-1.0f / info->lens_x.w), offset);  // still through the point in focus
 }
-#else
-static inline void set_lens_places(const LaneSamples* at, CameraSamples* samples) {}
-static inline void pass_lens(__global const SceneInfo* restrict info, const CameraSamples* samples,
-                             CameraPlaces* camera) {}
-#endif
 
 // Samples the lens and time.
 static inline void set_camera_samples(const LaneSamples* at, CameraSamples* samples) {
-  set_lens_places(at, samples);
-  set_times(at, samples);
+  HAVING(HAS_LENS, pair_lanes(at, (MASK)((int)DIMENSION_PIXEL), true, &samples->lens_x, &samples->lens_y);)
+  HAVING(HAS_MOTION, REAL free; pair_lanes(at, (MASK)((int)DIMENSION_TIME), false, &samples->time, &free);)
 }
 
 // The samples' rays.
@@ -96,9 +70,9 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
   }
   CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
                          all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
-  move_camera(info, samples, &camera);
+  if (HAS_CAMERA_MOTION) move_camera(info, sampled_time(samples), &camera);
   camera.along = along3(along3(camera.along, samples->x, camera.dx), samples->y, camera.dy);
-  pass_lens(info, samples, &camera);
+  HAVING(HAS_LENS, pass_lens(info, samples->lens_x, samples->lens_y, &camera);)
   const REAL depth_to_t = length3(camera.along);
   Rays rays;
   rays.o = camera.position;

@@ -5,26 +5,17 @@
 
 // The pixels of a work-item's tile, and their current sample.
 typedef struct TileSamples {
-#if HAS_RANDOM
-  MASK x, y;
-  u32 seed;
-#endif
+  HAVING(HAS_RANDOM, MASK x; MASK y; u32 seed;)
   u32 sample;
-#if HAS_MATTES
-  __global float4* sums;  // of the launch's pixels, see sample_sums()
-  MASK place;             // of the tile's pixels among those
-  REAL sign;              // what their samples count
-#endif
+  // Of the launch's pixels, see sample_sums(); of the tile's pixels among those; what their samples count.
+  HAVING(HAS_MATTES, __global float4* sums; MASK place; REAL sign;)
 } TileSamples;
 
-#if HAS_RANDOM
 static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
-  tile->x = at->x;
-  tile->y = at->y;
-  tile->seed = at->seed;
+  HAVING(HAS_RANDOM, tile->x = at->x; tile->y = at->y; tile->seed = at->seed;)
 }
 
-static inline void start_branches(WaitingRays* paths) { paths->branch = NO_LANES; }
+static inline void start_branches(WaitingRays* paths) { HAVING(HAS_RANDOM, paths->branch = NO_LANES;) }
 
 // Position in the ray tree of a child of `branch` (0: the camera ray) by its kind: an offset of dimensions
 // that distinguishes surfaces of equal depth.
@@ -33,8 +24,9 @@ static inline MASK child_branch(MASK branch, u32 kind) {
 }
 
 static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {
-  child->branch = child_branch(parent->branch, kind);
+  HAVING(HAS_RANDOM, child->branch = child_branch(parent->branch, kind);)
 }
+#if HAS_RANDOM
 
 // The numbers of the surfaces hit by the rays of `lanes`: pixels, and dimensions from `offset` (BOUNCE_...)
 // on, for the light `light` (0 otherwise).
@@ -72,9 +64,6 @@ NEVER_INLINE void bounce_numbers(const TileSamples* tile, const WaitingRays* pat
   next_numbers(tile, part, parts, &numbers, u_x, u_y);
 }
 #else
-static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {}
-static inline void start_branches(WaitingRays* paths) {}
-static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {}
 static inline void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
                                   u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   *u_x = *u_y = (REAL)(0.5f);

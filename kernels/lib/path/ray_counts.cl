@@ -13,16 +13,16 @@
 // Counts a ray for each lane of `lanes`.
 static inline void count_lanes(u32* counts, u32 which, MASK lanes) { counts[which] += lane_count(lanes); }
 
-#if RAYS_BY_LANE
-#define ALL_COUNTS (COUNTERS + BATCH)
+#define ALL_COUNTS (COUNTERS + (RAYS_BY_LANE ? BATCH : 0))
 
 // Counts a ray for each lane of `lanes`, in the work-item's pixels `pixels`.
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
+  for (u32 bits = RAYS_BY_LANE ? lane_bits(lanes) : 0u; bits; bits &= bits - 1u)
     counts[COUNTERS + MASK_LANE(pixels, lowest_bit(bits))] += 1u;
 }
 // note_rays() if lane i is of pixel i.
 static inline void note_own_rays(MASK lanes, u32* counts) {
+  if (!RAYS_BY_LANE) return;
   float* own = (float*)(counts + COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
@@ -34,23 +34,15 @@ static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32*
 }
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
                                   u32* counts, __global u32* restrict rays) {
-  for (u32 lane = 0; lane < BATCH; ++lane) {
+  for (u32 lane = 0; lane < (RAYS_BY_LANE ? BATCH : 1u); ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
-    if (image_pixel(launch, pixels, at, &pixel))
-      add_lane_rays(launch, at.y * launch->width + at.x, lane, counts, rays);
+    if (!image_pixel(launch, pixels, at, &pixel)) continue;
+    const u32 place = at.y * launch->width + at.x;
+    if (RAYS_BY_LANE)
+      add_lane_rays(launch, place, lane, counts, rays);
+    else if (launch->counts_rays)
+      rays[place] +=
+          counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
   }
 }
-#else
-#define ALL_COUNTS COUNTERS
-static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {}
-static inline void note_own_rays(MASK lanes, u32* counts) {}
-static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
-                                  u32* counts, __global u32* restrict rays) {
-  const uint2 at = lane_pixel(launch, item, 0u);
-  uint2 pixel;
-  if (launch->counts_rays && image_pixel(launch, pixels, at, &pixel))
-    rays[at.y * launch->width + at.x] +=
-        counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
-}
-#endif

@@ -5,12 +5,10 @@
 
 // Data of rays besides their geometry.
 typedef struct WaitingRays {
-  REAL3 throughput;  // of a shadow ray: the light that it carries
-  MASK pixel;        // in the work-item's tile
-  MASK depth;        // 1 for a camera ray, 0 for a shadow ray; with TURNED
-#if HAS_RANDOM
-  MASK branch;  // position in the ray tree, for random numbers; 0: the camera ray
-#endif
+  REAL3 throughput;                 // of a shadow ray: the light that it carries
+  MASK pixel;                       // in the work-item's tile
+  MASK depth;                       // 1 for a camera ray, 0 for a shadow ray; with TURNED
+  HAVING(HAS_RANDOM, MASK branch;)  // position in the ray tree, for random numbers; 0: the camera ray
 } WaitingRays;
 
 // Flag in the depth of rays that do not go straight on from the camera.
@@ -23,45 +21,18 @@ static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (T
 #else
 #define STACKED_PIXEL(REALS, MASKS)
 #endif
-#if HAS_RANDOM
-#define STACKED_BRANCH(REALS, MASKS) MASKS(paths->branch)
-#else
-#define STACKED_BRANCH(REALS, MASKS)
-#endif
-#if HAS_CROSSINGS
-#define STACKED_CROSSINGS(REALS, MASKS) MASKS(rays->crossings)
-#else
-#define STACKED_CROSSINGS(REALS, MASKS)
-#endif
-#if HAS_MEDIA
-#define STACKED_MEDIA(REALS, MASKS) MASKS(rays->media_low) MASKS(rays->media_high) REALS(rays->since)
-#else
-#define STACKED_MEDIA(REALS, MASKS)
-#endif
-#if HAS_SDF
-#define STACKED_FIELDS(REALS, MASKS) MASKS(rays->from) REALS(rays->footprint)
-#else
-#define STACKED_FIELDS(REALS, MASKS)
-#endif
-#if HAS_CONES
-#define STACKED_CONES(REALS, MASKS) REALS(rays->cone_width) REALS(rays->cone_spread)
-#else
-#define STACKED_CONES(REALS, MASKS)
-#endif
-#if HAS_OBJECT_MOTION
-#define STACKED_TIME(REALS, MASKS) REALS(rays->time)
-#else
-#define STACKED_TIME(REALS, MASKS)
-#endif
 // A list:
 // clang-format off
 #define STACKED(REALS, MASKS)                                                                               \
   REALS(rays->o.x) REALS(rays->o.y) REALS(rays->o.z) REALS(rays->d.x) REALS(rays->d.y) REALS(rays->d.z)     \
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \
   REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
-  STACKED_PIXEL(REALS, MASKS) STACKED_CROSSINGS(REALS, MASKS) STACKED_MEDIA(REALS, MASKS)                   \
-  STACKED_FIELDS(REALS, MASKS) STACKED_BRANCH(REALS, MASKS) STACKED_CONES(REALS, MASKS)   \
-  STACKED_TIME(REALS, MASKS)
+  STACKED_PIXEL(REALS, MASKS) HAVING(HAS_CROSSINGS, MASKS(rays->crossings))                                 \
+  HAVING(HAS_MEDIA, MASKS(rays->media_low) MASKS(rays->media_high) REALS(rays->since))                      \
+  HAVING(HAS_SDF, MASKS(rays->from) REALS(rays->footprint))                                                 \
+  HAVING(HAS_RANDOM, MASKS(paths->branch))                                                                   \
+  HAVING(HAS_CONES, REALS(rays->cone_width) REALS(rays->cone_spread))                                       \
+  HAVING(HAS_OBJECT_MOTION, REALS(rays->time))
 // clang-format on
 #define COUNT_MEMBER(member) +1u
 #define STACK_MEMBERS (0u STACKED(COUNT_MEMBER, COUNT_MEMBER))
@@ -87,11 +58,12 @@ typedef struct RayStack {
 
 // Writes the lanes of `lanes` contiguously; member k goes to to[k * stride].
 NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const WaitingRays* paths,
-                             MASK lanes) {
-#define WRITE_REALS(member) write_packed(to, member, lanes), to += stride;
+                             MASK lanes){
+#define WRITE_REALS(member)        \
+  write_packed(to, member, lanes); \
+  to += stride;
 #define WRITE_MASKS(member) WRITE_REALS(AS_REAL(member))
-  STACKED(WRITE_REALS, WRITE_MASKS);
-}
+    STACKED(WRITE_REALS, WRITE_MASKS)}
 
 // Reads a ray for every lane.
 NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, WaitingRays* paths) {
@@ -99,8 +71,12 @@ NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, Wait
   rays->media_low = NO_LANES;
   rays->media_high = NO_LANES;
   forget_glow(rays, ALL_LANES);
-#define READ_REALS(member) member = read_lanes(from), from += stride;
-#define READ_MASKS(member) member = AS_MASK(read_lanes(from)), from += stride;
+#define READ_REALS(member)   \
+  member = read_lanes(from); \
+  from += stride;
+#define READ_MASKS(member)            \
+  member = AS_MASK(read_lanes(from)); \
+  from += stride;
   STACKED(READ_REALS, READ_MASKS)
 }
 

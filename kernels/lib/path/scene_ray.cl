@@ -6,11 +6,9 @@
 #include "lib/trace/hits.cl"
 #include "plain/path/scene_ray.cl"
 
-#if HAS_OBJECT_MOTION
-static inline REAL time_of_rays(const SceneRays* rays) { return rays->time; }
-#else
-static inline REAL time_of_rays(const SceneRays* rays) { return (REAL)(0.0f); }
-#endif
+static inline REAL time_of_rays(const SceneRays* rays) {
+  return EITHER(HAS_OBJECT_MOTION, rays->time, (REAL)(0.0f));
+}
 
 static inline SceneRays scene_rays(const Rays* camera, MediaStack media) {
   return begun_ray(camera, (int)media, (int)(media >> 32), ALL_LANES);

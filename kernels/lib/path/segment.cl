@@ -7,20 +7,18 @@
 #include "lib/path/nearest.cl"
 #include "lib/path/touching.cl"
 
+#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags that tell whether a face only transmits
+
 // A ray's next surface. `before` and `after` are the media on its two sides; equal if nothing is crossed.
 typedef struct Encounters {
   Hits hit;
   Faces face;
   MASK before, after;
   REAL3 absorbed;  // factor on the ray's light from its start to the hit
-#if HAS_TOUCHING
-  MASK behind_low, behind_high;  // the words of the MediaStack behind
-  REAL apart;                    // how far apart the touching faces may be
-#endif
-#if HAS_PARALLAX
-  REAL below;  // depth of the hit below a surface in whose relief it lies, or 0
-  REAL3 top;   // that surface's normal
-#endif
+  HAVING(HAS_TOUCHING, MASK behind_low; MASK behind_high;)  // the words of the MediaStack behind
+  HAVING(HAS_TOUCHING, REAL apart;)                         // how far apart the touching faces may be
+  HAVING(HAS_PARALLAX, REAL below;)  // depth of the hit below a surface in whose relief it lies, or 0
+  HAVING(HAS_PARALLAX, REAL3 top;)   // that surface's normal
 } Encounters;
 
 // The fraction of light from the rays' ends that the world's fog transmits, for rays of `lanes` outside all
@@ -30,27 +28,16 @@ static inline REAL clear_of_fog(const Scene* scene, const Encounters* met, MASK 
   return select((REAL)(1.0f), real_exp(-scene->info->fog.w * met->hit.t), foggy);
 }
 
-#if HAS_TOUCHING
 static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {
-  MASK_LANE(met->behind_low, i) = (int)stack;
-  MASK_LANE(met->behind_high, i) = (int)(stack >> 32);
+  HAVING(HAS_TOUCHING, MASK_LANE(met->behind_low, i) = (int)stack;)
+  HAVING(HAS_TOUCHING, MASK_LANE(met->behind_high, i) = (int)(stack >> 32);)
 }
 // The hits of `lanes` do not change the media `low` and `high`.
 static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lanes) {
-  met->behind_low = select(met->behind_low, low, lanes);
-  met->behind_high = select(met->behind_high, high, lanes);
-  met->apart = select(met->apart, (REAL)(0.0f), lanes);
+  HAVING(HAS_TOUCHING, met->behind_low = select(met->behind_low, low, lanes);)
+  HAVING(HAS_TOUCHING, met->behind_high = select(met->behind_high, high, lanes);)
+  HAVING(HAS_TOUCHING, met->apart = select(met->apart, (REAL)(0.0f), lanes);)
 }
-static inline void forget_behind(Encounters* met) {
-  met->behind_low = NO_LANES;
-  met->behind_high = NO_LANES;
-  met->apart = (REAL)(0.0f);
-}
-#else
-static inline void set_behind(Encounters* met, u32 i, MediaStack stack) {}
-static inline void stay_in_media(Encounters* met, MASK low, MASK high, MASK lanes) {}
-static inline void forget_behind(Encounters* met) {}
-#endif
 
 // Stores the faces of the hits of `lanes` in `met`.
 static inline Faces see_faces(const Scene* scene, const SceneRays* rays, Encounters* met, MASK lanes) {
@@ -88,8 +75,6 @@ static inline MediaStack media_behind(const SceneRays* rays, const Encounters* m
   return crossed;
 }
 
-#define INTERFACE (MATERIAL_TRANSMITS | MATERIAL_THIN)  // flags that tell whether a face only transmits
-
 #if HAS_TOUCHING
 // Crosses faces of `lanes` that may touch others. Returns the lanes that continue, as cross_unseen() does.
 static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
@@ -111,11 +96,6 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
   }
   return unseen;
 }
-#else
-static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
-                                  u32* counts) {
-  return NO_LANES;
-}
 #endif
 
 // Crosses invisible interfaces at the hits of `waiting`. Returns the lanes that continue; their rays then
@@ -131,7 +111,8 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   const MASK touching =
       may_touch(scene->instances, &met->hit, hit & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) != 0));
   const MASK interface = hit & ~touching & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
-  MASK unseen = cross_touching(scene, rays, met, touching, counts);
+  MASK unseen = NO_LANES;
+  HAVING(HAS_TOUCHING, unseen = cross_touching(scene, rays, met, touching, counts);)
   for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     if (cross_if_unseen(scene->media, rays, met, i, media_behind(rays, met, i, counts)))
@@ -156,7 +137,7 @@ static inline void start_encounters(Encounters* met) {
   met->face.material = NO_LANES;
   met->face.flags = NO_LANES;
   met->face.medium = NO_LANES;
-  forget_behind(met);
+  HAVING(HAS_TOUCHING, met->behind_low = met->behind_high = NO_LANES; met->apart = (REAL)(0.0f);)
 }
 
 // Processes the interfaces met->hit of the lanes of `active`. Returns the lanes that do not see them; their
@@ -184,19 +165,12 @@ static inline MASK reach_interfaces(const Scene* scene, SceneRays* rays, MASK ac
 #endif
 
 // Camera rays of `lanes` continue behind lamps hidden from them. Returns those lanes.
-#if HAS_MEDIA
-static inline void end_stretch(SceneRays* rays, const Hits* hits, MASK lanes) {
-  rays->since = select(rays->since, hits->t, lanes);
-}
-#else
-static inline void end_stretch(SceneRays* rays, const Hits* hits, MASK lanes) {}
-#endif
 static inline MASK pass_hidden(const Scene* scene, SceneRays* rays, const Encounters* met, MASK lanes) {
   if (!HAS_EMISSION) return NO_LANES;
   const MASK hidden =
       lanes & hit_anything(&met->hit) & MASK_OF((met->face.flags & (int)MATERIAL_OFF_CAMERA) != 0);
   if (!any_lane(hidden)) return NO_LANES;
-  end_stretch(rays, &met->hit, hidden);
+  HAVING(HAS_MEDIA, rays->since = select(rays->since, met->hit.t, hidden);)
   continue_behind(scene->info, rays, &met->hit, met->face.entering, hidden);
   return hidden;
 }
@@ -265,18 +239,13 @@ static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK activ
 
 // offset_beyond(): the offset of secondary rays, considering the gap between touching faces. enter_behind():
 // the children of `lanes`, copies of `rays`, enter the media behind the hits; thin surfaces change none.
-#if HAS_TOUCHING
 static inline REAL offset_beyond(const Encounters* met, REAL offset) {
-  return select(offset, met->apart, MASK_OF(met->apart > 0.0f));
+  return EITHER(HAS_TOUCHING, select(offset, met->apart, MASK_OF(met->apart > 0.0f)), offset);
 }
 static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
-  child->media_low = select(child->media_low, met->behind_low, lanes);
-  child->media_high = select(child->media_high, met->behind_high, lanes);
-}
-#else
-static inline REAL offset_beyond(const Encounters* met, REAL offset) { return offset; }
-static inline void enter_behind(const Encounters* met, const SceneRays* rays, MASK lanes, SceneRays* child) {
-  if (!HAS_MEDIA) return;
+  HAVING(HAS_TOUCHING, child->media_low = select(child->media_low, met->behind_low, lanes);)
+  HAVING(HAS_TOUCHING, child->media_high = select(child->media_high, met->behind_high, lanes);)
+  if (HAS_TOUCHING | !HAS_MEDIA) return;
   const MASK bends = lanes & MASK_OF((met->face.flags & (int)MATERIAL_THIN) == 0);
   for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
@@ -285,4 +254,3 @@ static inline void enter_behind(const Encounters* met, const SceneRays* rays, MA
     set_media(child, i, crossed);
   }
 }
-#endif

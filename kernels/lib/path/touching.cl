@@ -266,7 +266,7 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
   Touching touching;
   const Hit first = get_hit(hits, i);
   const REAL time = time_of_rays(rays);
-  set_stretch_time(REAL_LANE(time, i), &touching.met);
+  HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
   find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
   join_faces(scene, &touching, mask, get_media(rays, i), seen);
   *apart = touching.apart;
@@ -283,19 +283,15 @@ NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 
   MASK_LANE(faces->medium, i) = (int)scene->materials[seen->material].medium;
   return touching.end;
 }
+#endif
 
 // The lanes of `lanes` whose hits are on instances that may touch others.
 static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   MASK found = NO_LANES;
   u32 index;
-  for (u32 left = lane_bits(lanes); left;) {
+  for (u32 left = HAS_TOUCHING ? lane_bits(lanes) : 0u; left;) {
     const MASK mine = take_alike(hits->instance, &left, &index);
     if (instances[index].touch > 0.0f) found |= mine;
   }
   return found;
 }
-#else
-static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
-  return NO_LANES;
-}
-#endif

@@ -3,10 +3,10 @@
 // heuristic of Veach and Guibas 1995 with one sample).
 #pragma once
 #include "lib/core/directions.cl"
-#include "lib/light/area_light.cl"
 #include "lib/light/environment.cl"
 #include "lib/pathtracer/numbers.cl"
 #include "lib/pathtracer/photon_cells.cl"
+#include "plain/light/emission.cl"
 
 #define NOT_DIMMED (-1)
 #define OFF_LIGHT 0x1p-17f  // how far photons start off a light's surface, of its place's greatest coordinate
@@ -31,12 +31,6 @@ typedef struct PhotonStart {
 typedef struct PhotonNumbers {
   float light, ball, a, b, c, e;
 } PhotonNumbers;
-
-static inline void axes_about(float3 n, float3* s, float3* t) {
-  const float sign = copysign(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-  *s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  *t = (float3)(b, sign + n.y * n.y * a, -n.y);
-}
 
 // The light by the number u, and its share.
 static inline u32 choose_photon_light(const Scene* scene, float u, float* share) {
@@ -86,11 +80,8 @@ static inline float pdf_to_balls(const Scene* scene, u32 targets, float3 p, floa
 
 static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) {
   const float3 way = ball.xyz - p, axis = way * rsqrt(fmax(dot(way, way), 1e-30f));
-  const float down = a * cone_span(ball, p), side = sqrt(fmax(down * (2.0f - down), 0.0f));
-  float3 s, t;
-  axes_about(axis, &s, &t);
-  const float3 d = (1.0f - down) * axis + side * (cospi(2.0f * b) * s + sinpi(2.0f * b) * t);
-  return d * rsqrt(dot(d, d));
+  const float down = a * cone_span(ball, p);
+  return direction_beside(axis, down, sqrt(fmax(down * (2.0f - down), 0.0f)), b);
 }
 
 // The same for parallel light along d: the density per area across it, and a place before everything.
@@ -126,63 +117,59 @@ static inline float way_to_planes(const Scene* scene, u32 targets, float3 p, flo
   return way;
 }
 
-// A direction to a sun.
-static inline float3 direction_in_sun(__global const Light* light, float c, float e) {
-  const float drop = c * fabs(light->direction.w), side = sqrt(drop * (2.0f - drop));
-  float3 s, t;
-  axes_about(light->direction.xyz, &s, &t);
-  const float3 d = (1.0f - drop) * light->direction.xyz + side * (cospi(2.0f * e) * s + sinpi(2.0f * e) * t);
-  return d * rsqrt(dot(d, d));
-}
-
-// Light that comes along the direction d with the radiance over density `sent`.
-static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball, float3 sent,
+// From afar.
+static inline void start_from_afar(const Scene* scene, u32 targets, float4 ball, const Emission* from,
                                    const PhotonNumbers* u, PhotonStart* start) {
+  start->d = from->d;
   start->o = place_across(scene, ball, start->d, u->a, u->b);
-  start->flux = sent / pdf_across(scene, targets, start->o, start->d);
+  start->flux = from->radiance / pdf_across(scene, targets, start->o, start->d);
   start->o -= 1.001f * way_to_planes(scene, targets, start->o, start->d) * start->d;
 }
 
-static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, __global const Light* light,
-                                  const PhotonNumbers* u, PhotonStart* start) {
-  float3 n;
-  float area;
-  const float3 p = place_on_light(light, u->c, u->e, &n, &area);
-  start->d = direction_to_ball(ball, p, u->a, u->b);
-  start->flux =
-      light->color.xyz * (fmax(dot(n, start->d), 0.0f) * area / pdf_to_balls(scene, targets, p, start->d));
-  const float3 size = fabs(p);
-  start->o = p + n * (OFF_LIGHT * fmax(fmax(size.x, size.y), fmax(size.z, light->edge_u.w)));
+// From a place on a light with an extent, whose sides are at most `side` long.
+static inline void start_on_light(const Scene* scene, u32 targets, float4 ball, const Emission* from,
+                                  float side, const PhotonNumbers* u, PhotonStart* start) {
+  start->d = direction_to_ball(ball, from->p, u->a, u->b);
+  start->flux = from->radiance * (fmax(dot(from->n, start->d), 0.0f) * from->area /
+                                  pdf_to_balls(scene, targets, from->p, start->d));
+  const float3 size = fabs(from->p);
+  start->o = from->p + from->n * (OFF_LIGHT * fmax(fmax(size.x, size.y), fmax(size.z, side)));
 }
 
-// `sky`: the way to the environment of the photon's lane `lane`.
+// From a light at a point: the flux of all directions.
+static inline void start_at_point(const Scene* scene, u32 targets, float4 ball, const Emission* from,
+                                  const PhotonNumbers* u, PhotonStart* start) {
+  start->o = from->p;
+  start->d = direction_to_ball(ball, start->o, u->a, u->b);
+  start->flux = (float3)(1.0f / pdf_to_balls(scene, targets, start->o, start->d));
+  start->dimmed = (int)start->light;
+}
+
+// A photon of the environment, in lane `lane` of the ways to it.
+static inline Emission emit_environment(const LightSamples* sky, u32 lane) {
+  Emission emission;
+  emission.d = -get3(&sky->wi, lane);
+  emission.radiance = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->pdf, lane), 1e-30f);
+  return emission;
+}
+
+// `sky`: the way to the environment of the photon's lane `lane`, where its light is that.
 static inline PhotonStart start_photon(const Scene* scene, u32 targets, const PhotonNumbers* u,
                                        const LightSamples* sky, u32 lane) {
   float share;
-  const u32 index = choose_photon_light(scene, u->light, &share);
-  const float4 ball = scene->photon_targets[choose_ball(scene, targets, u->ball)].ball;
-  __global const Light* light = scene->lights + index;
   PhotonStart start;
-  start.light = index;
+  start.light = choose_photon_light(scene, u->light, &share);
   start.dimmed = NOT_DIMMED;
-  if (light->kind == LIGHT_DIRECTIONAL) {
-    start.d = light->direction.xyz;
-    start_from_afar(scene, targets, ball, M_PI_F * light->color.xyz, u, &start);
-  } else if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) {
-    start.d = direction_in_sun(light, u->c, u->e);
-    start_from_afar(scene, targets, ball, light->color.xyz / sun_pdf(light, 1.0f), u, &start);
-  } else if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) {
-    start.d = -get3(&sky->wi, lane);
-    const float3 sent = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->pdf, lane), 1e-30f);
-    start_from_afar(scene, targets, ball, sent, u, &start);
-  } else if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) {
-    start_on_light(scene, targets, ball, light, u, &start);
-  } else {
-    start.o = light->position.xyz;
-    start.d = direction_to_ball(ball, start.o, u->a, u->b);
-    start.flux = (float3)(1.0f / pdf_to_balls(scene, targets, start.o, start.d));
-    start.dimmed = (int)index;
-  }
+  const float4 ball = scene->photon_targets[choose_ball(scene, targets, u->ball)].ball;
+  __global const Light* light = scene->lights + start.light;
+  const bool distant = HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT;
+  const Emission from = distant ? emit_environment(sky, lane) : emit_light(light, u->c, u->e);
+  if (!has_place(light))
+    start_from_afar(scene, targets, ball, &from, u, &start);
+  else if (HAS_AREA_LIGHTS && has_extent(light))
+    start_on_light(scene, targets, ball, &from, light->edge_u.w, u, &start);
+  else
+    start_at_point(scene, targets, ball, &from, u, &start);
   start.flux /= share;
   return start;
 }

@@ -60,11 +60,4 @@ static inline void spread_transmitted(REAL curvature, const SpecularSplits* spli
   const MASK straight = MASK_OF(split->eta == 1.0f);
   child->cone_spread = select(fma(-curvature * bend, child->cone_width, spread * inverse), spread, straight);
 }
-#else
-static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
-  return (REAL)(0.0f);
-}
-static inline void spread_reflected(REAL curvature, SceneRays* child) {}
-static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
-                                      SceneRays* child) {}
 #endif

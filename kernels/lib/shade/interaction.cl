@@ -8,45 +8,29 @@
 #endif
 
 typedef struct SurfaceInteractions {
-  REAL3 p;                // world
-  REAL3 ng, ns;           // unit, both against the ray
-  REAL offset;            // distance off the surface at which secondary rays start
-  REAL3 color;            // vertex or field colour, a factor on ambient and diffuse
-  MASK instance;          // index
-  MASK material, flags;   // index; of the material
-  MASK medium, entering;  // inside the surface; the ray comes from outside
-#if HAS_OBJECT_MOTION
-  REAL time;  // of the ray
-#endif
-#if HAS_UV
-  Coordinates at;  // u, v and the point's derivatives
-#endif
-#if HAS_MAPS
-  MASK prim;  // the hit's prim, u and v
-  REAL b, c;
-  REAL footprint;  // width of the ray's footprint on the surface, in the world
-#endif
-#if HAS_CHECKER
-  REAL camera_footprint;  // footprint of a camera ray of this length
-#endif
-#if HAS_RELIEF
-  MASK bent;  // ns differs from the geometry's normal
-  REAL even;  // length of the normal map's mean normal in the footprint, 1 if uniform
-#endif
-#if HAS_PARALLAX
-  REAL3 shift;  // along the surface to where the ray hits the relief below it; u and v are those there
-  REAL sunk;    // depth of that point relative to the relief's
-  REAL below;   // depth below another surface in whose relief this one lies, or 0
-  REAL3 top;    // that surface's normal
-#endif
+  REAL3 p;                                      // world
+  REAL3 ng, ns;                                 // unit, both against the ray
+  REAL offset;                                  // distance off the surface at which secondary rays start
+  REAL3 color;                                  // vertex or field colour, a factor on ambient and diffuse
+  MASK instance;                                // index
+  MASK material, flags;                         // index; of the material
+  MASK medium, entering;                        // inside the surface; the ray comes from outside
+  HAVING(HAS_OBJECT_MOTION, REAL time;)         // of the ray
+  HAVING(HAS_UV, Coordinates at;)               // u, v and the point's derivatives
+  HAVING(HAS_MAPS, MASK prim; REAL b; REAL c;)  // the hit's prim, u and v
+  HAVING(HAS_MAPS, REAL footprint;)             // width of the ray's footprint on the surface, in the world
+  HAVING(HAS_CHECKER, REAL camera_footprint;)   // footprint of a camera ray of this length
+  HAVING(HAS_RELIEF, MASK bent;)                // ns differs from the geometry's normal
+  HAVING(HAS_RELIEF, REAL even;)      // length of the normal map's mean normal in the footprint, 1 if uniform
+  HAVING(HAS_PARALLAX, REAL3 shift;)  // along the surface to where the ray hits the relief below it, whose
+                                      // are u and v
+  HAVING(HAS_PARALLAX, REAL sunk;)    // depth of that point relative to the relief's
+  HAVING(HAS_PARALLAX, REAL below;)   // depth below another surface in whose relief this one lies, or 0
+  HAVING(HAS_PARALLAX, REAL3 top;)    // that surface's normal
 } SurfaceInteractions;
 
 static inline REAL time_of(const SurfaceInteractions* s) {
-#if HAS_OBJECT_MOTION
-  return s->time;
-#else
-  return (REAL)(0.0f);
-#endif
+  return EITHER(HAS_OBJECT_MOTION, s->time, (REAL)(0.0f));
 }
 
 // World points p on such surfaces of instance `index`, in its own space.
@@ -134,18 +118,9 @@ NEVER_INLINE REAL3 field_colors(const Scene* scene, u32 index, const REAL3* o, c
 
 // Sets texture data of the hits of `lanes`, at the points s->p.
 static inline void locate(const Scene* scene, const Hits* hits, MASK lanes, SurfaceInteractions* s) {
-#if HAS_UV
-  find_coordinates(scene, hits, &s->p, lanes, &s->at);
-#endif
-#if HAS_MAPS
-  s->prim = hits->prim;
-  s->b = hits->u;
-  s->c = hits->v;
-#endif
-#if HAS_PARALLAX
-  s->shift = s->top = all3((float3)(0.0f));
-  s->sunk = s->below = (REAL)(0.0f);
-#endif
+  HAVING(HAS_UV, find_coordinates(scene, hits, &s->p, lanes, &s->at);)
+  HAVING(HAS_MAPS, s->prim = hits->prim; s->b = hits->u; s->c = hits->v;)
+  HAVING(HAS_PARALLAX, s->shift = s->top = all3((float3)(0.0f)); s->sunk = s->below = (REAL)(0.0f);)
 }
 
 // Vertex colours apply if the material says so, field colours always.
@@ -165,9 +140,7 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
   s->flags = faces->flags;
   s->medium = faces->medium;
   s->entering = faces->entering;
-#if HAS_OBJECT_MOTION
-  s->time = hits->time;
-#endif
+  HAVING(HAS_OBJECT_MOTION, s->time = hits->time;)
   REAL extent = (REAL)(0.0f), turned = extent, rounding = extent;
   REAL3 color = white;
   MASK on_field = NO_LANES;
@@ -206,10 +179,8 @@ static inline void set_footprints(const Scene* scene, const SceneRays* rays, REA
 #endif
 #if HAS_CONES
   s->footprint = fabs(fma(t, rays->cone_spread, rays->cone_width)) / cosine;
-#elif HAS_MAPS
-  s->footprint = (REAL)(0.0f);
+#else
+  HAVING(HAS_MAPS, s->footprint = (REAL)(0.0f);)
 #endif
-#if HAS_CHECKER
-  s->camera_footprint = t * sample_spread(scene->info) / cosine;
-#endif
+  HAVING(HAS_CHECKER, s->camera_footprint = t * sample_spread(scene->info) / cosine;)
 }

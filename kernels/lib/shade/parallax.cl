@@ -4,13 +4,14 @@
 #pragma once
 #include "lib/shade/maps.cl"
 
-#if HAS_PARALLAX
 #define PARALLAX_SLANT 0.05f  // minimum sine of rays along the surface
-#define PARALLAX_STEPS 128    // maximum
-#define PARALLAX_LEAST 8.0f   // minimum, plus one for each texel crossed
-#define PARALLAX_UNKNOWN 48   // for heights without texels
-#define PARALLAX_HALVINGS 6   // bisections of the step in which a ray hits the heights
-#define PARALLAX_BIAS 0.01f   // relative to the depth: minimum height above a ray to occlude it
+
+#if HAS_PARALLAX
+#define PARALLAX_STEPS 128   // maximum
+#define PARALLAX_LEAST 8.0f  // minimum, plus one for each texel crossed
+#define PARALLAX_UNKNOWN 48  // for heights without texels
+#define PARALLAX_HALVINGS 6  // bisections of the step in which a ray hits the heights
+#define PARALLAX_BIAS 0.01f  // relative to the depth: minimum height above a ray to occlude it
 
 // Straight paths through the layer of heights, from 0 to 1.
 typedef struct ReliefWays {

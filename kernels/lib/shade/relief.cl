@@ -37,7 +37,6 @@ typedef struct TangentFrames {
   REAL3 normal, tangent, bitangent;
 } TangentFrames;
 
-#if HAS_MESH
 // Frames of `lanes` on meshes from the meshes' tangents.
 static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
                                TangentFrames* frame) {
@@ -58,10 +57,6 @@ static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s,
     frame->bitangent = select3(frame->bitangent, scale3(cross3(frame->normal, frame->tangent), sign), mine);
   }
 }
-#else
-static inline void mesh_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes,
-                               TangentFrames* frame) {}
-#endif
 
 static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   TangentFrames frame;
@@ -72,7 +67,7 @@ static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInte
   const REAL3 up = cross3(outward, frame.tangent);
   const REAL one = (REAL)(1.0f);
   frame.bitangent = scale3(up, select(one, -one, MASK_OF(dot3(up, s->at.dpdv) < 0.0f)));
-  mesh_frames(scene, s, lanes, &frame);
+  if (HAS_MESH) mesh_frames(scene, s, lanes, &frame);
   return frame;
 }
 
@@ -170,5 +165,4 @@ static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
 }
 #else
 static inline void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
-static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) { return (REAL)(1.0f); }
 #endif

@@ -45,9 +45,9 @@ static inline MASK meet_in_reliefs(const Scene* scene, const SceneRays* rays, co
 
 // The lanes of `lanes` whose rays see the surfaces that they have hit. Parts of an interface between touching
 // solids count as unseen: what is there belongs to neither.
-#if HAS_MEDIA
 static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                   const Faces* faces, MASK lanes) {
+  if (!HAS_MEDIA) return lanes;
   const MASK transmit = MASK_OF((faces->flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
   MASK seen = lanes & ~(transmit & may_touch(scene->instances, hits, lanes & transmit));
   for (u32 bits = lane_bits(seen & transmit); bits; bits &= bits - 1u) {
@@ -62,12 +62,6 @@ static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, con
   }
   return seen;
 }
-#else
-static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                  const Faces* faces, MASK lanes) {
-  return lanes;
-}
-#endif
 
 // The length of rays of the directions d through reliefs of the depth `depth`.
 static inline REAL ways_through(const SurfaceInteractions* s, REAL3 d, REAL depth) {
@@ -107,64 +101,49 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   met->top = select3(met->top, s.ng, found);
   met->hit = select_hits(&met->hit, &others, found);
 }
+#endif
 
 static inline void note_depth(const Encounters* met, SurfaceInteractions* s) {
-  s->below = met->below;
-  s->top = met->top;
-}
-
-static inline void take_depth(const Encounters* from, MASK lanes, Encounters* to) {
-  to->below = select(to->below, from->below, lanes);
-  to->top = select3(to->top, from->top, lanes);
+  HAVING(HAS_PARALLAX, s->below = met->below; s->top = met->top;)
 }
 
 // Where a ray in direction wi leaves the relief that contains the surface, which has none: `way` receives the
 // distance.
 static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* way) {
-  const REAL zero = (REAL)(0.0f), rise = real_max(dot3(s->top, wi), zero);
-  *way = select(zero, s->below / real_max(rise, (REAL)(PARALLAX_SLANT)), MASK_OF(rise > 0.0f));
-  return along3(along3(s->p, *way, wi), real_max(s->below - *way * rise, zero), s->top);
+  const REAL zero = (REAL)(0.0f);
+  *way = zero;
+  if (!HAS_PARALLAX) return s->p;
+  const REAL below = EITHER(HAS_PARALLAX, s->below, zero);
+  const REAL3 top = EITHER(HAS_PARALLAX, s->top, s->ng);
+  const REAL rise = real_max(dot3(top, wi), zero);
+  *way = select(zero, below / real_max(rise, (REAL)(PARALLAX_SLANT)), MASK_OF(rise > 0.0f));
+  return along3(along3(s->p, *way, wi), real_max(below - *way * rise, zero), top);
 }
 // The normal of the surface through which it leaves.
 static inline REAL3 leaving_normal(const SurfaceInteractions* s) {
-  return select3(s->ng, s->top, MASK_OF(s->below > 0.0f));
+  return EITHER(HAS_PARALLAX, select3(s->ng, s->top, MASK_OF(s->below > 0.0f)), s->ng);
 }
 
 // How far behind the surfaces of `lanes` rays of the directions d have hit their heights.
 static inline REAL ways_to_heights(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
-  const MASK deep = lanes & MASK_OF(s->sunk > 0.0f);
-  if (!any_lane(deep)) return (REAL)(0.0f);
-  return select((REAL)(0.0f), s->sunk * ways_through(s, d, relief_depths(scene, s, deep)), deep);
+  const REAL zero = (REAL)(0.0f), sunk = EITHER(HAS_PARALLAX, s->sunk, zero);
+  const MASK deep = HAS_PARALLAX ? lanes & MASK_OF(sunk > 0.0f) : NO_LANES;
+  if (!any_lane(deep)) return zero;
+  return EITHER(HAS_PARALLAX, select(zero, sunk * ways_through(s, d, relief_depths(scene, s, deep)), deep),
+                zero);
 }
 
 // Where rays of the directions d continue behind the surfaces of `lanes`.
 static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
   const REAL3 behind = along3(s->p, -s->offset, s->ng);
-  return along3(behind, ways_to_heights(scene, s, d, lanes), d);
+  return HAS_PARALLAX ? along3(behind, ways_to_heights(scene, s, d, lanes), d) : behind;
 }
-#else
-static inline void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK lanes, Encounters* met,
-                                 u32* counts) {}
-static inline void note_depth(const Encounters* met, SurfaceInteractions* s) {}
-static inline void take_depth(const Encounters* from, MASK lanes, Encounters* to) {}
-static inline REAL3 leave_relief(const SurfaceInteractions* s, REAL3 wi, REAL* way) {
-  *way = (REAL)(0.0f);
-  return s->p;
-}
-static inline REAL3 leaving_normal(const SurfaceInteractions* s) { return s->ng; }
-static inline REAL ways_to_heights(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
-  return (REAL)(0.0f);
-}
-static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions* s, REAL3 d, MASK lanes) {
-  return along3(s->p, -s->offset, s->ng);
-}
-#endif
 
 // next_interfaces() including reliefs: moves the lanes of `active` to what they hit next.
 static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                    Encounters* met, u32* counts) {
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
-  enter_reliefs(scene, rays, active, met, counts);
+  HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, active, met, counts);)
   return reach_interfaces(scene, rays, active, met, counts);
 }
 
@@ -175,8 +154,9 @@ static inline void see_behind(const Scene* scene, SceneRays* rays, MASK waiting,
   while (any_lane(waiting)) {
     Encounters next;
     nearest_hits(scene, rays, waiting, false, &next.hit, counts);
-    enter_reliefs(scene, rays, waiting, &next, counts);
-    take_depth(&next, waiting, met);
+    HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, waiting, &next, counts);)
+    HAVING(HAS_PARALLAX, met->below = select(met->below, next.below, waiting);)
+    HAVING(HAS_PARALLAX, met->top = select3(met->top, next.top, waiting);)
     met->hit = select_hits(&met->hit, &next.hit, waiting);
     const MASK unseen = cross_unseen(scene, rays, met, waiting, counts);
     waiting = unseen | pass_hidden(scene, rays, met, waiting & ~unseen & camera);

@@ -12,13 +12,9 @@ typedef struct Hits {
   REAL t, u, v;
   MASK prim, instance;
   REAL3 ng;
-#if HAS_OBJECT_MOTION
-  REAL time;                     // of the ray
-  __global const float4* moves;  // the scene's table
-#endif
-#if HAS_TURNS
-  __global const Turn* turns;  // the scene's table
-#endif
+  HAVING(HAS_OBJECT_MOTION, REAL time;)                     // of the ray
+  HAVING(HAS_OBJECT_MOTION, __global const float4* moves;)  // the scene's tables
+  HAVING(HAS_TURNS, __global const Turn* turns;)
 } Hits;
 
 static inline Hits no_hits(REAL t_max) {
@@ -34,73 +30,47 @@ static inline Hits no_hits(REAL t_max) {
 
 // The rays' times; their origins and directions moved with instance `index` back to when the shutter opened
 // (core/motion.cl); solids_origins(): each lane of `bits` with its own instance.
-#if HAS_OBJECT_MOTION
-static inline REAL time_of_hits(const Hits* hits) { return hits->time; }
-#else
-static inline REAL time_of_hits(const Hits* hits) { return (REAL)(0.0f); }
-#endif
-
-#if HAS_TURNS
+static inline REAL time_of_hits(const Hits* hits) {
+  return EITHER(HAS_OBJECT_MOTION, hits->time, (REAL)(0.0f));
+}
 static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
-  hits->time = time;
-  hits->moves = scene->moves;
-  hits->turns = scene->turns;
+  HAVING(HAS_OBJECT_MOTION, hits->time = time; hits->moves = scene->moves;)
+  HAVING(HAS_TURNS, hits->turns = scene->turns;)
 }
 static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
-  return unturned_points(hits->turns, hits->moves[index], o, hits->time);
+  HAVING(HAS_TURNS, return unturned_points(hits->turns, hits->moves[index], o, hits->time);)
+  HAVING(HAS_OBJECT_MOTION, return along3(o, -hits->time, all3(hits->moves[index].xyz));)
+  return o;
 }
 static inline REAL3 still_directions(const Hits* hits, u32 index, REAL3 d) {
-  return unturned_vectors(hits->turns, hits->moves[index], d, hits->time);
+  return EITHER(HAS_TURNS, unturned_vectors(hits->turns, hits->moves[index], d, hits->time), d);
 }
 static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) {
+  if (!HAS_OBJECT_MOTION) return o;
   REAL3 still = o;
-  for (; bits; bits &= bits - 1u) {
+  for (; HAS_TURNS && bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     still = select3(still, still_origins(hits, solids[i], o), lanes_of(1u << i));
   }
-  return still;
+  if (HAS_TURNS) return still;
+  REAL3 moved = all3((float3)(0.0f));
+  for (; bits; bits &= bits - 1u) {
+    HAVING(HAS_OBJECT_MOTION, set3(&moved, lowest_bit(bits), hits->moves[solids[lowest_bit(bits)]].xyz);)
+  }
+  return along3(o, -time_of_hits(hits), moved);
 }
 static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 bits, REAL3 d) {
   REAL3 still = d;
-  for (; bits; bits &= bits - 1u) {
+  for (; HAS_TURNS && bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
     still = select3(still, still_directions(hits, solids[i], d), lanes_of(1u << i));
   }
   return still;
 }
 static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {
-  hits->time = select(a->time, b->time, m);
-  hits->moves = b->moves;
-  hits->turns = b->turns;
+  HAVING(HAS_OBJECT_MOTION, hits->time = select(a->time, b->time, m); hits->moves = b->moves;)
+  HAVING(HAS_TURNS, hits->turns = b->turns;)
 }
-#elif HAS_OBJECT_MOTION
-static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
-  hits->time = time;
-  hits->moves = scene->moves;
-}
-static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
-  return along3(o, -hits->time, all3(hits->moves[index].xyz));
-}
-static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) {
-  REAL3 moved = all3((float3)(0.0f));
-  for (; bits; bits &= bits - 1u) set3(&moved, lowest_bit(bits), hits->moves[solids[lowest_bit(bits)]].xyz);
-  return along3(o, -hits->time, moved);
-}
-static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {
-  hits->time = select(a->time, b->time, m);
-  hits->moves = b->moves;
-}
-#else
-static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {}
-static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) { return o; }
-static inline REAL3 solids_origins(const Hits* hits, const u32* solids, u32 bits, REAL3 o) { return o; }
-static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {}
-#endif
-
-#if !HAS_TURNS
-static inline REAL3 still_directions(const Hits* hits, u32 index, REAL3 d) { return d; }
-static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 bits, REAL3 d) { return d; }
-#endif
 
 static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
 

@@ -16,18 +16,12 @@ typedef struct Stretch {
   float from, to, box_from, box_to;
   u32 count;
   Hit hits[MOST_TOUCHING];
-#if HAS_OBJECT_MOTION
-  float time;
-#endif
+  HAVING(HAS_OBJECT_MOTION, float time;)
 } Stretch;
 
-#if HAS_OBJECT_MOTION
-static inline void set_stretch_time(float time, Stretch* stretch) { stretch->time = time; }
-static inline float time_of_stretch(const Stretch* stretch) { return stretch->time; }
-#else
-static inline void set_stretch_time(float time, Stretch* stretch) {}
-static inline float time_of_stretch(const Stretch* stretch) { return 0.0f; }
-#endif
+static inline float time_of_stretch(const Stretch* stretch) {
+  return EITHER(HAS_OBJECT_MOTION, stretch->time, 0.0f);
+}
 
 static inline bool same_face(const Hit* a, const Hit* b) {
   return a->instance == b->instance && a->prim == b->prim;

@@ -77,8 +77,8 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   WaitingRays state = *paths;
   state.depth = (paths->depth + 1) | TURNED;
   start_on_surfaces(scene->info, &child, &met->hit, ~s->entering, split.branches);
-  const REAL curvature = curvatures(scene, s, split.branches);
-  spread_reflected(curvature, &child);
+  HAVING(HAS_CONES, const REAL curvature = curvatures(scene, s, split.branches);)
+  HAVING(HAS_CONES, spread_reflected(curvature, &child);)
   child.d = reflected_by(&facets, wo, split.branches);
   REAL way;
   child.o = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
@@ -90,7 +90,7 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   spawn(scene->info, stack, &child, &state, split.branches, COUNT_REFLECTION, counts);
 
   if (!any_lane(split.transmits)) return NO_LANES;
-  spread_transmitted(curvature, &split, rays, &child);
+  HAVING(HAS_CONES, spread_transmitted(curvature, &split, rays, &child);)
   child.d = transmitted_by(&facets, &split, wo, split.transmits);
   child.o = points_behind(scene, s, rays->d, split.transmits);
   state.throughput = multiply3(paths->throughput, split.kt);

@@ -47,7 +47,7 @@ static inline REAL3 see_background(const Scene* scene, const SceneRays* rays, co
 static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const WaitingRays* paths,
                                 const Hits* hits, const Bsdfs* bsdf, MASK lanes) {
   REAL3 own = multiply3(bsdf->ambient, all3(scene->info->ambient.xyz));
-  own = scale3(own, field_openness(scene, rays, hits, lanes));
+  HAVING(HAS_OCCLUSION, own = scale3(own, field_openness(scene, rays, hits, lanes));)
   return multiply3(paths->throughput, own);
 }
 

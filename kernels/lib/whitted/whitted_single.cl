@@ -54,7 +54,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, radiance, counts);
-  enter_reliefs(scene, rays, ALL_LANES, &met, counts);
+  HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, ALL_LANES, &met, counts);)
   MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
   unseen |= pass_hidden(scene, rays, &met, ~unseen & MASK_OF((paths->depth & ((1 << DEPTH_BITS) - 1)) == 1));
   const WaitingRays whole = *paths;

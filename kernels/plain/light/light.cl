@@ -1,58 +1,82 @@
-// Ways to lights of every kind.
-#include "plain/light/area_light.cl"
+// Ways to lights of every kind, and what is seen of them.
+#include "plain/light/emission.cl"
 
-UNIFORM float sun_pdf(UNIFORM __global const Light* sun, UNIFORM float chance);
 LightSample sample_environment(UNIFORM const Scene* scene, float u_x, float u_y, HERE);
+
+static inline bool is_in_sky(UNIFORM __global const Light* light) {
+  return (LIGHTS_OF_SKY >> light->kind & 1u) != 0u;
+}
+
+// Whether rays may meet the light `index`: it is seen, and has an extent.
+ENTRY static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index) {
+  __global const Light* light = scene->lights + index;
+  if (light->kind == LIGHT_ENVIRONMENT) return scene->info->sees_environment != 0u;
+  if (is_in_sky(light)) return light->direction.w > 0.0f;
+  return has_extent(light) && light->position.w == 0.0f;
+}
 
 // The way from the point p to a light without extent.
 ENTRY static inline LightSample way_to_lamp(UNIFORM __global const Light* light, float3 p) {
-  LightSample sample;
-  sample.pdf = 1.0f;
-  sample.delta = true;
-  sample.radiance = light->color.xyz;
-  if (light->kind == LIGHT_DIRECTIONAL) {
-    sample.wi = -light->direction.xyz;
-    sample.distance = INFINITY;
-    return sample;
-  }
-  const float3 to = light->position.xyz - p;
-  sample.wi = safe_unit3(to);
-  const float d = dot(to, sample.wi);
-  sample.distance = d;
-  if (light->falloff_linear != 0.0f || light->falloff_quadratic != 0.0f || light->falloff_constant != 1.0f)
-    sample.radiance = sample.radiance / (float3)(fma(light->falloff_quadratic * d, d,
-                                                     fma(light->falloff_linear, d, light->falloff_constant)));
-  if (light->edge_v.x > 0.0f) {  // as KHR_lights_punctual suggests
-    const float part = d * light->edge_v.x, square = part * part;
-    sample.radiance *= real_max(1.0f - square * square, 0.0f);
-  }
-  if (light->kind == LIGHT_SPOT) {
-    const float cosine = -dot(sample.wi, light->direction.xyz);
-    const float outer = light->direction.w, inner = light->color.w;
-    float s = cosine >= outer ? 1.0f : 0.0f;
-    if (inner > outer) s = real_clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
-    sample.radiance *= s * s * (light->edge_u.x - light->edge_u.y * s);
-  }
-  return sample;
+#define GO_TO(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return sample_##name(light, p);
+  DELTA_LIGHTS(GO_TO)
+  return sample_directional(light, p);
 }
 
-// A direction to a sun, uniform in its disk in the sky.
-HAVING(HAS_AREA_LIGHTS)
-static inline LightSample sample_sun(UNIFORM __global const Light* light, float u_x, float u_y) {
-  const float cap = fabs(light->direction.w);
-  const float drop = u_x * cap, sine2 = drop * (2.0f - drop);
-  const LightSample sample = {direction_at(-light->direction.xyz, 1.0f - drop, real_sqrt(sine2), u_y),
-                              light->color.xyz, INFINITY, sun_pdf(light, 1.0f), false};
-  return sample;
+// A way from the point p to an area light, chosen by the two numbers u in [0, 1)^2.
+ENTRY static inline LightSample sample_area_light(UNIFORM __global const Light* light, float3 p, float u_x,
+                                                  float u_y) {
+#define SAMPLE_AREA(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return sample_##name(light, p, u_x, u_y);
+  AREA_LIGHTS(SAMPLE_AREA)
+  return sample_triangle(light, p, u_x, u_y);
 }
 
-// A way from the point p to the light `index`, chosen by the two numbers u in [0, 1)^2, which lights without
-// extent leave alone.
+// The density, per steradian, with which sample_area_light() chooses the direction wi from p, which meets the
+// light at the distance d.
+ENTRY static inline float area_light_pdf(UNIFORM __global const Light* light, float3 p, float3 wi, float d) {
+#define PDF_OF_AREA(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return pdf_##name(light, p, wi, d);
+  AREA_LIGHTS(PDF_OF_AREA)
+  return pdf_triangle(light, p, wi, d);
+}
+
+ENTRY static inline UNIFORM bool has_corners(UNIFORM __global const Light* light) {
+  return (LIGHTS_WITH_CORNERS >> light->kind & 1u) != 0u;
+}
+ENTRY static inline SeenLight see_light(UNIFORM __global const Light* light, float3 p) {
+#define SEE(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return corners_##name(light, p);
+  AREA_LIGHTS(SEE)
+  const float3 none = (float3)(0.0f);
+  return seen_square(none, none, none, false, true);
+}
+
+// A way from the point p to the light `index`. Lights without extent leave the numbers alone.
 ENTRY static inline LightSample sample_light(UNIFORM const Scene* scene, UNIFORM u32 index, float3 p,
                                              float u_x, float u_y) {
   __global const Light* light = scene->lights + index;
-  if (HAS_AREA_LIGHTS && light->kind == LIGHT_SUN) return sample_sun(light, u_x, u_y);
   if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) return sample_environment(scene, u_x, u_y);
-  if (HAS_AREA_LIGHTS && light->kind >= LIGHT_RECTANGLE) return sample_area_light(light, p, u_x, u_y);
+#define SAMPLE_SKY(constant, name, placed, aimed, extent) \
+  if (HAS_AREA_LIGHTS && light->kind == LIGHT_##constant) return sample_##name(light, u_x, u_y);
+  SKY_LIGHTS(SAMPLE_SKY)
+  if (HAS_AREA_LIGHTS && has_extent(light)) return sample_area_light(light, p, u_x, u_y);
   return way_to_lamp(light, p);
+}
+
+// The sky's lights: light from the direction d, and its density where the light is chosen with `chance`.
+// `camera`: the ray comes from the camera.
+HAVING(HAS_AREA_LIGHTS)
+static inline float3 sky_light_radiance(UNIFORM __global const Light* light, float3 d, bool camera) {
+#define RADIANCE(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return radiance_##name(light, d, camera);
+  SKY_LIGHTS(RADIANCE)
+  return (float3)(0.0f);
+}
+HAVING(HAS_AREA_LIGHTS)
+static inline float sky_light_pdf(UNIFORM __global const Light* light, UNIFORM float chance) {
+#define PDF_OF_SKY(constant, name, placed, aimed, extent) \
+  if (light->kind == LIGHT_##constant) return pdf_##name(light, chance);
+  SKY_LIGHTS(PDF_OF_SKY)
+  return 0.0f;
 }

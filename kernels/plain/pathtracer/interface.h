@@ -1,7 +1,7 @@
 // What plain text of the path tracer uses of what is written in lanes: of structs, the members that it reads
 // or sets.
 #include "plain/core.h"
-#include "plain/light/light.cl"
+#include "plain/light/sky.cl"
 #include "plain/path/scene_ray.cl"
 #include "plain/shade/lobes.cl"
 
@@ -30,17 +30,9 @@ CALLED(no_hits) SurfaceHit hit_nothing(float t_max);
 bool hit_anything(const SurfaceHit* hit);
 
 // Lights.
-UNIFORM bool has_place(UNIFORM __global const Light* light);
-UNIFORM float4 middle_of_light(UNIFORM __global const Light* light);
-UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index);
 int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
 float light_probabilities(UNIFORM const Scene* scene, UNIFORM u32 leaf, float3 p, HERE);
 float3 light_arriving(UNIFORM const Scene* scene, SceneRay* ray, float3 light, HERE, UNIFORM u32* counts);
-float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
-float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
-float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
-UNIFORM bool sees_environment(UNIFORM const Scene* scene);
-bool sees_sun(UNIFORM __global const Light* sun, float3 d, bool camera);
 float clear_of_fog(UNIFORM const Scene* scene, const Encounter* met, HERE);
 
 // Surfaces.

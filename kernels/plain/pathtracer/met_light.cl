@@ -23,7 +23,7 @@ static float chosen_pdf(UNIFORM const Scene* scene, const PathState* path, float
 HAVING(HAS_AREA_LIGHTS)
 static inline int light_of_instance(UNIFORM const Scene* scene, UNIFORM int index, int prim) {
   const u32 first = scene->instances[index].light;
-  if (first == NO_LIGHT || scene->lights[first].kind != LIGHT_TRIANGLE) return (int)first;
+  if (first == NO_LIGHT || scene->instances[index].shape != SHAPE_MESH) return (int)first;
   return prim + (int)(first - scene->instances[index].first_prim);
 }
 
@@ -62,14 +62,14 @@ static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* pa
     light *= weight_of_met(scene, path, pdf_on_stretch(path, pdf * chance));
     light = hide_environment(scene, d, left_by_photons(path, light), camera);
   }
-  for (u32 index = 0; index < scene->info->table_lights; ++index) {
-    __global const Light* sun = scene->lights + index;
-    if (sun->kind == LIGHT_SUN) {
-      const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sun_pdf(sun, chance)));
-      const float3 seen = left_by_photons(path, sun->color.xyz);
-      if (sees_sun(sun, d, camera)) light = along(light, weight, seen);
+  if (HAS_AREA_LIGHTS)
+    for (u32 index = 0; index < scene->info->table_lights; ++index) {
+      __global const Light* lamp = scene->lights + index;
+      if (is_in_sky(lamp)) {
+        const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
+        light = along(light, weight, left_by_photons(path, sky_light_radiance(lamp, d, camera)));
+      }
     }
-  }
   return light;
 }
 static inline float3 met_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {

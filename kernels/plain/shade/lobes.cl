@@ -1,10 +1,5 @@
 // The lobes of a surface together: what they scatter, and samples of directions by chance among them.
-#include "plain/shade/lobes/diffuse.cl"
-#include "plain/shade/lobes/ggx.cl"
-#include "plain/shade/lobes/highlight.cl"
-#include "plain/shade/lobes/layered.cl"
-#include "plain/shade/lobes/mirror.cl"
-#include "plain/shade/lobes/refraction.cl"
+#include "plain/shade/lobes/"
 
 // Lobes of the surface that is seen from wo.
 ENTRY static inline LobeSet make_lobes(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo) {

@@ -1,9 +1,7 @@
 // What surfaces return of lamps without perfect reflection and transmission, for Whitted's integrator, which
 // sends rays for these.
 #include "plain/shade/facets.cl"
-#include "plain/shade/lobes/diffuse.cl"
-#include "plain/shade/lobes/highlight.cl"
-#include "plain/shade/lobes/layered.cl"
+#include "plain/shade/lobes/"
 
 // pi times the BSDF times the cosine of the local lobes, in the classical units where a white surface that
 // faces a light of intensity 1 has radiance 1. For n.l > 0.

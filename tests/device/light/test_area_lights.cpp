@@ -52,11 +52,10 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
     const float value = s.radiance.x * max(dot3(s.wi, n), 0.0f) / s.pdf;
     sum += value;
     squares += value * value;
-    float area;
-    float3 across;
-    const float3 way = place_on_light(&in[i].light, u_x, u_y, &across, &area) - in[i].p.xyz;
+    const Emission from = emit_light(&in[i].light, u_x, u_y);
+    const float3 way = from.p - in[i].p.xyz;
     const float3 wi = way * rsqrt(dot(way, way));
-    const float sent = in[i].light.color.x * area * max(-dot(wi, across), 0.0f) * max(dot(wi, in[i].n.xyz), 0.0f) / dot(way, way);
+    const float sent = from.radiance.x * from.area * max(-dot(wi, from.n), 0.0f) * max(dot(wi, in[i].n.xyz), 0.0f) / dot(way, way);
     place_sum += sent;
     place_squares += sent * sent;
     if (s.radiance.x == 0.0f) continue;

@@ -28,6 +28,7 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
        "2:36: a pointer that varies is a table and an index"},
       {function("EACH_ALIKE(int, j, k) break; return x;"), "2:23: break or continue out of EACH_ALIKE"},
       {function("break; return x;"), "2:1: there is no loop about it"},
+      {"ENTRY static UNIFORM float f(float x) { return x; }\n", "the result of f is UNIFORM, but varies"},
       {function("return;"), "2:7: 'f' gives float"},
       {function("float a = x = 1.0f; return a;"), "wanted ';', found '='"},
       {function("double d = 1.0f; d += x; return x;"), "'+' of double and float: cast them first"},

@@ -87,6 +87,20 @@ TEST_CASE("lines are those of the plain file, and the explanation names them") {
   CHECK_THAT(told, Contains("y varies: line 2: its first value varies"));
 }
 
+TEST_CASE("an entry with a uniform result takes no mask") {
+  const std::string made =
+      in_lanes("ENTRY static UNIFORM float twice(UNIFORM float x) { return x * 2.0f; }\n");
+  CHECK_THAT(made, Contains("float twice(float x) {"));
+}
+
+TEST_CASE("a folder's include has all files of it") {
+  const std::string text = sundog::embedded_kernel("plain/light/lights/");
+  CHECK_THAT(text, Contains("#include \"plain/light/lights/spot.cl\"\n"));
+  CHECK_THAT(text, Contains("#include \"plain/light/lights/sun.cl\"\n"));
+  CHECK(text == sundog::embedded_kernel("plain/light/lights/", SUNDOG_SOURCE_DIR "/kernels"));
+  CHECK_THROWS_AS(sundog::embedded_kernel("plain/nowhere/"), sundog::MissingKernelFile);
+}
+
 TEST_CASE("every plain kernel is made, and expands in its place") {
   std::size_t files = 0;
   for (const sundog::EmbeddedKernel& kernel : sundog::embedded_kernels()) {

@@ -1,0 +1,27 @@
+// Light from infinitely far away.
+#include "plain/light/light.cl"
+
+float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
+UNIFORM bool sees_environment(UNIFORM const Scene* scene);
+float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
+float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
+
+// What rays see that meet nothing: what lies behind everything, and the sky's lights before it.
+HAVING(HAS_SKY)
+static inline float3 lit_sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {
+  float pdf;
+  const float3 behind = distant_along(scene, d, &pdf);
+  float3 light = hide_environment(scene, d, behind, camera);
+  if (HAS_AREA_LIGHTS)
+    for (u32 index = 0; index < scene->info->table_lights; ++index) {
+      __global const Light* lamp = scene->lights + index;
+      if (is_in_sky(lamp)) light += sky_light_radiance(lamp, d, camera);
+    }
+  return light;
+}
+ENTRY static inline float3 sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {
+  if (HAS_SKY)
+    return lit_sky_along(scene, d, camera);
+  else
+    return background_along(scene->info, d);
+}
