@@ -130,8 +130,8 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   film->tone_map = description->image.tone_map;
   film->transparent = description->image.transparent;
   film->shot = sundog::shot_of(*description);
-  film->shot->next = sundog::next_shot(*description, nullptr);
-  sundog::find_motion(film->result.aovs, *film->shot);
+  film->shot.next = sundog::next_shot(*description, nullptr);
+  sundog::find_motion(film->result.aovs, film->shot);
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
   std::vector<std::string> objects, materials;

@@ -64,7 +64,7 @@ inline std::vector<Named> white_materials(double roughness) {
 }
 
 inline OpenPbr colored() {
-  OpenPbr v{.base_color = {0.8, 0.5, 0.2}, .base_metalness = 0.3, .base_diffuse_roughness = 0.6};
+  OpenPbr v{.base_diffuse_roughness = 0.6, .base_color = {0.8, 0.5, 0.2}, .base_metalness = 0.3};
   v.specular_roughness = 0.5, v.specular_roughness_anisotropy = 0.6;
   v.coat_weight = 0.8, v.coat_roughness = 0.4, v.coat_color = {0.9, 0.8, 0.6};
   v.fuzz_weight = 0.6, v.fuzz_roughness = 0.6;

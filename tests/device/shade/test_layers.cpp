@@ -44,13 +44,13 @@ TEST_CASE("light takes the same way through layers in both directions") {
 
 TEST_CASE("samples of layers lie as their density has it") {
   Tester& tester = tester_on(picture_devices().front(), true);
-  OpenPbr brushed{.base_metalness = 1, .specular_roughness = 0.8, .specular_roughness_anisotropy = 0.6};
+  OpenPbr brushed{.specular_roughness_anisotropy = 0.6, .base_metalness = 1, .specular_roughness = 0.8};
   tester.set_layers(brushed);
   CHECK(chi_squared(tester, layered(brushed).material, 1, at_cosine(0.7)) < 1.5);
   const OpenPbr values = colored();
   tester.set_layers(values);
   CHECK(chi_squared(tester, layered(values).material, 1, at_cosine(0.6)) < 1.5);
-  OpenPbr grooved{.base_weight = 0.1, .specular_weight = 0, .coat_weight = 1, .coat_roughness = 0.8};
+  OpenPbr grooved{.base_weight = 0.1, .specular_weight = 0, .coat_roughness = 0.8, .coat_weight = 1};
   grooved.coat_roughness_anisotropy = 0.6, grooved.coat_ior = 2.5;
   tester.set_layers(grooved);
   CHECK(chi_squared(tester, layered(grooved).material, 1, at_cosine(0.7)) < 1.5);
@@ -103,7 +103,7 @@ TEST_CASE("a coat darkens a matte base as reflections within it do") {
     inner += (1 - turn_back) / steps * cosine * (across * across + along * along);
   }
   const double straight = std::pow((index - 1) / (index + 1), 2);
-  OpenPbr values{.base_color = dvec3(albedo), .specular_weight = 0, .coat_weight = 1, .coat_ior = index};
+  OpenPbr values{.specular_weight = 0, .coat_ior = index, .base_color = dvec3(albedo), .coat_weight = 1};
   for (const double darkening : {1.0, 0.0, 0.5}) {
     values.coat_darkening = darkening;
     tester.set_layers(values);
