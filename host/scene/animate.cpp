@@ -67,9 +67,10 @@ void set_seed(json& document, double frame) {
 }  // namespace
 
 void apply_animation(json& document, double frame, const JsonContext& context) {
-  const json original = document;
-  const JsonValue root(original, context);
-  if (document.contains("animate")) apply_tracks(document, frame, root.member("animate", "tracks"));
+  if (document.contains("animate")) {
+    const json tracks = document["animate"];  // which may change themselves
+    apply_tracks(document, frame, JsonObject::section("scene", "animate", tracks, context));
+  }
   if (!document.contains("render") || document["render"].is_object()) set_seed(document, frame);
 }
 

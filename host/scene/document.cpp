@@ -52,7 +52,7 @@ void change_lights(SceneDescription& scene, const json& after, const JsonContext
   drop_lamps(scene);
   scene.lights.clear();
   if (const auto lights = after.find("lights"); lights != after.end())
-    for (const JsonValue& light : JsonValue(*lights, context, "/lights").items("lights"))
+    for (const JsonValue& light : JsonObject::section("scene", "lights", *lights, context).items("lights"))
       scene.lights.push_back(read_light(light));
   add_lamps(scene);
 }
@@ -114,7 +114,7 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   const JsonContext context{
       .file = scene.file, .native_code = options.native_code, .outside_files = options.outside_files};
   const auto section = [&](const char* key) {
-    return JsonValue(after[key], context, std::string("/") + key);
+    return JsonObject::section("scene", key, after[key], context);
   };
   auto changed = std::make_shared<SceneDescription>(scene);
   bool placed = false;

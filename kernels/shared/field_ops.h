@@ -28,8 +28,8 @@ SUNDOG_SHARED_BEGIN
   REAL_OP(SQUARE_ROOT, real_sqrt(A))                                    \
   REAL_OP(INVERSE_ROOT, inverse_root_power(A, N))                       \
   REAL_OP(ROUGH_INVERSE_ROOT, rough_rsqrt(A))                           \
-  REAL_OP(SINE, sin(A))                                                 \
-  REAL_OP(COSINE, cos(A))                                               \
+  REAL_OP(SINE, real_sin(A))                                            \
+  REAL_OP(COSINE, real_cos(A))                                          \
   REAL_OP(ARC_COSINE, acos(A))                                          \
   REAL_OP(ARC_TANGENT, atan2(A, B))                                     \
   REAL_OP(EXPONENTIAL, exp(A))                                          \

@@ -322,6 +322,23 @@ static inline REAL nonzero(REAL b) {
   return select(b, copysign((REAL)(1e-30f), b), MASK_OF(fabs(b) < 1e-30f));
 }
 
+// An angle that libraries take by their shortest way: theirs for greater ones, from 125 on in SLEEF, gives
+// other last bits, and one lane leads all lanes there. Less its turns, in two parts of which the first has
+// few bits.
+static inline REAL near_angle(REAL a) {
+  const REAL turns = rint(a * 0.159154943f);
+  const REAL rest = fma(turns, (REAL)(-0.00193530718f), fma(turns, (REAL)(-6.28125f), a));
+  return select(fmin(fmax(rest, -4.0f), 4.0f), a, MASK_OF(fabs(a) <= 120.0f));
+}
+
+// Sine and cosine that do not depend on what other lanes hold; not a number for what is none, or infinite.
+static inline REAL real_sin(REAL a) {
+  return select(a - a, sin(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX));
+}
+static inline REAL real_cos(REAL a) {
+  return select(a - a, cos(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX));
+}
+
 // Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute, whichever is larger. Unlike the
 // library's, it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y -
 // y^2/2 + y^3 p(y) in y = m - 1, with p fitted at Chebyshev nodes (error of the logarithm 7e-9). No division.

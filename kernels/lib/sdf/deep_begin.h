@@ -104,6 +104,8 @@ static inline int deep_any_lane(DEEP_MASK m) { return any_lane(DEEP_TO_MASK(m));
 #define real_max deep_real_max
 #define real_sqrt sqrt
 #define real_log log
+#define real_sin sin
+#define real_cos cos
 #define rough_rsqrt(x) (1.0 / sqrt(x))
 #define rough_inverse(x) (1.0 / (x))
 #define inverse_root_power deep_inverse_root_power

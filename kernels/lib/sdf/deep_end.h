@@ -23,6 +23,8 @@
 #undef real_max
 #undef real_sqrt
 #undef real_log
+#undef real_sin
+#undef real_cos
 #undef rough_rsqrt
 #undef rough_inverse
 #undef inverse_root_power

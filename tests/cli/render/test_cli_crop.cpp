@@ -60,8 +60,8 @@ TEST_CASE("a cropped EXR says where it lies in the picture, AOVs too") {
   CHECK(shown.pixel(8, 6)[0] == 0);
   const Image far = read_aovs(folder / "whole.exr").at("depth"),
               near = read_aovs(folder / "part.exr").at("depth");
-  CHECK(near.width == 14);
-  CHECK(differing(near, far, 9, 6) == 0);
+  CHECK(std::equal(near.pixel(9, 16), near.pixel(23, 16), far.pixel(9, 16)));
+  CHECK(near.pixel(8, 16)[0] == 0);
 }
 
 TEST_CASE("a region outside the picture, or none, is an error before the render") {
