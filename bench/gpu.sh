@@ -187,7 +187,7 @@ for model in "${models[@]}"; do
       [[ $peer == embree ]] && threads=(--threads "$(nproc)" --wall)
       part "$name" 60 "$programs/${peer}_rays" "$model" --device "$device" "${threads[@]}" ${quick:+--repeats 1 --size 32} --json "$out/$name.json"
     else
-      missing+=("$name: $programs/${peer}_rays was not built (docs/benchmarks.md)")
+      missing+=("$name: $programs/${peer}_rays was not built (docs/guide/benchmarks.md)")
     fi
   done
 done

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes a bundle (docs/bundle.md): make_bundle.sh PROGRAM FILE.tar.zst. With "slim" in FILE's name without PoCL, its compiler and its
+# Makes a bundle (docs/guide/bundle.md): make_bundle.sh PROGRAM FILE.tar.zst. With "slim" in FILE's name without PoCL, its compiler and its
 # linker. Libraries are this system's; their copyrights go along.
 set -eu
 program=$1 archive=$2
@@ -39,7 +39,7 @@ cp -r "$root/scenes" "$folder/"
 mkdir -p "$folder/bench"
 cp "$root/bench/gpu.sh" "$folder/bench/"
 cp "$root"/{LICENSE,NOTICE,README.md,CHANGELOG.md} "$folder/share/doc/"
-cp "$root/docs/bundle.md" "$folder/README.md"
+cp "$root/docs/guide/bundle.md" "$folder/README.md"
 
 # Every scene in 64x64 as PoCL draws it, for bench/gpu.sh; made once for a program. BUNDLE_PICTURES=none: none.
 pictures=${archive%/*}/bundle/pictures

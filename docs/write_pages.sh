@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the generated pages anew: docs/scene-reference.md from the schema, the functions of docs/formula-language.md. It
+# Writes the generated pages anew: docs/reference/scene-reference.md from the schema, the functions of docs/reference/formula-language.md. It
 # needs the tests' programs (./test.sh or cmake --build --preset release).
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)

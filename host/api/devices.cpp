@@ -28,7 +28,7 @@ Device device_of(core::DeviceInfo info) {
   return device;
 }
 
-/// The process's environment variables, listed in docs/library.md.
+/// The process's environment variables, listed in docs/guide/library.md.
 const core::EnvironmentPtr& environment() {
   static const core::EnvironmentPtr read = sundog::plain_environment();
   return read;

@@ -36,7 +36,7 @@ struct RenderOptions {
   /// "march_steps", "samples", "variance" (scenes rendered in passes), "crypto_object", "crypto_material";
   /// with the integrator path the parts of light that sum to the image: "diffuse_direct", "diffuse_indirect",
   /// "glossy_direct", "glossy_indirect", "transmission_direct", "transmission_indirect", "volume_direct",
-  /// "volume_indirect", "emission", "sky" (docs/aovs.md).
+  /// "volume_indirect", "emission", "sky" (docs/guide/aovs.md).
   std::vector<std::string> aovs{};
   WorkGroup work_group{};  ///< work-group size of the kernels
   int tile = 0;            ///< edge in pixels, 0: chosen by measured speed

@@ -1,6 +1,6 @@
 // Scenes: read from a file or from text, or built in code.
 //
-// Every scene is a JSON document (docs/scene-reference.md lists each key with unit, range and default). The
+// Every scene is a JSON document (docs/reference/scene-reference.md lists each key with unit, range and default). The
 // structs below cover the common keys; set() reaches all of them.
 #pragma once
 #include <sundog/version.h>
@@ -53,7 +53,7 @@ struct Material {
   Vec3 emission{0, 0, 0};                ///< radiance emitted to the outside, from 0
 };
 
-/// A light; `type` decides which members apply (docs/scene-reference.md, "Lights").
+/// A light; `type` decides which members apply (docs/reference/scene-reference.md, "Lights").
 struct Light {
   std::string type = "point";  ///< "ambient", "directional", "point", "spot", "rectangle", "disk", "sphere"
   Vec3 color{1, 1, 1};         ///< linear, from 0
@@ -83,7 +83,7 @@ struct MeshView {
   std::shared_ptr<const void> owner{};
 };
 
-/// A distance field given by formulas (docs/formula-language.md).
+/// A distance field given by formulas (docs/reference/formula-language.md).
 struct Formula {
   std::string map{};       ///< one iteration, such as z = z^8 + c; empty: none
   std::string distance{};  ///< an expression; empty: estimated from the map's escape

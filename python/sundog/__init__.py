@@ -5,7 +5,7 @@
     film.save("spheres.png")
     pixels = film.image.pixels          # numpy, linear RGBA, without a copy
 
-A scene is a file, a dict like its JSON (docs/scene-reference.md), or a Scene.
+A scene is a file, a dict like its JSON (docs/reference/scene-reference.md), or a Scene.
 """
 
 import atexit as _atexit

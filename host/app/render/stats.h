@@ -22,7 +22,7 @@ struct TimeLedger {
   }
 };
 
-/// The statistics file, "schema": 1 (docs/command-line.md describes it), without its "seconds".
+/// The statistics file, "schema": 1 (docs/reference/statistics.md describes it), without its "seconds".
 nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& scene,
                           const CompiledScene& flat, const RenderResult& result, const TimeLedger& times);
 

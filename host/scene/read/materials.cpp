@@ -283,7 +283,7 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
   const bool presets = what == "material";
   if (presets) std::ranges::copy(preset_names(), std::back_inserter(known));
   const std::string mend = did_you_mean(
-      text, known, presets ? own + ", and docs/materials.md lists presets such as \"ice\"" : own);
+      text, known, presets ? own + ", and docs/guide/materials.md lists presets such as \"ice\"" : own);
   name.wanted(fmt::format("the name of a {} of this scene ({})", what, mend));
 }
 

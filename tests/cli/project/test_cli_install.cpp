@@ -49,7 +49,7 @@ TEST_CASE("the installed pages are whole: each relative link leads to an install
   REQUIRE(installed.status == 0);
   const fs::path pages = folder / "share/doc/sundog";
   for (const char* file :
-       {"README.md", "LICENSE", "NOTICE", "docs/command-line.md", "scenes/hollow_ice.json"}) {
+       {"README.md", "LICENSE", "NOTICE", "docs/reference/command-line.md", "scenes/hollow_ice.json"}) {
     CAPTURE(file);
     CHECK(fs::exists(pages / file));
   }

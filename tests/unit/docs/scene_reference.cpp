@@ -86,7 +86,7 @@ class Page {
         "-->\n\n"
         "Every key of a scene file. Lengths are in scene units, angles in degrees, colours linear [red, "
         "green, blue]. "
-        "[Scenes](scenes.md) introduces the format.\n";
+        "[Scenes](../guide/scenes.md) introduces the format.\n";
     for (const Group& group : groups()) write(group);
     return out_;
   }

@@ -1,4 +1,4 @@
-// docs/scene-reference.md, from the schema.
+// docs/reference/scene-reference.md, from the schema.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path root = SUNDOG_SOURCE_DIR;
-const fs::path reference_page = root / "docs/scene-reference.md",
-               language_page = root / "docs/formula-language.md";
+const fs::path reference_page = root / "docs/reference/scene-reference.md",
+               language_page = root / "docs/reference/formula-language.md";
 
 ordered_json ordered_schema() { return ordered_json::parse(read_file(root / "scenes/scene.schema.json")); }
 
@@ -142,7 +142,7 @@ TEST_CASE("links and pictures of the pages lead somewhere") {
 TEST_CASE("the contact sheet and the pages have as many surfaces as the list") {
   const std::size_t count = formula_list().size();
   for (const auto& [page, text] : {std::pair("docs/gallery.md", "the {} surfaces of `sundog formulas`"),
-                                   {"docs/peers.md", "| {} surfaces and formulas"},
+                                   {"docs/measurements/peers.md", "| {} surfaces and formulas"},
                                    {"README.md", "{} surfaces, or a"}})
     CHECK(read_file(root / page).find(fmt::format(fmt::runtime(text), count)) != std::string::npos);
   const Image sheet =
@@ -166,7 +166,7 @@ TEST_CASE("hand-written pages have at most 150 lines") {
 }
 
 TEST_CASE("the page of variables has every variable that a source reads, and names no other of sundog's") {
-  const std::string page = read_file(root / "docs/variables.md");
+  const std::string page = read_file(root / "docs/reference/variables.md");
   const std::regex read(R"re(\b(?:getenv|variable|seconds_of)\("([A-Z_]+)")re"), own(R"(\bSUNDOG_[A-Z_]+)");
   std::set<std::string> known{"SUNDOG_TEST_DEVICES"};  // of the tests
   for (const auto& entry : fs::recursive_directory_iterator(root / "host")) {

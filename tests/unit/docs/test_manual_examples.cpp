@@ -1,4 +1,4 @@
-// The scene of docs/scenes.md loads. The fractals and formulas of docs/formulas.md are scenes that load,
+// The scene of docs/guide/scenes.md loads. The fractals and formulas of docs/guide/formulas.md are scenes that load,
 // without a warning but the one that the page mentions.
 #include <fstream>
 
@@ -10,7 +10,7 @@ namespace {
 /// The examples of a page: indented lines that begin with a brace, up to the next line that is not
 /// indented.
 std::vector<std::string> examples_of(const std::string& page) {
-  std::ifstream file(SUNDOG_SOURCE_DIR "/docs/" + page);
+  std::ifstream file(SUNDOG_SOURCE_DIR "/docs/guide/" + page);
   std::vector<std::string> examples;
   bool is_open = false;
   for (std::string line; std::getline(file, line);) {

@@ -1,4 +1,4 @@
-// What docs/scene-reference.md says of the schema's values.
+// What docs/reference/scene-reference.md says of the schema's values.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
