@@ -32,6 +32,7 @@ TEST_CASE("a mesh that has an owner is held, not copied") {
   sundog::MeshView view = grid->view();
   {
     sundog::Scene scene = small_scene();
+    CHECK(scene.check().empty());  // the schema is taken in once a process
     const auto added = [&] {
       const AllocatedBytes allocated;
       scene.add_mesh("grid", view);

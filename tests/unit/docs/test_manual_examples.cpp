@@ -1,5 +1,5 @@
-// The scene of docs/guide/scenes.md loads. The fractals and formulas of docs/guide/formulas.md are scenes that load,
-// without a warning but the one that the page mentions.
+// The scene of docs/guide/scenes.md loads. The fractals and formulas of docs/guide/formulas.md are scenes
+// that load, without a warning but the one that the page mentions.
 #include <fstream>
 
 #include "catch.h"
