@@ -192,7 +192,8 @@ void add_images(nb::module_& m) {
 }
 
 void add_scene(nb::module_& m) {
-  nb::class_<Scene>(m, "Scene", "A JSON document (docs/reference/scene-reference.md), with meshes from memory.")
+  nb::class_<Scene>(m, "Scene",
+                    "A JSON document (docs/reference/scene-reference.md), with meshes from memory.")
       .def(
           "__init__",
           [](Scene* self, nb::handle source) {

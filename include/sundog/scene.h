@@ -1,7 +1,7 @@
 // Scenes: read from a file or from text, or built in code.
 //
-// Every scene is a JSON document (docs/reference/scene-reference.md lists each key with unit, range and default). The
-// structs below cover the common keys; set() reaches all of them.
+// Every scene is a JSON document (docs/reference/scene-reference.md lists each key with unit, range and
+// default). The structs below cover the common keys; set() reaches all of them.
 #pragma once
 #include <sundog/version.h>
 

@@ -1,4 +1,5 @@
-// The whole C++ interface of sundog (docs/guide/library.md introduces it); <sundog/sundog.h> is the C interface.
+// The whole C++ interface of sundog (docs/guide/library.md introduces it); <sundog/sundog.h> is the C
+// interface.
 #pragma once
 #include <sundog/devices.h>
 #include <sundog/error.h>

@@ -108,7 +108,8 @@ struct Report {
 /// Facts, the tables among the parts (the measurements when there are none), notes.
 std::string report_text(const Report& report);
 
-/// docs/reference/bench-reports.md describes it; a Spread is an object of median, low, high, min, max and the runs.
+/// docs/reference/bench-reports.md describes it; a Spread is an object of median, low, high, min, max and the
+/// runs.
 nlohmann::json report_json(const Report& report);
 
 /// The measurements alone, as RFC 4180 has it, with one line of names.

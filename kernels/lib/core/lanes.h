@@ -332,12 +332,8 @@ static inline REAL near_angle(REAL a) {
 }
 
 // Sine and cosine that do not depend on what other lanes hold; not a number for what is none, or infinite.
-static inline REAL real_sin(REAL a) {
-  return select(a - a, sin(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX));
-}
-static inline REAL real_cos(REAL a) {
-  return select(a - a, cos(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX));
-}
+static inline REAL real_sin(REAL a) { return select(a - a, sin(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX)); }
+static inline REAL real_cos(REAL a) { return select(a - a, cos(near_angle(a)), MASK_OF(fabs(a) <= FLT_MAX)); }
 
 // Natural logarithm of a positive normal number, to 2 ulp or 1e-7 absolute, whichever is larger. Unlike the
 // library's, it has the same bits on every device. x = 2^e m with m in [sqrt(1/2), sqrt(2)); log m = y -
