@@ -63,11 +63,11 @@ typedef enum LightKind SUNDOG_ENUM_OF_U32 {
 } LightKind;
 #undef LIGHT_CONSTANT
 
-#define ONE_LIGHT(constant, name, placed, aimed, extent) +1u
-#define LIGHT_KINDS (0u LIGHTS(ONE_LIGHT))  // those of scene files come first
+#define ONE_LIGHT(constant, name, placed, aimed, extent) +1u  // NOLINT(bugprone-macro-parentheses)
+#define LIGHT_KINDS (0u LIGHTS(ONE_LIGHT))                    // those of scene files come first
 
 // Bits by kind: lights that have a position, lights without an extent, lights with corners_NAME().
-#define PLACED_LIGHT(constant, name, placed, aimed, extent) | (u32)placed << LIGHT_##constant
+#define PLACED_LIGHT(constant, name, placed, aimed, extent) | (u32)(placed) << LIGHT_##constant
 #define KIND_OF_LIGHT(constant, name, placed, aimed, extent) | 1u << LIGHT_##constant
 #define PLACED_LIGHTS (0u LIGHTS(PLACED_LIGHT) MESH_LIGHTS(PLACED_LIGHT))
 #define LIGHTS_OF_SKY (0u SKY_LIGHTS(KIND_OF_LIGHT))
