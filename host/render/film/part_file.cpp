@@ -16,6 +16,7 @@
 #include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
+#include "scene/json/json_memory.h"
 
 namespace sundog {
 namespace {
@@ -24,7 +25,6 @@ using nlohmann::json;
 
 constexpr const char* format_name = "sundog part 3";
 constexpr std::size_t checksum_digits = 16;
-constexpr std::size_t most_header = std::size_t{1} << 26;  // of its JSON, which takes more as values
 
 template <class T>
 void append_done(std::string& bytes, const std::vector<T>& values, const std::vector<std::uint8_t>& done) {
@@ -210,10 +210,11 @@ PartFile read_part(const std::filesystem::path& path) {
   bytes.resize(bytes.size() - checksum_digits);
   if (sum != checksum(bytes)) throw refuse(damaged.c_str());
   const std::size_t line = std::min(bytes.find('\n'), bytes.size() - 1);
-  if (line > most_header) throw refuse(damaged.c_str());
+  const std::string_view head = std::string_view(bytes).substr(0, line);
+  check_json_memory(head, path);
   std::optional<PartFile> file;
   try {
-    file = read_header(json::parse(bytes.substr(0, line)));
+    file = read_header(json::parse(head));
   } catch (const json::exception&) {
     throw refuse(damaged.c_str());
   }

@@ -208,6 +208,7 @@ RenderTimes open(Frame& frame, std::size_t i) {
 /// Has the server render a tile of the frame, which lies somewhere in the picture.
 TileResult render_in_picture(const Frame& frame, TileServer& server, TileRequest request,
                              const StopFlags& flags) {
+  if (!frame.options.region) return server.render(request, flags);
   const Tile asked = request.tile;
   if (request.pixels.empty()) request.tile.x += frame.area.x, request.tile.y += frame.area.y;
   const u32 corner = static_cast<u32>(frame.area.x) | static_cast<u32>(frame.area.y) << 16;

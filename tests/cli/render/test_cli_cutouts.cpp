@@ -72,13 +72,17 @@ TEST_CASE("AOVs, mattes, alpha and the denoiser's features see through what is c
   }
 }
 
-TEST_CASE("--subsample keeps what stands behind a cut-out in the middle of a single pixel") {
+namespace {
+
+/// The picture of the screens, the left one of that opacity, with `--subsample` at one sample a pixel. Balls
+/// smaller than a pixel stand in the middles of pixels (x, 13).
+Image subsampled(double opacity, std::initializer_list<int> balls) {
   const CliFolder folder;
   nlohmann::json scene = nlohmann::json::parse(screens);
   scene["render"]["samples"] = 1;
-  // A pixel is 20 tan(10 degrees) / 16 wide at z = 0; these are smaller, in middles of pixels in odd places.
-  const double pixel = 20 * std::tan(0.17453292519943295) / 16;
-  for (const int x : {3, 19})
+  scene["materials"]["hole"]["opacity"] = opacity;
+  const double pixel = 20 * std::tan(0.17453292519943295) / 16;  // its width at z = 0
+  for (const int x : balls)
     scene["objects"].push_back({{"type", "sphere"},
                                 {"radius", 0.3 * pixel},
                                 {"center", {(x + 0.5 - 12) * pixel, (8 - 12.5 - 1) * pixel, 0}},
@@ -88,28 +92,20 @@ TEST_CASE("--subsample keeps what stands behind a cut-out in the middle of a sin
       run_sundog({"render", file, "-o", folder.file("a.exr"), "--subsample", "--quiet"});
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
-  const Image picture = read_image(folder / "a.exr");
+  return read_image(folder / "a.exr");
+}
+
+}  // namespace
+
+TEST_CASE("--subsample keeps what stands behind a cut-out in the middle of a single pixel") {
+  const Image picture = subsampled(0, {3, 19});
   CHECK(picture.pixel(3, 13)[3] == 1);
   CHECK(picture.pixel(19, 13)[3] == 1);
   CHECK(picture.pixel(5, 13)[3] == 0);
 }
 
 TEST_CASE("--subsample keeps what stands behind a pane of opacity 0.5 in the middle of a single pixel") {
-  const CliFolder folder;
-  nlohmann::json scene = nlohmann::json::parse(screens);
-  scene["render"]["samples"] = 1;
-  scene["materials"]["hole"]["opacity"] = 0.5;
-  const double pixel = 20 * std::tan(0.17453292519943295) / 16;
-  scene["objects"].push_back({{"type", "sphere"},
-                              {"radius", 0.3 * pixel},
-                              {"center", {(3 + 0.5 - 12) * pixel, (8 - 12.5 - 1) * pixel, 0}},
-                              {"material", "white"}});
-  const std::string file = folder.write("dots.json", scene.dump()).string();
-  const CommandResult result =
-      run_sundog({"render", file, "-o", folder.file("a.exr"), "--subsample", "--quiet"});
-  CAPTURE(result.err);
-  REQUIRE(result.status == 0);
-  const Image picture = read_image(folder / "a.exr");
+  const Image picture = subsampled(0.5, {3});
   CHECK(picture.pixel(3, 13)[3] == 1);
   CHECK(picture.pixel(5, 13)[3] == Approx(0.5));
 }

@@ -94,6 +94,15 @@ TEST_CASE("a part whose header cannot be true is refused with status 3 and the f
   CHECK(merge(folder, part_file(good_header(), 2)).status == 3);  // a pixel that is neither done nor not
 }
 
+TEST_CASE("a part whose header would take far more memory than its length is refused unread") {
+  const CliFolder folder;
+  const CommandResult result = merge(folder, part_file(changed("objects", json(3'000'000, json::array()))));
+  CAPTURE(result.err.substr(0, 1000));
+  CHECK(result.status == 3);
+  CHECK(is_one_error_line(result.err));
+  CHECK(result.err.find("MiB of memory") != std::string::npos);
+}
+
 TEST_CASE("a list of many missing parts is shortened") {
   const CliFolder folder;
   json header = changed("parts", 65536);
