@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "app/bench/bench_options.h"
-#include "app/bench/tune_command.h"
+#include "bench/commands/bench_options.h"
+#include "bench/commands/tune_command.h"
 #include "app/commands/bake_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/formulas_command.h"

@@ -38,19 +38,22 @@ TEST_CASE("calls of the file system take an error code") {
   const std::regex call(
       R"((?:fs|std::filesystem)::(exists|is_\w+|file_size|last_write_time|remove|remove_all|rename|create_director\w+|create_symlink|current_path|absolute|canonical|weakly_canonical|temp_directory_path|read_symlink|space|status|copy\w*|relative|equivalent|resize_file|permissions)\()");
   const std::regex code(R"(std::error_code (\w+)|fs::file_status (\w+))");
-  const fs::path host = fs::path(SUNDOG_SOURCE_DIR) / "host";
+  const fs::path root = SUNDOG_SOURCE_DIR;
+  std::vector<fs::path> sources;
+  for (const char* top : {"host", "bench/commands", "bench/runs"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) sources.push_back(entry.path());
   int calls = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(host)) {
-    const std::string extension = entry.path().extension().string();
+  for (const fs::path& source : sources) {
+    const std::string extension = source.extension().string();
     if (extension != ".cpp" && extension != ".h") continue;
-    const std::string text = without_comments(sundog::read_file(entry.path()));
+    const std::string text = without_comments(sundog::read_file(source));
     std::vector<std::string> codes;
     for (std::sregex_iterator it(text.begin(), text.end(), code), end; it != end; ++it)
       codes.push_back((*it)[1].matched ? (*it)[1] : (*it)[2]);
     for (std::sregex_iterator it(text.begin(), text.end(), call), end; it != end; ++it, ++calls) {
       const auto open = static_cast<std::size_t>(it->position() + it->length()) - 1;
       const std::string last = last_argument(text, open);
-      CAPTURE(entry.path().string(), it->str(), last);
+      CAPTURE(source.string(), it->str(), last);
       CHECK(std::ranges::count(codes, last) > 0);
     }
   }

@@ -32,8 +32,9 @@ const std::map<std::string, Names> allowed = {
 /// own folder come after all of them.
 const std::map<std::string, std::vector<std::string>> folders = {
     {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
-    {"host/bench", {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune"}},
-    {"host/app", {"process", "options", "job", "render", "bench", "bake", "commands", "serve"}},
+    {"bench",
+     {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune", "commands", "peers"}},
+    {"host/app", {"process", "options", "job", "render", "bake", "commands", "serve"}},
     {"kernels/lib",
      {"core", "halo", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
 };
@@ -41,6 +42,11 @@ const std::map<std::string, std::vector<std::string>> folders = {
 struct Include {
   std::string file, layer, path;
 };
+
+/// The commands of benchmarks belong to the program.
+std::string layer_of(const std::string& path) {
+  return path.starts_with("bench/commands/") ? "app" : path.substr(0, path.find('/'));
+}
 
 /// The includes of all sources below a folder of the project; `layer` is the first folder of `file`.
 std::vector<Include> includes_below(const std::string& top) {
@@ -61,22 +67,33 @@ std::vector<Include> includes_below(const std::string& top) {
   return includes;
 }
 
+/// The includes of all layers.
+std::vector<Include> includes_of_layers() {
+  std::vector<Include> includes = includes_below("host");
+  for (Include& include : includes_below("bench")) {
+    include.file = "bench/" + include.file;
+    include.layer = layer_of(include.file);
+    if (!include.file.starts_with("bench/peers/")) includes.push_back(std::move(include));
+  }
+  return includes;
+}
+
 }  // namespace
 
 TEST_CASE("a layer includes only the layers to its left") {
-  const auto includes = includes_below("host");
+  const auto includes = includes_of_layers();
   REQUIRE(includes.size() > 50);
   for (const auto& [file, layer, path] : includes) {
     INFO(file << " includes " << path);
     REQUIRE(allowed.count(layer) == 1);
-    const std::string target = path.substr(0, path.find('/'));
+    const std::string target = layer_of(path);
     if (target == path || target == layer) continue;
     if (allowed.count(target) == 1 || target == "shared") CHECK(allowed.at(layer).count(target) == 1);
   }
 }
 
 TEST_CASE("OpenCL is spoken in the device layer alone") {
-  for (const auto& [file, layer, path] : includes_below("host"))
+  for (const auto& [file, layer, path] : includes_of_layers())
     if (path.starts_with("CL/")) {
       INFO(file << " includes " << path);
       CHECK(layer == "device");
@@ -102,7 +119,7 @@ TEST_CASE("a folder of a layer includes only the folders before it") {
 
 TEST_CASE("no folder has more sources than a reader takes in") {
   std::map<std::string, int> count;
-  for (const char* top : {"host", "kernels"})
+  for (const char* top : {"host", "kernels", "bench"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(SUNDOG_SOURCE_DIR) / top)) {
       const std::string kind = entry.path().extension().string();
       if (kind == ".cpp" || kind == ".cl" ||

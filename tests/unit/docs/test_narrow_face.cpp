@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path host = fs::path(SUNDOG_SOURCE_DIR) / "host";
+const fs::path root = SUNDOG_SOURCE_DIR, host = root / "host";
 
 std::vector<std::string> lines_of(const fs::path& path) {
   std::ifstream file(path);
@@ -31,7 +31,7 @@ std::set<std::string> included_by(const std::string& header) {
     const std::string next = open.back();
     open.pop_back();
     if (!all.insert(next).second) continue;
-    for (const fs::path& folder : {host, fs::path(SUNDOG_SOURCE_DIR) / "kernels"}) {
+    for (const fs::path& folder : {host, root, root / "kernels"}) {
       if (!fs::exists(folder / next)) continue;
       std::smatch match;
       for (const std::string& line : lines_of(folder / next))
@@ -48,10 +48,11 @@ template <class F>
 void for_each_line(const std::vector<std::string>& layers, const F& f) {
   int sources = 0;
   for (const std::string& layer : layers)
-    for (const auto& entry : fs::recursive_directory_iterator(host / layer)) {
+    for (const auto& entry : fs::recursive_directory_iterator(layer == "bench" ? root / layer : host / layer)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".h") continue;
       ++sources;
+      if (entry.path().string().find("/bench/peers/") != std::string::npos) continue;
       const std::string file = fs::relative(entry.path(), host).string();
       for (const std::string& line : lines_of(entry.path())) {
         if (line.find("//") <= line.find_first_not_of(" /") || line.find("virtual") != std::string::npos)

@@ -1,0 +1,199 @@
+// See bench_options.h.
+#include "bench/commands/bench_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <tuple>
+
+#include "app/options/commands.h"
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "app/options/output_files.h"
+#include "app/options/pick_devices.h"
+#include "app/process/environment.h"
+#include "app/process/revision.h"
+#include "app/process/warnings.h"
+#include "base/cache_folder.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/report/machine.h"
+#include "device/build_options.h"
+#include "device/driver_folder.h"
+#include "scene/json/override.h"
+#include "scene/load.h"
+
+namespace sundog {
+namespace {
+
+std::string& command_line() {
+  static std::string text;
+  return text;
+}
+
+/// As a shell takes it for one word.
+std::string quoted(std::string_view word) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+void remember_command_line(int argc, const char* const* argv) {
+  std::string& text = command_line();
+  text.clear();
+  for (int i = 0; i < argc; ++i) {
+    if (i > 0) text += ' ';
+    text += quoted(argv[i]);
+  }
+}
+
+const std::string& command_line_text() { return command_line(); }
+
+void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed) {
+  auto* scenes =
+      value(app, "SCENE", "FILE", options.scenes, std::string(scene_help) + "; several may be given");
+  if (scene_needed) scenes->required();
+  values(app, "--device", "SPEC", options.devices, device_help);
+  values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
+  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 6)")
+      ->type_name("N")
+      ->range(1, 10000);
+  app->add_option("--seconds", options.seconds, "further runs until those of each measurement took so long")
+      ->type_name("S")
+      ->range(0, 1e6);
+  value(app, "--precision", "P%", options.precision,
+        "further runs, at most 1000, until the median is known to P per cent: half of its interval");
+  value(app, "--continue", "FILE", options.continue_from,
+        "take the runs that this JSON of an earlier run has, and measure the others");
+  outside_files(app, options.outside_files);
+  add_report_options(app, options);
+}
+
+void add_report_options(Arguments* app, ReportFiles& files) {
+  value(app, "--json", "FILE", files.json, "write the measurements as JSON");
+  value(app, "--csv", "FILE", files.csv, "write the measurements as CSV");
+  value(app, "--html", "FILE", files.html, "write the report as one page with plots");
+  value(app, "--latex", "FILE", files.latex, "write the tables for LaTeX with booktabs");
+  value(app, "--svg", "FILE.svg", files.svg,
+        "write the plots for a paper's column: the first to FILE.svg, then FILE-2.svg, ...");
+  value(app, "--t4", "FILE", files.t4, "write the measurements as JSON in the T4 format of tuners");
+  app->add_flag("-q,--quiet", files.quiet, "print nothing");
+}
+
+void check_report_files(const ReportFiles& files, const std::vector<std::string>& inputs) {
+  check_output_files(files.all(), inputs);
+  for (const std::string& file : files.all())
+    if (!file.empty()) check_writable(file);
+}
+
+namespace {
+
+void write_json(const std::string& file, const nlohmann::json& json) {
+  if (file.empty()) return;
+  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
+             program_environment()->faults);
+}
+
+}  // namespace
+
+void write_report(const Report& report, const ReportFiles& files) {
+  write_json(files.json, report_json(report));
+  if (!files.t4.empty()) write_json(files.t4, report_t4(report));
+  if (!files.latex.empty()) write_file(files.latex, report_latex(report));
+  if (!files.svg.empty()) {
+    const std::filesystem::path file(files.svg);
+    const std::vector<std::string> plots = report_svgs(report);
+    for (std::size_t i = 0; i < plots.size(); ++i) {
+      const std::string name = fmt::format("{}-{}{}", file.stem().string(), i + 1, file.extension().string());
+      write_file(i == 0 ? file : file.parent_path() / name, plots[i]);
+    }
+  }
+  if (!files.csv.empty()) write_file(files.csv, report_csv(report));
+  if (!files.html.empty()) write_file(files.html, report_html(report));
+  if (!files.quiet) fmt::print("{}", report_text(report));
+}
+
+void add_bench_size(Arguments* app, BenchOptions& options) {
+  value(app, "--size", "WxH", options.size, "width and height in pixels (default: the scene's)");
+}
+
+void show_step(const BenchOptions& options, const std::string& step) {
+  if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K{}", step);
+}
+
+std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+SceneDescription bench_description(const std::string& file, const BenchOptions& options,
+                                   const std::vector<std::string>& more) {
+  std::vector<std::string> overrides = more;
+  if (!options.size.empty())
+    for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  return load_beside(options.all(), [&] {
+    return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
+  });
+}
+
+CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
+                          const std::vector<std::string>& more) {
+  return compile(bench_description(file, options, more));
+}
+
+SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
+  if (!options.size.empty()) std::tie(scene.image.width, scene.image.height) = parse_size(options.size);
+  return scene;
+}
+
+std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
+  return pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+}
+
+std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {
+  std::vector<int> numbers;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');)
+    numbers.push_back(parse_number(option, part, low, high));
+  if (numbers.empty() || text.ends_with(','))
+    throw UsageError(fmt::format("{} '{}': wanted numbers with commas between, such as 1,2,4", option, text));
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    if (comma > at) parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
+}
+
+void add_bench(Arguments& root, Command& chosen) {
+  Arguments* bench =
+      root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
+  bench->require_subcommand(1);
+  add_bench_workgroup(*bench, chosen);
+  add_bench_threads(*bench, chosen);
+  add_bench_rays(*bench, chosen);
+  add_bench_samples(*bench, chosen);
+  add_bench_quality(*bench, chosen);
+  add_bench_textures(*bench, chosen);
+  add_bench_devices(*bench, chosen);
+  add_bench_kernels(*bench, chosen);
+  add_bench_roofline(*bench, chosen);
+  add_bench_compare(*bench, chosen);
+}
+
+}  // namespace sundog

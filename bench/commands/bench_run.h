@@ -1,0 +1,70 @@
+// One run of a bench: what was measured is on disk at once and shown at the end, however it ends.
+#pragma once
+#include <map>
+#include <memory>
+
+#include "bench/commands/bench_options.h"
+#include "bench/commands/bench_progress.h"
+#include "app/process/interrupt.h"
+#include "base/arguments.h"
+#include "bench/runs/measure.h"
+
+namespace sundog {
+
+class BenchRun {
+ public:
+  /// `name` is the benchmark's. Throws IoError when a file of the options cannot be written, UsageError when
+  /// the report to continue is another bench's.
+  BenchRun(const std::string& name, const std::string& title, const BenchOptions& options);
+
+  /// What the report says besides measurements: facts, and notes behind those of the measurements.
+  Report& head() { return head_; }
+  void add_devices(const std::vector<DeviceInfo>& devices);
+  /// Throws UsageError where the report to continue has measured another scene of that name.
+  void add_scene(const std::string& name, const std::string& file, const CompiledScene& scene);
+  std::shared_ptr<const CompiledScene> compiled(const std::string& file,
+                                                const std::vector<std::string>& more = {});
+
+  /// Measures what has measure(MeasureOptions) and add_to(Report); nothing once it is interrupted. `budget`
+  /// in seconds; 0: none. `repeat` of the options' where it is below 0.
+  template <class Part>
+  void measure(const std::shared_ptr<Part>& part, double budget = 0, int repeat = -1) {
+    if (is_stopped()) return;
+    parts_.push_back([part](Report& report) { part->add_to(report); });
+    part->measure(measuring(budget, repeat));
+  }
+  bool is_stopped() const { return stop_.flag(); }
+  /// Writes the files and prints the report. Returns the exit status; throws what the first way failed with
+  /// where none has a time, and with `all_right` for a wrong result.
+  int publish(bool all_right = false);
+
+ private:
+  MeasureOptions measuring(double budget, int repeat);
+  Report so_far() const;
+  void keep();
+
+  BenchOptions options_;
+  StopOnSignal stop_;
+  Report head_;
+  Table known_devices_, known_scenes_;        // of the report to continue
+  std::map<std::string, MeasuredWay> known_;  // its runs
+  std::vector<std::function<void(Report&)>> parts_;
+  std::shared_ptr<LoadMeter> load_;
+  std::unique_ptr<BenchProgress> progress_;
+  Stopwatch since_kept_;
+  double keeping_ = 0;  // seconds that the last keep() took
+};
+
+/// Declares `sundog bench NAME`: `run` is called with the options, which have those of all benches.
+template <class Options>
+Arguments* add_bench_command(Arguments& bench, Command& chosen, const std::string& name,
+                             const std::string& description, const std::shared_ptr<Options>& options,
+                             int (*run)(const Options&), bool scene_needed = true) {
+  Arguments* app = bench.add_subcommand(name, description);
+  add_bench_options(app, *options, scene_needed);
+  app->callback(
+      [options, run, &chosen] { chosen = RunLater{[options, run] { return run(*options); }, true}; });
+  return app;
+}
+
+}  // namespace sundog

@@ -1,0 +1,176 @@
+// `sundog bench workgroup`: each kernel and device with every sensible local size.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "bench/commands/bench_run.h"
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/names.h"
+#include "bench/frames/frame_runner.h"
+#include "bench/frames/work_groups.h"
+#include "bench/rays/ray_sets.h"
+#include "bench/rays/ray_tracer.h"
+#include "bench/report/machine.h"
+#include "render/film/hash.h"
+
+namespace sundog {
+namespace {
+
+constexpr std::array kernel_names{"render_whitted", "trace_rays", "occluded_rays"};
+
+struct WorkgroupOptions : BenchOptions {
+  std::vector<std::string> kernels;
+  std::string sizes;
+  unsigned rays = 512;
+  double budget = 0;  // seconds; 0: no limit
+};
+
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) {
+  return hash_bytes(values.data(), values.size() * sizeof(T));
+}
+
+using Times = std::map<std::string, KernelTimes>;
+
+/// The group of the kernel's last launch.
+std::pair<std::size_t, std::size_t> local_of(const Times& kernels, const std::string& name) {
+  const auto found = kernels.find(name);
+  if (found == kernels.end()) return {};
+  return {found->second.local_x, found->second.local_y};
+}
+
+/// Of the launches since the device's times were forgotten (TimedKernel::beyond_events).
+std::optional<double> beyond_events(const Times& kernels) {
+  double seconds = 0;
+  for (const auto& [name, times] : kernels) {
+    if (times.device_ms <= 0) return {};
+    seconds += 1e-3 * (times.host_ms - times.device_ms);
+  }
+  return seconds;
+}
+
+/// Whole frames, as `sundog render` would make them.
+void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledScene& scene) {
+  kernel.two_dimensions = true;
+  const auto frames = std::make_shared<FrameRunner>(device, scene);
+  kernel.limit = frames->greatest_group();
+  kernel.build_seconds = frames->times().build_kernels;
+  kernel.cached = frames->times().cached;
+  kernel.run = [frames](const WorkGroup& group) {
+    frames->use(group);
+    return frames->run();
+  };
+  kernel.beyond_events = [frames] { return beyond_events(frames->kernel_times()); };
+  const char* tracer = scene.integrator == "path" ? "render_path" : "render_whitted";
+  kernel.local = [frames, tracer] { return local_of(frames->kernel_times(), tracer); };
+  kernel.result = [frames] { return hash_of(frames->image().data); };
+}
+
+/// The camera's rays through the tracer alone.
+void time_rays(TimedKernel& kernel, const DeviceInfo& info, const CompiledScene& scene, bool any,
+               unsigned size) {
+  struct Setup {
+    Device device;
+    RayTracer tracer;
+    Setup(const DeviceInfo& info_, const CompiledScene& scene_) : device(info_), tracer(device, scene_) {}
+  };
+  const Stopwatch clock;
+  const auto setup = std::make_shared<Setup>(info, scene);
+  kernel.build_seconds = clock.seconds();
+  kernel.limit = setup->tracer.greatest_group(any);
+  setup->tracer.upload(primary_rays(scene_viewpoint(scene), size).rays);
+  kernel.run = [setup, any](const WorkGroup& group) {
+    setup->device.forget_times();
+    const Stopwatch running;
+    setup->tracer.run({any, true}, group);
+    return running.seconds();
+  };
+  kernel.beyond_events = [setup] { return beyond_events(setup->device.times()); };
+  kernel.local = [setup, name = kernel.name] { return local_of(setup->device.times(), name); };
+  kernel.result = [setup, any] {
+    return any ? hash_of(setup->tracer.occluded()) : hash_of(setup->tracer.hits());
+  };
+}
+
+/// "4,8x8,driver".
+std::vector<WorkGroup> parse_sizes(const std::string& text) {
+  std::vector<WorkGroup> sizes;
+  for (const std::string& name : split_names(text)) sizes.push_back(parse_work_group(name, "--sizes"));
+  std::erase_if(sizes, [](const WorkGroup& group) { return group.kind == WorkGroup::Kind::automatic; });
+  return sizes;
+}
+
+int bench_workgroup(const WorkgroupOptions& options) {
+  std::vector<std::string> kernels = options.kernels;
+  for (const std::string& name : kernels)
+    if (std::ranges::count(kernel_names, name) == 0)
+      throw UsageError(
+          fmt::format("--kernel {}: {}", name,
+                      did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
+                                   fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
+  if (kernels.empty()) kernels.assign(kernel_names.begin(), kernel_names.end());
+  TimedKernel head;
+  head.sizes = parse_sizes(options.sizes);
+  BenchRun run("workgroup", "Times by work-group size", options);
+  run.head().notes = {
+      fmt::format(
+          "Median of {} runs after one to warm up, all sizes in shuffled turn. render_whitted is a "
+          "whole frame with its transfers, the others are {}x{} camera rays through the tracer alone. "
+          "Each result was compared with the default's to the bit before its time counted.",
+          options.repeat, options.rays, options.rays),
+      "The size with the smallest median was run again in turn with the default. It is called best only if "
+      "the interval of its median lies below that of the default's.",
+      "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
+      "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
+      "no times."};
+  const std::vector<DeviceInfo> devices = bench_devices(options);
+  run.add_devices(devices);
+  const double parts = static_cast<double>(options.scenes.size() * devices.size() * kernels.size());
+  for (const std::string& file : options.scenes) {
+    const auto scene = run.compiled(file);
+    for (const DeviceInfo& device : devices)
+      for (const std::string& name : kernels) {
+        head.scene = scene_name(file);
+        head.device = device_place(device);
+        head.name = name;
+        const auto open = [=, rays = options.rays] {
+          TimedKernel kernel = head;
+          if (name == "render_whitted")
+            time_frames(kernel, device, *scene);
+          else
+            time_rays(kernel, device, *scene, name == "occluded_rays", rays);
+          return kernel;
+        };
+        run.measure(std::make_shared<WorkGroupTimes>(head, open), options.budget / parts);
+      }
+  }
+  return run.publish();
+}
+
+}  // namespace
+
+void add_bench_workgroup(Arguments& bench, Command& chosen) {
+  const auto options = std::make_shared<WorkgroupOptions>();
+  Arguments* app = add_bench_command(bench, chosen, "workgroup", "Times of each kernel by work-group size",
+                                     options, bench_workgroup);
+  values(app, "--kernel", "NAME", options->kernels,
+         fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
+  value(app, "--sizes", "N,WxH...", options->sizes,
+        "work-groups to compare with the default (default: all that make sense)");
+  app->add_option(
+         "--budget", options->budget,
+         "about how long it may take: then further runs, and sizes, are left out (default: no limit)")
+      ->type_name("SECONDS")
+      ->range(0, 1e6);
+  app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
+      ->type_name("N")
+      ->range(16, 16384);
+}
+
+}  // namespace sundog

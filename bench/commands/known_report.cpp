@@ -1,0 +1,91 @@
+// See known_report.h.
+#include "bench/commands/known_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace sundog {
+namespace {
+
+using nlohmann::json;
+
+std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : ""; }
+
+Table table_of(const json& rows) {
+  Table table;
+  for (const json& row : rows) {
+    std::vector<Field> fields;
+    for (const auto& [name, value] : row.items())
+      fields.push_back({name, "", value.is_number() ? Cell(value.get<double>()) : Cell(text_of(value))});
+    add_row(table, fields);
+  }
+  return table;
+}
+
+double number(const json& run, const char* name, double otherwise) {
+  return run.contains(name) && run[name].is_number() ? run[name].get<double>() : otherwise;
+}
+
+MeasuredWay way_of(const json& value) {
+  MeasuredWay way;
+  way.name = value.at("name").get<std::string>();
+  way.problem = text_of(value.at("problem"));
+  for (const json& run : value.at("runs"))
+    way.runs.push_back({run.at("seconds").get<double>(), run.at("cores").get<double>(),
+                        number(run, "others", -1), run.at("at").get<double>(), text_of(run.at("left_out")),
+                        number(run, "clock_MHz", 0), number(run, "joules", -1)});
+  return way;
+}
+
+}  // namespace
+
+KnownReport read_report(const std::string& option, const std::string& file) {
+  const auto refuse = [&](const std::string& why) {
+    return UsageError(fmt::format("{} {}: {}", option, file, why));
+  };
+  try {
+    const json report = json::parse(read_file(file));
+    if (report.at("schema") != 2) throw refuse("it has another schema; measure anew");
+    KnownReport known{text_of(report.at("bench")),
+                      text_of(report.at("facts").at("revision")),
+                      table_of(report.at("devices")),
+                      table_of(report.at("scenes")),
+                      {}};
+    for (const json& way : report.at("ways")) known.ways.push_back(way_of(way));
+    return known;
+  } catch (const json::exception&) {
+    throw refuse("it is no report of sundog bench --json");
+  }
+}
+
+std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (plain_name(table.columns[i]) == column) return cell_text(row[i]);
+  return {};
+}
+
+void check_known(const Table& known, const Table& rows, const std::string& name, const std::string& file) {
+  const std::vector<Cell>& mine = rows.rows.back();
+  const std::string own = known_cell(rows, mine, name);
+  bool any = false;
+  for (const auto& row : known.rows) {
+    if (known_cell(known, row, name) != own) continue;
+    any = true;
+    const bool same = std::ranges::all_of(known.columns, [&](const Column& column) {
+      return column.name == "file" ||
+             known_cell(known, row, column.name) == known_cell(rows, mine, column.name);
+    });
+    if (same) return;
+  }
+  if (any)
+    throw UsageError(fmt::format(
+        "--continue {}: it has measured another {}; measure anew, or give the options that made it", file,
+        own));
+}
+
+}  // namespace sundog

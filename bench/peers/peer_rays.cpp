@@ -1,0 +1,70 @@
+// See peer_rays.h.
+#include "peer_rays.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/environment.h"
+#include "bench_scenes.h"
+#include "render/device/kernel_config.h"
+
+namespace sundog {
+namespace {
+
+CompiledScene compiled(const SceneDescription& description, const std::string& tracer) {
+  CompiledScene scene = compile(description);
+  if (tracer != "auto") scene.tracer = tracer == "wide" ? Tracer::wide : Tracer::compact;
+  return scene;
+}
+
+/// A GPU is compared as a whole.
+DeviceInfo chosen_device(const RayOptions& options) {
+  DeviceInfo info = select_devices(enumerate_devices(plain_environment()), {options.device}).at(0);
+  info.sub_units = info.type == "cpu" && options.threads < info.compute_units ? options.threads : 0;
+  return info;
+}
+
+KernelDefines kernel_defines(const std::vector<std::string>& texts) {
+  KernelDefines defines;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    defines[text.substr(0, equals)] = equals == std::string::npos ? "1" : text.substr(equals + 1);
+  }
+  return defines;
+}
+
+}  // namespace
+
+void add_ray_options(Arguments& app, RayOptions& options) {
+  add_peer_options(app, options);
+  app.add_option("--device", options.device, "SPEC of the device");
+  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
+  app.add_option("--size", options.size, "pixels along each side of the image");
+  app.add_option("--kinds", options.kinds, "kinds of rays; all without it")->one_of(ray_kinds);
+}
+
+PeerModel::PeerModel(const std::string& model, const RayOptions& options)
+    : path(model),
+      description(scene_of_model(model, options.spatial_splits)),
+      scene(compiled(description, options.tracer)),
+      device(chosen_device(options)),
+      tracer(device, scene, kernel_defines(options.defines)) {}
+
+const char* PeerModel::tracer_name() const {
+  return traces_compact(scene, device.info()) ? "compact" : "wide";
+}
+
+std::vector<RaySet> PeerModel::rays(const RayOptions& options) {
+  const TraceFunction trace = [&](std::span<const Ray> given) { return tracer.trace(given); };
+  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
+  return frame_rays(scene, view, options.size, trace, options.kinds);
+}
+
+nlohmann::json PeerModel::facts() const {
+  return {{"model", path},
+          {"triangles", scene.figures.triangles},
+          {"device", device.info().label()},
+          {"driver", device.info().driver},
+          {"tracer", tracer_name()}};
+}
+
+}  // namespace sundog
