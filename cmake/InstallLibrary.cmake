@@ -14,7 +14,7 @@ set_target_properties(sundog_shared PROPERTIES LINK_DEPENDS ${symbols} VERSION $
 
 # All layers in one archive; a program that links it links what they need too.
 set(objects "")
-foreach(layer base base_cold scene scene_cold compile lanes device render api)
+foreach(layer base base_cold formula models scene scene_cold compile lanes device render api)
   list(APPEND objects $<TARGET_OBJECTS:sundog_${layer}>)
 endforeach()
 add_library(sundog_static STATIC ${objects})

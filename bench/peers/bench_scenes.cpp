@@ -9,8 +9,8 @@
 #include <set>
 #include <tuple>
 
+#include "models/model.h"
 #include "scene/load.h"
-#include "scene/model.h"
 
 namespace sundog {
 namespace {

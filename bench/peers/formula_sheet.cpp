@@ -15,9 +15,9 @@
 #include "base/arguments.h"
 #include "base/file.h"
 #include "base/image_io.h"
+#include "formula/list.h"
 #include "parse_arguments.h"
 #include "run_program.h"
-#include "scene/formula/list.h"
 #include "stb/stb_easy_font.h"
 
 using namespace sundog;

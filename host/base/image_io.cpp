@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/image_codecs.h"
 #include "base/input.h"
 #include "base/limits.h"
+#include "base/pixels/image_codecs.h"
 #include "base/pixels/stored_image.h"
 
 namespace sundog {

@@ -128,4 +128,17 @@ std::string read_input(const std::filesystem::path& path, std::uintmax_t most,
   }
 }
 
+bool leads_outside(const std::filesystem::path& file, const std::filesystem::path& named) {
+  if (named.native().find('\0') != std::string::npos) return true;
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::canonical(
+      file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), failed);
+  if (failed) return true;
+  // weakly_canonical() does not make the relative path of a missing file absolute.
+  const std::filesystem::path whole =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(named, failed), failed);
+  if (failed) return true;
+  return std::mismatch(folder.begin(), folder.end(), whole.begin(), whole.end()).first != folder.end();
+}
+
 }  // namespace sundog

@@ -23,6 +23,13 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                        const std::shared_ptr<Faults>& faults = nullptr);
 
+/// Whether the path `named`, given in `file`, leaves the folder of `file`: absolute, by "..", or by a link.
+/// Opens nothing.
+bool leads_outside(const std::filesystem::path& file, const std::filesystem::path& named);
+
+/// The remedy, as the end of a message.
+inline constexpr const char* outside_hint = "allow files outside of it if it is to be read all the same";
+
 /// Identifies a file on a disk, whatever its name or links.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0;

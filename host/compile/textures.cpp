@@ -230,8 +230,8 @@ class TextureCompiler {
   void set_formula(const TextureDescription& texture, TextureNode& node) {
     node.first = static_cast<u32>(SRGB_VALUES + stops_.size());
     node.count = static_cast<u32>(formulas_.size());
-    formulas_.push_back(texture.formula);
-    for (const FormulaParameter& parameter : texture.formula.parameters)
+    formulas_.push_back(*texture.formula);
+    for (const FormulaParameter& parameter : texture.formula->parameters)
       for (const double value : parameter.value) stops_.push_back(static_cast<float>(value));
   }
 

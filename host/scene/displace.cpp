@@ -8,9 +8,9 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "models/normals.h"
 #include "scene/heights.h"
 #include "scene/json/value.h"
-#include "scene/models/normals.h"
 
 namespace sundog {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 
+#include "models/model.h"
 #include "scene/load.h"
-#include "scene/model.h"
 
 namespace sundog {
 

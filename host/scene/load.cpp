@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "base/error.h"
+#include "models/model.h"
 #include "scene/animate.h"
 #include "scene/document.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
-#include "scene/model.h"
 #include "scene/model_scene.h"
 #include "scene/read/frame_cache.h"
 #include "scene/read/scene_reader.h"

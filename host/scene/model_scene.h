@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
-#include "scene/model.h"
+#include "models/model.h"
 
 namespace sundog {
 

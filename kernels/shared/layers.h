@@ -1,5 +1,5 @@
 // Layered materials, from the top: fuzz, a coat, a film, and a base (a metal, or a dielectric over a diffuse
-// ground), in the terms of OpenPBR 1.1 (host/scene/materials/openpbr.h has names and ranges).
+// ground), in the terms of OpenPBR 1.1 (host/models/values/openpbr.h has names and ranges).
 #ifndef SUNDOG_SHARED_LAYERS_H
 #define SUNDOG_SHARED_LAYERS_H
 #include "shared/types.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/model.h"
+#include "models/model.h"
 #include "temporary_folder.h"
 
 /// Loads `bytes` as a file of that name.

@@ -8,9 +8,9 @@
 #include "app/process/environment.h"
 #include "base/error.h"
 #include "compile/textures.h"
+#include "models/model.h"
 #include "scene/json/parse.h"
 #include "scene/load.h"
-#include "scene/model.h"
 
 namespace sundog {
 namespace {

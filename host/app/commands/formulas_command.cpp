@@ -9,8 +9,8 @@
 
 #include "app/options/commands.h"
 #include "app/options/option_helpers.h"
-#include "scene/formula/functions.h"
-#include "scene/formula/list.h"
+#include "formula/functions.h"
+#include "formula/list.h"
 
 namespace sundog {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "scene/model.h"
+#include "models/model.h"
 
 namespace sundog {
 namespace fs = std::filesystem;

@@ -8,10 +8,10 @@
 #include "app/serve/frame_limit.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "models/model.h"
 #include "scene/document.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
-#include "scene/model.h"
 
 namespace sundog {
 namespace fs = std::filesystem;

@@ -10,8 +10,8 @@
 #include "app/serve/studio.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "models/model.h"
 #include "scene/json/parse.h"
-#include "scene/model.h"
 #include "scene/shot.h"
 
 namespace sundog {

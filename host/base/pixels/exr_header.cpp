@@ -9,8 +9,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "base/image_codecs.h"
 #include "base/limits.h"
+#include "base/pixels/image_codecs.h"
 
 namespace sundog {
 namespace {

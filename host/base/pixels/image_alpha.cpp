@@ -1,7 +1,7 @@
 // Detects alpha in image files by their headers (PNG: ISO 15948, chunks IHDR and tRNS).
 #include <webp/decode.h>
 
-#include "base/image_codecs.h"
+#include "base/pixels/image_codecs.h"
 
 namespace sundog {
 namespace {

@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "base/colors/icc_profile.h"
-#include "base/image_codecs.h"
 #include "base/limits.h"
 #include "base/memory.h"
+#include "base/pixels/image_codecs.h"
 #include "base/pixels/png_pixels.h"
 #include "base/pixels/quick_png.h"
 #include "base/pixels/stored_image.h"

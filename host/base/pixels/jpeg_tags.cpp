@@ -1,7 +1,7 @@
 // What a JPEG says of its colours and its density: in the JFIF header, as an ICC profile, and as Exif (CIPA
 // DC-008, 4.6: a TIFF header and directories of tags).
 #include "base/colors/icc_profile.h"
-#include "base/image_codecs.h"
+#include "base/pixels/image_codecs.h"
 
 namespace sundog {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/image_codecs.h"
+#include "base/pixels/image_codecs.h"
 
 namespace sundog {
 namespace {

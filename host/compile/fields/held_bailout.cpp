@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/formula/lower.h"
+#include "formula/lower.h"
 
 namespace sundog {
 namespace {

@@ -1,6 +1,6 @@
 // Limits bailout radii to the range of floats.
 #pragma once
-#include "scene/formula/sdf.h"
+#include "formula/sdf.h"
 
 namespace sundog {
 

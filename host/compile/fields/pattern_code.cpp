@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "compile/fields/sdf_emit.h"
-#include "scene/formula/lower.h"
+#include "formula/lower.h"
 
 namespace sundog {
 namespace {

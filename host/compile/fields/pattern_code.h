@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "scene/formula/definition.h"
+#include "formula/definition.h"
 
 namespace sundog {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/formula/sdf.h"
+#include "formula/sdf.h"
 #include "shared/sdf.h"
 
 namespace sundog {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/formula/evaluate.h"
+#include "formula/evaluate.h"
 
 namespace sundog {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compile/fields/field_code.h"
-#include "scene/formula/graph.h"
+#include "formula/graph.h"
 
 namespace sundog {
 

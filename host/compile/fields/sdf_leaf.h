@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compile/fields/field_code.h"
-#include "scene/formula/sdf.h"
+#include "formula/sdf.h"
 
 namespace sundog {
 

@@ -6,8 +6,8 @@
 
 #include "compile/fields/sdf_emit.h"
 #include "compile/fields/sdf_leaf.h"
-#include "scene/formula/lower.h"
-#include "scene/formula/sdf.h"
+#include "formula/lower.h"
+#include "formula/sdf.h"
 
 namespace sundog {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/formula/list.h"
+#include "formula/list.h"
 
 namespace sundog {
 namespace {

@@ -1,6 +1,6 @@
 // Scales of estimates ("safety"), for operations on them.
 #pragma once
-#include "scene/formula/sdf.h"
+#include "formula/sdf.h"
 
 namespace sundog {
 

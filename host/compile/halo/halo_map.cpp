@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/values/refraction.h"
 #include "scene/spectra/cie.h"
-#include "scene/spectra/refraction.h"
 
 namespace sundog {
 namespace {

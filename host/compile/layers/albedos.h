@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "scene/materials/openpbr.h"
+#include "models/values/openpbr.h"
 #include "shared/layers.h"
 
 namespace sundog {

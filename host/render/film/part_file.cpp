@@ -11,12 +11,12 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/input.h"
+#include "base/json_memory.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
-#include "scene/json/json_memory.h"
 
 namespace sundog {
 namespace {

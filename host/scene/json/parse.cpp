@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/input.h"
-#include "scene/json/json_memory.h"
+#include "base/json_memory.h"
 #include "scene/json/value.h"
 
 namespace sundog {

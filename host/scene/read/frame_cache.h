@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "scene/model.h"
+#include "models/model.h"
 
 namespace sundog {
 

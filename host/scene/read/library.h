@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "models/model.h"
 #include "scene/description.h"
 #include "scene/json/value.h"
-#include "scene/model.h"
 
 namespace sundog {
 

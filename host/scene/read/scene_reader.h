@@ -2,9 +2,9 @@
 #pragma once
 #include <optional>
 
+#include "models/model.h"
 #include "scene/description.h"
 #include "scene/json/value.h"
-#include "scene/model.h"
 
 namespace sundog {
 

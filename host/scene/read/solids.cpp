@@ -9,8 +9,8 @@
 #include <string>
 #include <type_traits>
 
-#include "scene/formula/list.h"
-#include "scene/formula/lower.h"
+#include "formula/list.h"
+#include "formula/lower.h"
 #include "scene/read/parts.h"
 
 namespace sundog {

@@ -14,10 +14,9 @@
 #include "base/image_io.h"
 #include "base/input.h"
 #include "base/limits.h"
-#include "scene/formula/lower.h"
-#include "scene/formula/read_leaf.h"
-#include "scene/inside.h"
+#include "formula/lower.h"
 #include "scene/json/parse.h"
+#include "scene/read/field_formulas.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -123,10 +122,12 @@ static void read_parameters(JsonObject& object, const std::string& type, Texture
 }
 
 /// Reads a formula and lowers it as a check. Returns whether it gives colours, which are not mixed.
-static bool read_pattern_formula(JsonObject& object, PatternFormula& formula) {
+static bool read_pattern_formula(JsonObject& object, TextureDescription& texture) {
+  PatternFormula formula;
   object.at("formula");
   formula.text = read_text(object, "formula");
   formula.parameters = read_declarations(object, {&formula.text, 1});
+  texture.formula = std::make_shared<PatternFormula>(formula);
   try {
     return lower_pattern(formula).values.size() == 3;
   } catch (const FormulaError& error) {
@@ -165,7 +166,7 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
     texture.placement = glm::scale(dmat4(1), dvec3(0.5, 1, 1)) * texture.placement;
     texture.uv = glm::dmat3(glm::dvec3(0.5, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)) * texture.uv;
   }
-  const bool colored = type == "formula" && read_pattern_formula(object, texture.formula);
+  const bool colored = type == "formula" && read_pattern_formula(object, texture);
   const auto colors = object.find("colors");
   if (!colors) return entry;
   if (colored) colors->fail("the formula gives colours by itself; only a number mixes two");

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compile/fields/held_bailout.h"
-#include "scene/formula/evaluate.h"
+#include "formula/evaluate.h"
 #include "sdf_testing.h"
 
 // From random points towards the surface and to its sides, by steps of a seventh of the estimate: where

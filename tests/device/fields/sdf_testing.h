@@ -7,7 +7,7 @@
 #include "catch.h"
 #include "compile/fields/sdf.h"
 #include "devices.h"
-#include "scene/formula/list.h"
+#include "formula/list.h"
 
 /// Builds `text`, which includes lib/sdf/..., for the fields, with LANES lanes.
 inline sundog::Program build_fields(sundog::Device& device, const std::string& text,

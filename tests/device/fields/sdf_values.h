@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/formula/lower.h"
+#include "formula/lower.h"
 #include "sdf_testing.h"
 
 using namespace sundog;

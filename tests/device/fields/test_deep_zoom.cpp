@@ -8,7 +8,7 @@
 #include "compile/compiled_scene.h"
 #include "compile/fields/sdf_deep.h"
 #include "devices.h"
-#include "scene/formula/evaluate.h"
+#include "formula/evaluate.h"
 #include "scene/json/parse.h"
 #include "scene/read/scene_reader.h"
 #include "scenes.h"

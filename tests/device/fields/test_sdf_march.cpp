@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <random>
 
-#include "scene/formula/lower.h"
+#include "formula/lower.h"
 #include "sdf_marching.h"
 
 using namespace sundog;

@@ -256,7 +256,8 @@ TEST_CASE("a formula gives a pattern: a number that mixes two colours, a colour,
   SceneDescription scene = scenes::line_of_sight({0.3, 5, 0.2}, {0.3, 0, 0.2}, {0, 0, 1});
   const auto add_formula = [&](const std::string& text, std::vector<FormulaParameter> parameters) {
     const int index = add_pattern(scene, TEXTURE_FORMULA, 0.5);
-    scene.textures.back().formula = {text, std::move(parameters)};
+    scene.textures.back().formula =
+        std::make_shared<PatternFormula>(PatternFormula{text, std::move(parameters)});
     return index;
   };
   FormulaParameter turns, shift;

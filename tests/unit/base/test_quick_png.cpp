@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "base/image_codecs.h"
+#include "base/pixels/image_codecs.h"
 #include "base/pixels/stored_image.h"
 #include "catch.h"
 

@@ -5,7 +5,7 @@
 
 #include "catch.h"
 #include "compile/fields/sdf.h"
-#include "scene/formula/list.h"
+#include "formula/list.h"
 
 using namespace sundog;
 

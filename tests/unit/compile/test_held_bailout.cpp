@@ -1,7 +1,7 @@
 // How far an orbit may go before floats end.
 #include "catch.h"
 #include "compile/fields/held_bailout.h"
-#include "scene/formula/list.h"
+#include "formula/list.h"
 
 using namespace sundog;
 

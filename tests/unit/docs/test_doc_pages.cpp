@@ -13,8 +13,8 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "catch.h"
-#include "scene/formula/functions.h"
-#include "scene/formula/list.h"
+#include "formula/functions.h"
+#include "formula/list.h"
 #include "scene_reference.h"
 
 using namespace sundog;
@@ -42,7 +42,7 @@ std::string language_text() {
 
 std::vector<fs::path> pages() {
   std::vector<fs::path> all{root / "README.md", root / "CONTRIBUTING.md", root / "host/README.md",
-                            root / "kernels/README.md", root / "host/scene/models/README.md"};
+                            root / "kernels/README.md", root / "host/models/README.md"};
   for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
     if (entry.path().extension() == ".md") all.push_back(entry.path());
   return all;

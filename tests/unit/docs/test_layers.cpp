@@ -17,15 +17,18 @@ using Names = std::set<std::string>;
 /// What each layer may include besides itself; "shared" are the structs of kernels/shared.
 const std::map<std::string, Names> allowed = {
     {"base", {}},
-    {"scene", {"base", "shared"}},
-    {"compile", {"base", "scene", "shared"}},
+    {"formula", {"base"}},
+    {"models", {"base", "shared"}},
+    {"scene", {"base", "formula", "models", "shared"}},
+    {"compile", {"base", "formula", "models", "scene", "shared"}},
     {"lanes", {"base"}},
     {"device", {"base", "lanes"}},
     {"render", {"base", "scene", "compile", "device", "shared"}},
     {"bench", {"base", "scene", "compile", "device", "render", "shared"}},
     {"api", {"base", "scene", "compile", "device", "render", "shared"}},
     {"mpi", {"render"}},
-    {"app", {"base", "scene", "compile", "lanes", "device", "render", "bench", "shared"}},
+    {"app",
+     {"base", "formula", "models", "scene", "compile", "lanes", "device", "render", "bench", "shared"}},
 };
 
 /// The folders of a layer in their order: each includes only itself and those before it. Files of the layer's

@@ -41,14 +41,16 @@ std::set<std::string> included_by(const std::string& header) {
   return all;
 }
 
-const std::vector<std::string> layers_below = {"base", "scene", "compile", "device", "render", "api"};
+const std::vector<std::string> layers_below = {"base",    "formula", "models", "scene",
+                                               "compile", "device",  "render", "api"};
 
 /// Calls f(file, line) for each line of code of the layers' sources.
 template <class F>
 void for_each_line(const std::vector<std::string>& layers, const F& f) {
   int sources = 0;
   for (const std::string& layer : layers)
-    for (const auto& entry : fs::recursive_directory_iterator(layer == "bench" ? root / layer : host / layer)) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(layer == "bench" ? root / layer : host / layer)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".h") continue;
       ++sources;
@@ -108,7 +110,7 @@ TEST_CASE("variables of the process are read by the program, and in one source b
   // Who asks for it: the program, and the library for the programs that use it.
   std::set<std::string> callers;
   const std::regex asks(R"(\bplain_environment\(|HostEnvironment environment = read_environment\()");
-  for_each_line({"base", "scene", "compile", "device", "render", "api", "bench", "app"},
+  for_each_line({"base", "formula", "models", "scene", "compile", "device", "render", "api", "bench", "app"},
                 [&](const std::string& file, const std::string& line) {
                   if (std::regex_search(line, asks) && !file.starts_with("base/")) callers.insert(file);
                 });

@@ -4,7 +4,7 @@
 #include "catch.h"
 #include "gltf_text.h"
 #include "model_files.h"
-#include "scene/models/far_mesh.h"
+#include "models/far_mesh.h"
 
 using namespace sundog;
 

@@ -4,7 +4,7 @@
 
 #include "assets.h"
 #include "catch.h"
-#include "scene/model.h"
+#include "models/model.h"
 
 using namespace sundog;
 

@@ -3,8 +3,8 @@
 
 #include "catch.h"
 #include "model_files.h"
-#include "scene/models/normals.h"
-#include "scene/models/polygon.h"
+#include "models/normals.h"
+#include "models/polygon.h"
 
 using namespace sundog;
 

@@ -1,5 +1,5 @@
 // One warning reports the parts of a model file that are not read.
-#include <scene/model.h>
+#include <models/model.h>
 
 #include "catch.h"
 #include "gltf_text.h"

@@ -170,7 +170,7 @@ TEST_CASE("formulas read the clock of the frames, unless the name is theirs") {
     const double seconds = frame.value_or(0) / 10;
     std::vector<double> found;
     for (const TextureDescription& texture : scene->textures)
-      found.push_back(clock(texture.formula.parameters));
+      found.push_back(clock(texture.formula->parameters));
     CHECK(std::ranges::count(found, seconds) == 1);
     CHECK(std::ranges::count(found, -1) == 1);
     CHECK(std::ranges::count(found, 7) == 1);

@@ -1,5 +1,5 @@
 // A short text that would take much memory as values is refused by its length, before they are built.
-#include "scene/json/json_memory.h"
+#include "base/json_memory.h"
 
 #include <nlohmann/json.hpp>
 

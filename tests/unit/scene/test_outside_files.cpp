@@ -1,6 +1,6 @@
 // Files that a scene or a model names stay in its folder, unless that is allowed.
 #include <base/error.h>
-#include <scene/inside.h>
+#include <base/input.h>
 #include <scene/load.h>
 
 #include <nlohmann/json.hpp>

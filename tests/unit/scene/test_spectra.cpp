@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "catch.h"
-#include "scene/spectra/refraction.h"
+#include "models/values/refraction.h"
 #include "scene/spectra/upsample.h"
 
 using namespace sundog;

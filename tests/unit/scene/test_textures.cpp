@@ -2,8 +2,8 @@
 #include <base/error.h>
 #include <base/image_io.h>
 #include <compile/compiled_scene.h>
+#include <models/model.h>
 #include <scene/load.h>
-#include <scene/model.h>
 
 #include "catch.h"
 #include "gltf_text.h"

@@ -3,9 +3,9 @@
 #include <random>
 
 #include "catch.h"
-#include "scene/formula/evaluate.h"
-#include "scene/formula/list.h"
-#include "scene/formula/lower.h"
+#include "formula/evaluate.h"
+#include "formula/list.h"
+#include "formula/lower.h"
 
 using namespace sundog;
 namespace in = formula_input;

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "catch.h"
-#include "scene/formula/list.h"
-#include "scene/formula/lower.h"
-#include "scene/formula/syntax.h"
+#include "formula/list.h"
+#include "formula/lower.h"
+#include "formula/syntax.h"
 
 using namespace sundog;
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "scene/formula/evaluate.h"
+#include "formula/evaluate.h"
 #include "scene_text.h"
 
 using namespace sundog;

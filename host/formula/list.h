@@ -1,0 +1,29 @@
+// The built-in surfaces, written in the formula language.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "formula/sdf.h"
+
+namespace sundog {
+
+/// All surfaces, in the order in which `sundog formulas` prints them.
+const std::vector<FormulaDefinition>& formula_list();
+
+/// nullptr if unknown.
+const FormulaDefinition* find_formula(const std::string& name);
+
+/// A formula with default parameters, iterations, bailout and interval.
+SdfDescription default_field(const FormulaDefinition& definition);
+
+/// An operation that combines fields: its type in scene files, its keys, its effect.
+struct FieldOperation {
+  std::string type, keys, meaning;
+};
+const std::vector<FieldOperation>& field_operations();
+
+/// The text of `sundog formulas`: every surface with parameters, defaults, ranges and source; then the
+/// operations and the language.
+std::string formula_list_text();
+
+}  // namespace sundog

@@ -1,0 +1,64 @@
+// glTF's animations of nodes (glTF 2.0, section 3.11): keys, and the values between them.
+#pragma once
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/gltf/gltf_accessors.h"
+#include "models/model.h"
+
+namespace sundog::models {
+
+/// A node's transform relative to its parent.
+struct NodePose {
+  std::optional<dmat4> matrix;  // in place of the others
+  dvec3 translation{0};
+  glm::dquat rotation{1, 0, 0, 0};
+  dvec3 scale{1};
+};
+
+/// The quaternion at unit length; none for 0.
+std::optional<glm::dquat> unit_quaternion(double x, double y, double z, double w);
+
+/// The names of the document's animations, their numbers where they have none. Reads nothing else of them.
+std::vector<std::string> animation_names(const nlohmann::json& document);
+
+class GltfAnimations {
+ public:
+  /// Reads and checks all animations; those of morph weights are passed by. Throws SceneError.
+  GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std::size_t nodes);
+
+  /// Moves the nodes to where they are at that time. Of several animations that move a value of a node the
+  /// first one counts.
+  void move(const Playing& playing, std::vector<NodePose>& nodes) const;
+  /// The time of the last key.
+  double last() const;
+  /// Whether one animation undoes what another does.
+  bool compete() const;
+
+ private:
+  enum class Path { translation, rotation, scale };
+  enum class Between { linear, step, cubic };
+  struct Channel {
+    std::size_t node = 0;
+    Path path = Path::translation;
+    Between between = Between::linear;
+    const std::vector<float>*times = nullptr, *values = nullptr;  // of the accessors
+    std::size_t components() const { return path == Path::rotation ? 4 : 3; }
+    glm::dvec4 value(std::size_t key, std::size_t part) const;
+    glm::dvec4 at(double seconds) const;
+  };
+  struct Animation {
+    std::string name;
+    std::vector<Channel> channels;
+  };
+  static std::optional<Channel> read_channel(const JsonAt& at, const std::vector<JsonAt>& samplers,
+                                             GltfAccessors& accessors, std::size_t nodes);
+  static void read_sampler(const JsonAt& at, GltfAccessors& accessors, Channel& channel);
+  double time_of(const Playing& playing) const;
+
+  std::vector<Animation> animations_;
+};
+
+}  // namespace sundog::models

@@ -1,0 +1,20 @@
+// glTF's cameras and lights (KHR_lights_punctual), before nodes place them.
+#pragma once
+#include "models/gltf/gltf_json.h"
+#include "models/values/camera.h"
+#include "models/values/light.h"
+
+namespace sundog::models {
+
+struct GltfCamera {
+  bool perspective = false;
+  double fov = 0, near = 0, far = 0;  // radians; along the view
+};
+
+GltfCamera read_gltf_camera(const JsonAt& at);
+
+/// Candela and lux are divided by pi, which the phong model's kd lacks; point and spot lights fall off with
+/// the squared distance. Colour and angles are unchanged.
+LightDescription read_gltf_light(const JsonAt& at);
+
+}  // namespace sundog::models

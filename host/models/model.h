@@ -1,0 +1,75 @@
+// Model: the content of a model file before it is placed in a scene.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/values/camera.h"
+#include "models/values/light.h"
+#include "models/values/material.h"
+#include "models/values/mesh.h"
+#include "models/values/object.h"
+
+namespace sundog {
+
+/// Which of a model's animations plays, and its time.
+struct Playing {
+  std::string animation{};  // its name; empty: all
+  bool cycle = false;       // begins again after the last key
+  double seconds = 0;
+};
+
+/// Indices (mesh, material, medium) are local: MeshShape::mesh into `meshes`, and so on; media have no world
+/// entry (index 0 is the first medium). Objects hold node transforms (instances share a mesh). Every mesh has
+/// a triangle. Without a material, Object::material is -1 and Mesh::materials is empty (no materials in the
+/// file), or the triangle uses an added material "default".
+struct Model {
+  std::vector<Mesh> meshes;
+  std::vector<ImageDescription> images;
+  std::vector<TextureDescription> textures;
+  std::vector<MaterialDescription> materials;
+  std::vector<MediumDescription> media;
+  std::vector<Object> objects;
+  /// Unit conversion. glTF: candela and lux become intensity = value / pi (phong's kd lacks 1/pi), with
+  /// falloff {0, 0, 1} for point and spot lights. NFF: each light, and an ambient one, gets SPD's sqrt(n) /
+  /// (2 n).
+  std::vector<LightDescription> lights;
+  std::optional<Camera> camera;         // glTF: the first of the default scene; NFF: the view
+  std::optional<ImageSettings> image;   // NFF: resolution and background
+  std::size_t dropped_polygons = 0;     // faces with fewer than three corners
+  std::vector<std::string> unread;      // unsupported features, each once
+  std::vector<std::string> warnings;    // about ignored features, missing material files, ...
+  std::vector<std::string> animations;  // names
+  double duration = 0;                  // seconds to the last key, once pose() has read them
+  std::vector<dvec3> origins;           // of meshes whose vertices were moved nearer (far_mesh.h)
+  /// Sets objects, camera, lights and the meshes that joints deform; none without animations. See posed().
+  std::function<void(const Playing&, Model&)> pose;
+};
+
+/// Meshes created in memory, by the names that objects use.
+using NamedMeshes = std::map<std::string, std::shared_ptr<const Mesh>>;
+
+struct ModelOptions {
+  /// Maximum angle in degrees across which generated normals are smoothed; nullopt: the format's default
+  /// (glTF and STL flat, OBJ its smoothing groups, otherwise and for PLY 45). 0 is flat.
+  std::optional<double> crease_angle = std::nullopt;
+  bool outside_files = false;  // the model may name files outside its folder
+};
+
+/// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Triangulates polygons (n corners give n - 2
+/// triangles, even degenerate ones), generates missing normals, loads textures' images. Throws
+/// SceneError{file, "line N", "byte N" or a JSON pointer, what}.
+Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
+
+/// The model of the file `path` at a time of its animations. Throws SceneError for those that are malformed.
+Model posed(Model model, const std::filesystem::path& path, const Playing& playing);
+
+/// Whether `path` has a model file's extension (with or without .gz).
+bool is_model_file(const std::filesystem::path& path);
+
+}  // namespace sundog

@@ -1,0 +1,356 @@
+// Reads PLY, ASCII and binary in both byte orders: vertices with normals, texture coordinates and colours;
+// faces, with optional colours, or triangle strips.
+#include <fmt/format.h>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "models/far_mesh.h"
+#include "models/normals.h"
+#include "models/ply_cursor.h"
+#include "models/ply_layout.h"
+#include "models/polygon.h"
+#include "models/readers.h"
+
+namespace sundog::models {
+using namespace ply;
+namespace {
+
+bool is_face(const PlyElement& element) { return element.name == "face" || element.name == "tristrips"; }
+
+bool faces_come_first(const PlyHeader& header) {
+  for (const PlyElement& element : header.elements)
+    if (is_face(element) || element.name == "vertex") return is_face(element);
+  return false;
+}
+
+// The result so far.
+struct Content {
+  Mesh mesh;
+  dvec3 origin{0};                     // of the positions
+  std::vector<glm::vec3> face_colors;  // per triangle, if faces have colours and vertices have none
+  std::size_t dropped = 0;
+  std::size_t normals_of_no_number = 0, uvs_of_no_number = 0;
+  std::set<std::uint32_t> lost;  // NaN positions
+  std::vector<std::string> unread;
+};
+
+template <class Cursor>
+class DataReader {
+ public:
+  /// With `known` vertices from read_vertices(), faces may come before the vertices.
+  DataReader(const Source& source, const PlyHeader& header, Content known = {})
+      : header_(header), cursor_(source, header), content_(std::move(known)) {}
+
+  Content read_vertices() {
+    for (const PlyElement& element : header_.elements) {
+      check_count(element);
+      if (element.name == "vertex")
+        read_vertices(element);
+      else
+        skip(element);
+    }
+    return std::move(content_);
+  }
+
+  Content read() {
+    const bool known = !content_.mesh.positions.empty();
+    for (const PlyElement& element : header_.elements) {
+      check_count(element);
+      if (element.name == "vertex" && !known) {
+        read_vertices(element);
+      } else if (is_face(element)) {
+        read_faces(element);
+      } else {
+        skip(element);
+      }
+    }
+    return std::move(content_);
+  }
+
+ private:
+  std::size_t vertex_count() const {
+    for (const PlyElement& element : header_.elements)
+      if (element.name == "vertex") return element.count;
+    return 0;
+  }
+
+  // Checks before allocating: the remaining bytes must be able to hold that many.
+  void check_count(const PlyElement& element) const {
+    std::size_t least = 0;
+    for (const PlyProperty& p : element.properties)
+      least += Cursor::least_bytes(p.count_type ? *p.count_type : p.type);
+    if (least > 0 && element.count > cursor_.bytes_left() / least)
+      cursor_.fail(fmt::format("the header promises {} of '{}', more than the {} bytes left can hold",
+                               element.count, element.name, cursor_.bytes_left()));
+    if (element.count > std::numeric_limits<std::uint32_t>::max() / 4)
+      cursor_.fail(fmt::format("{} of '{}' are too many", element.count, element.name));
+  }
+
+  double bounded(double value) const {
+    if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
+      cursor_.fail(fmt::format("{} is beyond single precision's range", value));
+    return value;
+  }
+  float narrow(double value) const { return static_cast<float>(bounded(value)); }
+
+  // Reads an element's scalars into `values` and passes list items to `item(property number, value)`.
+  template <class Item>
+  void read_element(const PlyElement& element, const Layout& layout, Values& values, Item item) {
+    cursor_.begin_element(element.name);
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (property.count_type) {
+        const double length = cursor_.value(property, *property.count_type);
+        if (length < 0) cursor_.fail(fmt::format("{}: a list of length {}", property.name, length));
+        for (double i = 0; i < length; ++i) item(p, cursor_.value(property, property.type));
+      } else {
+        values[layout.slots[p]] =
+            slot_value(layout.slots[p], property.type, cursor_.value(property, property.type));
+      }
+    }
+    cursor_.end_element(element.name);
+  }
+
+  void skip(const PlyElement& element) {
+    if (element.properties.empty()) return;
+    const Layout layout(element);
+    Values values{};
+    for (std::uint64_t i = 0; i < element.count; ++i)
+      read_element(element, layout, values, [](std::size_t, double) {});
+  }
+
+  // A NaN position is an error if a face uses it; until then it repeats the one before.
+  dvec3 position_of(const Values& v, const std::vector<dvec3>& before) {
+    const dvec3 position(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
+    if (std::isfinite(glm::dot(position, dvec3(0)))) return position;
+    content_.lost.insert(static_cast<std::uint32_t>(before.size()));
+    return before.empty() ? dvec3(0) : before.back();
+  }
+
+  template <class Vector>
+  static Vector number_or_zero(const Vector& value, std::size_t& count) {
+    if (std::isfinite(glm::dot(value, Vector(0)))) return value;
+    ++count;
+    return Vector(0);
+  }
+
+  void read_vertices(const PlyElement& element) {
+    const Layout layout(element);
+    if (!layout.has[px] || !layout.has[py] || !layout.has[pz])
+      cursor_.fail("a vertex needs the properties x, y and z");
+    if (!content_.mesh.positions.empty()) cursor_.fail("a second element 'vertex'");
+    Mesh& mesh = content_.mesh;
+    std::vector<dvec3> positions;
+    positions.reserve(element.count);
+    bool fades = false;
+    mesh.source_vertex_count = element.count;
+    Values v{};
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      read_element(element, layout, v, [](std::size_t, double) {});
+      positions.push_back(position_of(v, positions));
+      if (layout.normals())
+        mesh.normals.push_back(number_or_zero(glm::vec3(narrow(v[nx]), narrow(v[ny]), narrow(v[nz])),
+                                              content_.normals_of_no_number));
+      if (layout.uvs())
+        mesh.uvs.push_back(
+            number_or_zero(glm::vec2(narrow(v[tu]), narrow(v[tv])), content_.uvs_of_no_number));
+      if (layout.colors()) mesh.colors.push_back(color_of(v));
+      fades = fades || (layout.has[alpha] && v[alpha] < 1);
+    }
+    if (fades) content_.unread.emplace_back("alpha of vertices");
+    content_.origin = near_origin(positions);
+    mesh.positions.reserve(positions.size());
+    for (const dvec3& p : positions) mesh.positions.emplace_back(p - content_.origin);
+  }
+
+  void read_faces(const PlyElement& element) {
+    const Layout layout(element);
+    const bool strips = element.name == "tristrips";
+    const std::size_t count = vertex_count();
+    if (content_.mesh.positions.empty() && element.count > 0) cursor_.fail("faces before any vertex");
+    std::size_t list = element.properties.size();
+    for (std::size_t p = 0; p < element.properties.size(); ++p)
+      if (element.properties[p].name == "vertex_indices" || element.properties[p].name == "vertex_index")
+        list = p;
+    for (const PlyProperty& property : element.properties)
+      if (property.name == "texcoord" && property.count_type && content_.mesh.uvs.empty())
+        content_.unread.emplace_back("texture coordinates of faces");
+    if (list == element.properties.size() || !element.properties[list].count_type)
+      cursor_.fail(fmt::format("'{}' needs a list vertex_indices", element.name));
+    if (!strips && !layout.colors() && content_.mesh.triangles.empty() && read_triangles(element, list))
+      return;
+    content_.mesh.triangles.reserve(element.count);
+    Values values{};
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      corners_.clear();
+      read_element(element, layout, values, [&](std::size_t p, double value) {
+        if (p != list) return;
+        const bool restart = strips && value == -1;
+        if (!restart && !(value >= 0 && value < static_cast<double>(count) && value == std::trunc(value)))
+          cursor_.fail(
+              fmt::format("{} {}: vertex {}, but there are {} vertices", element.name, i, value, count));
+        corners_.push_back(restart ? strip_end : static_cast<std::uint32_t>(value));
+        if (content_.lost.contains(corners_.back()))
+          cursor_.fail(
+              fmt::format("{} {}: vertex {} has a coordinate that is no number", element.name, i, value));
+      });
+      strips ? add_strips() : add_polygon();
+      if (layout.colors()) content_.face_colors.resize(content_.mesh.triangles.size(), color_of(values));
+    }
+  }
+
+  // Reads faces in parallel if all are triangles. False, with nothing read, if one is none or has a corner
+  // that read_faces() would refuse.
+  bool read_triangles(const PlyElement& element, std::size_t list) {
+    const std::size_t bytes = Cursor::bytes_of_triangles(element);
+    if (bytes == 0 || cursor_.bytes_left() / bytes < element.count) return false;
+    if (is_real(element.properties[list].type) || !content_.lost.empty()) return false;
+    const auto vertices = static_cast<double>(vertex_count());
+    std::vector<glm::uvec3> triangles(element.count);
+    std::atomic<bool> plain = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+      Cursor cursor = cursor_;
+      cursor.skip(range.begin() * bytes);
+      for (std::size_t i = range.begin(); i != range.end() && plain; ++i)
+        for (const PlyProperty& property : element.properties) {
+          if (property.count_type && cursor.value(property, *property.count_type) != 3) plain = false;
+          for (int k = 0; k < (property.count_type ? 3 : 1) && plain; ++k) {
+            const double value = cursor.value(property, property.type);
+            if (&property != &element.properties[list]) continue;
+            if (!(value >= 0 && value < vertices)) plain = false;
+            if (plain) triangles[i][k] = static_cast<std::uint32_t>(value);
+          }
+        }
+    });
+    if (!plain) return false;
+    cursor_.skip(element.count * bytes);
+    content_.mesh.triangles = std::move(triangles);
+    return true;
+  }
+
+  void add_polygon() {
+    Mesh& mesh = content_.mesh;
+    if (corners_.size() == 3) {
+      mesh.triangles.emplace_back(corners_[0], corners_[1], corners_[2]);
+      return;
+    }
+    if (corners_.size() < 3) {
+      ++content_.dropped;
+      return;
+    }
+    places_.clear();
+    pieces_.clear();
+    for (const std::uint32_t corner : corners_) places_.push_back(mesh.positions[corner]);
+    if (!triangulate(places_, pieces_))
+      cursor_.fail(fmt::format("a concave polygon of {} corners; at most {} are triangulated",
+                               corners_.size(), most_concave_corners));
+    for (const glm::uvec3 t : pieces_)
+      mesh.triangles.emplace_back(corners_[t.x], corners_[t.y], corners_[t.z]);
+  }
+
+  void add_strips() {
+    for (std::size_t begin = 0, i = 0; i < corners_.size(); ++i) {
+      if (corners_[i] == strip_end) {
+        begin = i + 1;
+      } else if (i >= begin + 2) {
+        const bool odd = (i - begin) % 2 == 1;
+        content_.mesh.triangles.emplace_back(corners_[i - (odd ? 1 : 2)], corners_[i - (odd ? 2 : 1)],
+                                             corners_[i]);
+      }
+    }
+  }
+
+  static constexpr std::uint32_t strip_end = std::numeric_limits<std::uint32_t>::max();
+  const PlyHeader& header_;
+  Cursor cursor_;
+  Content content_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<glm::vec3> places_;
+  std::vector<glm::uvec3> pieces_;
+};
+
+// Converts face colours to vertex colours: splits vertices between faces of different colours. Returns each
+// vertex's original, so that normals are still smoothed across the split.
+std::vector<std::uint32_t> paint_faces(Mesh& mesh, const std::vector<glm::vec3>& face_colors) {
+  std::vector<std::uint32_t> original(mesh.positions.size());
+  for (std::uint32_t i = 0; i < original.size(); ++i) original[i] = i;
+  std::vector<bool> painted(mesh.positions.size(), false);
+  mesh.colors.assign(mesh.positions.size(), glm::vec3(1));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      if (!painted[v]) {
+        painted[v] = true;
+        mesh.colors[v] = face_colors[t];
+      } else if (mesh.colors[v] != face_colors[t]) {
+        mesh.triangles[t][k] = static_cast<std::uint32_t>(mesh.positions.size());
+        original.push_back(v);
+        mesh.positions.push_back(glm::vec3(mesh.positions[v]));
+        if (!mesh.normals.empty()) mesh.normals.push_back(glm::vec3(mesh.normals[v]));
+        if (!mesh.uvs.empty()) mesh.uvs.push_back(glm::vec2(mesh.uvs[v]));
+        mesh.colors.push_back(face_colors[t]);
+      }
+    }
+  return original;
+}
+
+template <class Cursor>
+Content read_by(const Source& source, const PlyHeader& header) {
+  Content vertices;
+  if (faces_come_first(header)) vertices = DataReader<Cursor>(source, header).read_vertices();
+  return DataReader<Cursor>(source, header, std::move(vertices)).read();
+}
+
+Content read_content(const Source& source, const PlyHeader& header) {
+  switch (header.format) {
+    case PlyFormat::ascii:
+      return read_by<AsciiPlyCursor>(source, header);
+    case PlyFormat::little_endian:
+      return read_by<BinaryPlyCursor<std::endian::little>>(source, header);
+    case PlyFormat::big_endian:
+      return read_by<BinaryPlyCursor<std::endian::big>>(source, header);
+  }
+  return {};
+}
+
+void warn_of_no_numbers(const Source& source, std::size_t count, const char* what, const char* mend,
+                        Model& model) {
+  if (count > 0)
+    model.warnings.push_back(
+        fmt::format("{}: {} {} that are no numbers are {}", source.path.string(), count, what, mend));
+}
+
+}  // namespace
+
+Model load_ply(const Source& source, const ModelOptions& options) {
+  const PlyHeader header = read_ply_header(source);
+  Content content = read_content(source, header);
+  Mesh& mesh = content.mesh;
+  if (mesh.positions.empty()) fail(source, "", "the file has no vertices");
+  mesh.name = source.path.stem().string();
+  std::vector<std::uint32_t> points;
+  if (mesh.colors.empty() && !content.face_colors.empty()) points = paint_faces(mesh, content.face_colors);
+  complete_normals(mesh, {}, options.crease_angle.value_or(45), std::move(points));
+  Model model;
+  model.dropped_polygons = content.dropped;
+  warn_of_no_numbers(source, content.normals_of_no_number, "normals", "made up", model);
+  warn_of_no_numbers(source, content.uvs_of_no_number, "texture coordinates", "taken as 0", model);
+  for (const std::string& feature : content.unread) leave_unread(model, feature);
+  if (!mesh.colors.empty() && !mesh.triangles.empty()) {
+    MaterialDescription material;
+    material.name = "vertex colors";
+    material.vertex_color = true;
+    model.materials.push_back(material);
+    mesh.materials.assign(mesh.triangles.size(), 0);
+  }
+  add_mesh(model, std::move(mesh), content.origin);
+  return model;
+}
+
+}  // namespace sundog::models
