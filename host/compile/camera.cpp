@@ -8,7 +8,9 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "compile/filter.h"
 #include "compile/local_origin.h"
+#include "scene/integrators.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -66,9 +68,14 @@ void set_motion(const Camera& camera, const Frame& opens, const Frame& closes, S
   info.moved_dy = pack(closes.dy - opens.dy);
 }
 
-}  // namespace
+/// Samples that grow in number must come from a sequence.
+u32 sampler_of(const RenderSettings& settings) {
+  const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
+  return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
+}
 
-void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& info) {
+SceneInfo camera_and_settings(const SceneDescription& scene, const dvec3& origin) {
+  SceneInfo info{};
   const Camera& camera = scene.camera;
   const ImageSettings& image = scene.image;
   if (image.width < 1 || image.height < 1)
@@ -102,6 +109,27 @@ void set_camera(const SceneDescription& scene, const dvec3& origin, SceneInfo& i
   info.seed = scene.render.seed ? hash_u32(static_cast<u32>(scene.render.seed)) & ~3u : 0;
   info.cutoff = static_cast<float>(scene.render.cutoff);
   info.max_component = static_cast<float>(scene.render.max_component);
+  info.roulette_depth = static_cast<u32>(scene.render.roulette == 65 ? 65537 : scene.render.roulette);
+  info.light_strategy = scene.render.light_strategy;
+  return info;
+}
+
+}  // namespace
+
+CompiledView compile_view(const SceneDescription& scene, const dvec3& origin) {
+  CompiledView view;
+  view.info = camera_and_settings(scene, origin);
+  view.filter = filter_table(scene.render);
+  if (traces_paths(scene.render.integrator) && !scene.render.caustics)
+    for (const Guide& guide : scene.render.guides)
+      view.guides.push_back(pack(guide.center - origin, guide.radius));
+  view.features.clear_glass = scene.image.transparent_glass;
+  view.features.lens = scene.camera.lens.radius > 0;
+  view.features.camera_motion = scene.camera.moves_to.has_value();
+  view.features.sampler = sampler_of(scene.render);
+  view.features.filter = !view.filter.empty();
+  view.features.guides = !view.guides.empty();
+  return view;
 }
 
 }  // namespace sundog

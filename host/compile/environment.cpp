@@ -261,7 +261,7 @@ CellShares shares_between_pixels(const Picture& picture, Environment& e, std::ve
   return cells;
 }
 
-void add_shares(const Picture& picture, Environment& e, CompiledScene& out) {
+void add_shares(const Picture& picture, Environment& e, Lights& out) {
   std::vector<float>& shares = out.environment_shares.edit();
   const CellShares cells = e.up.w == CELLS_BETWEEN_PIXELS ? shares_between_pixels(picture, e, shares)
                                                           : shares_of_pixels(picture, e, shares);
@@ -275,8 +275,8 @@ void add_shares(const Picture& picture, Environment& e, CompiledScene& out) {
   cutpoints.insert(cutpoints.end(), cells.words.begin(), cells.words.end());
 }
 
-void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScene& out) {
-  const EnvironmentDescription& e = scene.environment;
+void add_sun(const LightInputs& in, const glm::dmat3& axes, Lights& out) {
+  const EnvironmentDescription& e = *in.environment;
   if (e.sun_size <= 0) return;
   LightDescription sun;
   sun.type = LightType::directional;
@@ -287,14 +287,15 @@ void add_sun(const SceneDescription& scene, const glm::dmat3& axes, CompiledScen
   sun.samples = e.samples;
   sun.visible = e.visible;
   sun.hidden = e.hidden;
-  add_light(scene, sun, "/environment/sun", out);
+  add_light(in, sun, "/environment/sun", out);
 }
 
 }  // namespace
 
-void add_environment(const SceneDescription& scene, CompiledScene& out, const HaloMap* halo) {
-  const EnvironmentDescription& e = scene.environment;
-  if (e.type == EnvironmentType::none) return;
+void add_environment(const LightInputs& in, Lights& out) {
+  if (!in.environment || in.environment->type == EnvironmentType::none) return;
+  const EnvironmentDescription& e = *in.environment;
+  const HaloMap* halo = in.halo.value ? in.halo->get() : nullptr;
   Picture picture = e.type == EnvironmentType::image          ? picture_of_image(e)
                     : e.type == EnvironmentType::gradient     ? picture_of_gradient(e)
                     : e.type == EnvironmentType::halo && halo ? picture_of_halo(e, *halo)
@@ -311,7 +312,7 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   add_shares(picture, packed, out);
   out.environments.push_back(packed);
   out.environment = std::move(picture.pixels);
-  out.info.sees_environment = e.hidden ? SEEN_BY_NONE : e.visible ? SEEN_BY_ALL : SEEN_OFF_CAMERA;
+  out.sees_environment = e.hidden ? SEEN_BY_NONE : e.visible ? SEEN_BY_ALL : SEEN_OFF_CAMERA;
   out.features.environment = out.features.area_lights = true;
   out.features.sky |= !e.hidden;
   Light light{};
@@ -319,7 +320,7 @@ void add_environment(const SceneDescription& scene, CompiledScene& out, const Ha
   for (u32 ray = 0; ray < static_cast<u32>(e.samples); ++ray)
     out.light_rays.push_back({static_cast<u32>(out.lights.size()), ray, static_cast<u32>(e.samples), 0});
   out.lights.push_back(light);
-  if (e.type == EnvironmentType::sky || e.type == EnvironmentType::halo) add_sun(scene, axes, out);
+  if (e.type == EnvironmentType::sky || e.type == EnvironmentType::halo) add_sun(in, axes, out);
 }
 
 }  // namespace sundog

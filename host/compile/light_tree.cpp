@@ -67,28 +67,30 @@ void append(std::span<Lamp> lamps, std::vector<LightNode>& nodes) {
 
 }  // namespace
 
-void add_light_tree(const SceneDescription& scene, CompiledScene& out) {
+LightTree make_light_tree(const RenderSettings& settings, const std::vector<Light>& lights,
+                          SharedTable<LightRay> rays) {
+  LightTree tree;
+  tree.rays = std::move(rays);
+  const bool paths = traces_paths(settings.integrator);
   std::vector<Lamp> lamps;
-  for (u32 i = 0; i < out.lights.size(); ++i)
-    if (has_extent(out.lights[i])) lamps.push_back(lamp_of(out.lights[i], i));
+  for (u32 i = 0; i < lights.size(); ++i)
+    if (has_extent(lights[i])) lamps.push_back(lamp_of(lights[i], i));
   const bool triangles =
-      std::ranges::any_of(out.lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
-  const bool chooses = scene.render.light_samples > 0 || traces_paths(scene.render.integrator) || triangles;
-  if (!chooses || lamps.empty() || (lamps.size() == 1 && !triangles)) {
-    // General kernels request the path to each light, but here there is nothing to choose.
-    out.light_leaves = std::vector<u32>(out.lights.size(), 0u);
-    return;
+      std::ranges::any_of(lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
+  const bool chooses = settings.light_samples > 0 || paths || triangles;
+  // General kernels request the path to each light, even where there is nothing to choose.
+  std::vector<u32> leaves(lights.size());
+  if (chooses && !lamps.empty() && (lamps.size() > 1 || triangles)) {
+    append(lamps, tree.nodes.edit());
+    for (u32 node = 0; node < tree.nodes.size(); ++node)
+      if (const u32 next = tree.nodes[node].next; next & LIGHT_LEAF) leaves[next & ~LIGHT_LEAF] = node;
+    std::erase_if(tree.rays.edit(), [&](const LightRay& ray) { return has_extent(lights[ray.light]); });
+    const auto count = static_cast<u32>(std::max(settings.light_samples, 1));
+    for (u32 ray = 0; ray < count; ++ray) tree.rays.push_back({LIGHT_CHOSEN, ray, count, 0});
   }
-  append(lamps, out.light_nodes.edit());
-  std::vector<u32> leaves(out.lights.size());
-  for (u32 node = 0; node < out.light_nodes.size(); ++node)
-    if (const u32 next = out.light_nodes[node].next; next & LIGHT_LEAF) leaves[next & ~LIGHT_LEAF] = node;
-  out.light_leaves = std::move(leaves);
-  std::erase_if(out.light_rays.edit(),
-                [&](const LightRay& ray) { return has_extent(out.lights[ray.light]); });
-  const auto rays = static_cast<u32>(std::max(scene.render.light_samples, 1));
-  for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({LIGHT_CHOSEN, ray, rays, 0});
-  out.features.light_tree = true;
+  tree.leaves = std::move(leaves);
+  if (paths) std::erase_if(tree.rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
+  return tree;
 }
 
 }  // namespace sundog

@@ -4,9 +4,15 @@
 
 namespace sundog {
 
-/// Fills `out.light_nodes` for the area lights in `out.lights`, and replaces their rays in `out.light_rays`
-/// by the number in `scene.render.light_samples`. Does nothing if that is 0 or there is at most one area
-/// light.
-void add_light_tree(const SceneDescription& scene, CompiledScene& out);
+struct LightTree {
+  SharedTable<LightNode> nodes;  // empty: there is nothing to choose
+  SharedTable<u32> leaves;       // of each light: its node
+  SharedTable<LightRay> rays;    // to lights, or to chosen ones
+};
+
+/// A tree over the area lights among `lights`, whose rays become `settings.light_samples` to chosen lights.
+/// None if that is 0 or there is at most one area light, but for paths and triangles.
+LightTree make_light_tree(const RenderSettings& settings, const std::vector<Light>& lights,
+                          SharedTable<LightRay> rays);
 
 }  // namespace sundog

@@ -33,36 +33,36 @@ bool same(const Medium& a, const Medium& b) {
 }
 
 /// The world's medium, including fog that scatters.
-MediumDescription world_medium(const SceneDescription& scene) {
-  MediumDescription medium = scene.media.empty() ? MediumDescription{} : scene.media[0];
-  if (!fog_scatters(scene)) return medium;
+MediumDescription world_medium(const SurfaceInputs& in) {
+  MediumDescription medium = in.media.empty() ? MediumDescription{} : in.media[0];
+  if (!in.fog) return medium;
   if (!is_zero(medium.scattering))
-    throw SceneError(scene.file.string(), "/world/fog/anisotropy",
+    throw SceneError(*in.file, "/world/fog/anisotropy",
                      "the world's medium scatters by itself: leave out \"anisotropy\", or the medium's "
                      "\"scattering\"");
-  const dvec3 scattering = scene.fog.density * glm::min(scene.fog.color, dvec3(1));
+  const dvec3 scattering = in.fog->density * glm::min(in.fog->color, dvec3(1));
   medium.scattering = scattering;
-  medium.absorption += dvec3(scene.fog.density) - scattering;
-  medium.anisotropy = *scene.fog.anisotropy;
+  medium.absorption += dvec3(in.fog->density) - scattering;
+  medium.anisotropy = *in.fog->anisotropy;
   return medium;
 }
 
 /// Adds the media without duplicates; returns the index of each.
-std::vector<u32> add_media(const SceneDescription& scene, CompiledScene& out) {
+std::vector<u32> add_media(const SurfaceInputs& in, Surfaces& out) {
   std::vector<Medium>& media = out.media.edit();
-  SpectraMaker spectra(scene);
-  media.push_back(make_medium(world_medium(scene)));
-  if (!scene.media.empty()) media[0].spectrum = spectra.add(scene.media[0].dispersion);
-  std::vector<u32> index_of(scene.media.size(), 0);
-  for (std::size_t i = 1; i < scene.media.size(); ++i) {
-    Medium medium = make_medium(scene.media[i]);
-    medium.spectrum = spectra.add(scene.media[i].dispersion);
+  SpectraMaker spectra(in.paths);
+  media.push_back(make_medium(world_medium(in)));
+  if (!in.media.empty()) media[0].spectrum = spectra.add(in.media[0].dispersion);
+  std::vector<u32> index_of(in.media.size(), 0);
+  for (std::size_t i = 1; i < in.media.size(); ++i) {
+    Medium medium = make_medium(in.media[i]);
+    medium.spectrum = spectra.add(in.media[i].dispersion);
     auto found =
         std::find_if(media.begin() + 1, media.end(), [&](const Medium& m) { return same(m, medium); });
     if (found == media.end()) found = media.insert(found, medium);
     if (media.size() > MAX_MEDIA)
       throw SceneError(
-          scene.file.string(), "/media",
+          *in.file, "/media",
           fmt::format(
               "at most {} different media are supported (the world's among them); merge those that are alike",
               MAX_MEDIA));
@@ -82,19 +82,18 @@ bool bends_light(const std::vector<Medium>& media) {
 
 /// Whether a thin material's facets scatter transmitted paths. Partial opacity is seen straight through, so
 /// facets of such a material only reflect.
-bool is_frosted(const SceneDescription& scene, const MaterialDescription& material) {
+bool is_frosted(const SurfaceInputs& in, const MaterialDescription& material) {
   const bool there = material.opacity == 1 && material.textures.opacity < 0 && !material.one_sided;
   const double alpha = material.roughness * material.roughness;
-  return traces_paths(scene.render.integrator) && there && material.medium < 0 &&
-         !is_zero(material.transmission) && alpha >= double(LEAST_ALPHA);
+  return in.paths && there && material.medium < 0 && !is_zero(material.transmission) &&
+         alpha >= double(LEAST_ALPHA);
 }
 
 /// Whether shadow rays stop at a material. Paths themselves find light through refracting interfaces and
 /// frosted walls (as do photons), so shadow rays passing straight through would count it twice.
-bool stops_shadows(const SceneDescription& scene, const MaterialDescription& material, bool bends) {
-  const bool by_path =
-      (traces_paths(scene.render.integrator) && bends && material.medium >= 0) || is_frosted(scene, material);
-  return material.shadow_opaque || (by_path && (!material.shadow_filter || scene.render.caustics));
+bool stops_shadows(const SurfaceInputs& in, const MaterialDescription& material, bool bends) {
+  const bool by_path = (in.paths && bends && material.medium >= 0) || is_frosted(in, material);
+  return material.shadow_opaque || (by_path && (!material.shadow_filter || in.caustics));
 }
 
 /// Whether light passes fuzz or a coat on its way through a material.
@@ -162,28 +161,27 @@ bool lacks_materials(const SceneDescription& scene) {
                      [&](const Object& object) { return lacks_material(scene, object); });
 }
 
-u32 add_materials(const SceneDescription& scene, CompiledScene& out) {
-  const std::vector<u32> media = add_media(scene, out);
+u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
+  const std::vector<u32> media = add_media(in, out);
   const bool bends = bends_light(out.media);
-  for (const MaterialDescription& any : scene.materials) {
-    const MaterialDescription& material = surface_for(scene, any);
+  for (const MaterialDescription& any : in.materials) {
+    const MaterialDescription& material = surface_for(in.paths, any);
     Material packed = make_material(material, media);
-    if (is_frosted(scene, material)) packed.flags |= MATERIAL_FROSTED;
-    if (stops_shadows(scene, material, bends))
+    if (is_frosted(in, material)) packed.flags |= MATERIAL_FROSTED;
+    if (stops_shadows(in, material, bends))
       packed.flags |= MATERIAL_SHADOW_OPAQUE;
-    else if (traces_paths(scene.render.integrator) && passes_layers(material))
+    else if (in.paths && passes_layers(material))
       out.features.layer_filters = true;
     out.features.checker |= material.checker;
     out.materials.push_back(packed);
   }
-  if (!lacks_materials(scene)) return NO_MATERIAL;
+  if (!in.lacks_materials) return NO_MATERIAL;
   out.materials.push_back(make_material(MaterialDescription{}, media));
   return static_cast<u32>(out.materials.size() - 1);
 }
 
-void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
-               CompiledScene& out) {
-  const Light packed = pack_light({scene, light, place}, out.origin);
+void add_light(const LightInputs& in, const LightDescription& light, const std::string& place, Lights& out) {
+  const Light packed = pack_light({*in.file, light, place}, in.origin);
   const bool extent = facts_of(light.type).has_extent() || packed.kind == LIGHT_SUN;
   const auto index = static_cast<u32>(out.lights.size()), rays = extent ? static_cast<u32>(light.samples) : 1;
   for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
@@ -192,26 +190,20 @@ void add_light(const SceneDescription& scene, const LightDescription& light, con
   out.features.sky |= packed.kind == LIGHT_SUN && !light.hidden;
 }
 
-void add_lights(const SceneDescription& scene, CompiledScene& out) {
+void add_lights(const LightInputs& in, Lights& out) {
   dvec3 ambient(0);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const LightDescription& light = scene.lights[i];
+  for (std::size_t i = 0; i < in.lights.size(); ++i) {
+    const LightDescription& light = in.lights[i];
     if (light.type == LightType::ambient)
       ambient += light.color * light.intensity;
     else
-      add_light(scene, light, fmt::format("/lights/{}", i), out);
+      add_light(in, light, fmt::format("/lights/{}", i), out);
   }
-  out.info.ambient = pack(ambient);
+  out.ambient = pack(ambient);
 }
 
 bool fog_scatters(const SceneDescription& scene) {
   return traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
-}
-
-void add_fog(const SceneDescription& scene, CompiledScene& out) {
-  if (fog_scatters(scene)) return;
-  out.info.fog = pack(scene.fog.color, scene.fog.density);
-  out.features.fog = scene.fog.density > 0;
 }
 
 }  // namespace sundog

@@ -3,29 +3,24 @@
 #include <string>
 #include <vector>
 
-#include "compile/compiled_scene.h"
+#include "compile/parts/steps.h"
 
 namespace sundog {
 
-/// Fills `out.media` (equal media are merged, except the world's at 0) and `out.materials`. If some object or
-/// mesh lacks a material, appends a default one. Returns its index, or NO_MATERIAL.
-u32 add_materials(const SceneDescription& scene, CompiledScene& out);
+/// Fills the media and materials of `out`, with a default one at the end where some object or mesh lacks
+/// one. Returns its index, or NO_MATERIAL.
+u32 add_materials(const SurfaceInputs& in, Surfaces& out);
 
 /// Whether some object or mesh lacks a material.
 bool lacks_materials(const SceneDescription& scene);
 
-/// Fills `out.lights`, with positions relative to `out.origin`, and `out.info.ambient`. Throws SceneError for
-/// a zero direction.
-void add_lights(const SceneDescription& scene, CompiledScene& out);
+/// Fills the lights of the scene file and the ambient light.
+void add_lights(const LightInputs& in, Lights& out);
 
 /// Adds a non-ambient light; `place` is its place in the scene file.
-void add_light(const SceneDescription& scene, const LightDescription& light, const std::string& place,
-               CompiledScene& out);
+void add_light(const LightInputs& in, const LightDescription& light, const std::string& place, Lights& out);
 
 /// Whether the world's fog is a scattering medium instead of emitting light itself.
 bool fog_scatters(const SceneDescription& scene);
-
-/// Writes the world's fog to `out.info`, unless it scatters.
-void add_fog(const SceneDescription& scene, CompiledScene& out);
 
 }  // namespace sundog

@@ -1,5 +1,4 @@
-// See mesh_bvh.h.
-#include "compile/mesh_bvh.h"
+// Compiles meshes: triangle blocks under a wide BVH, and vertices and triangles for shading.
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -14,7 +13,8 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "compile/mesh_groups.h"
+#include "compile/bvh/wide_bvh.h"
+#include "compile/parts/steps.h"
 #include "compile/vertices.h"
 
 namespace sundog {
@@ -22,15 +22,9 @@ namespace {
 
 constexpr float farthest_vertex = 1e36f;  // beyond, sums of coordinates overflow a float
 
-[[noreturn]] void fail(const SceneDescription& scene, std::size_t mesh, const std::string& what) {
-  std::string place;
-  for (const Object& object : scene.objects)
-    if (const auto* shape = std::get_if<MeshShape>(&object.shape);
-        shape && std::size_t(shape->mesh) == mesh) {
-      place = object.place;
-      break;
-    }
-  throw SceneError(scene.file.string(), place, fmt::format("mesh \"{}\": {}", scene.meshes[mesh].name, what));
+[[noreturn]] void fail(const MeshInputs& in, std::size_t mesh, const std::string& what) {
+  throw SceneError(*in.file, in.places->at(mesh),
+                   fmt::format("mesh \"{}\": {}", in.meshes[mesh]->name, what));
 }
 
 bool in_range(const glm::vec3& p) {
@@ -40,33 +34,33 @@ bool in_range(const glm::vec3& p) {
 
 bool attribute_fits(std::size_t count, std::size_t wanted) { return count == 0 || count == wanted; }
 
-void check_attributes(const SceneDescription& scene, std::size_t index) {
-  const Mesh& mesh = scene.meshes[index];
+void check_attributes(const MeshInputs& in, std::size_t index) {
+  const Mesh& mesh = *in.meshes[index];
   const std::size_t n = mesh.positions.size();
   if (!attribute_fits(mesh.normals.size(), n) || !attribute_fits(mesh.uvs.size(), n) ||
       !attribute_fits(mesh.tangents.size(), n) || !attribute_fits(mesh.colors.size(), n) ||
       !attribute_fits(mesh.alphas.size(), n) || !attribute_fits(mesh.materials.size(), mesh.triangles.size()))
-    fail(scene, index,
+    fail(in, index,
          "normals, uvs, tangents or colours are not one a vertex, or materials not one a triangle");
   for (const int material : mesh.materials)
-    if (material >= static_cast<int>(scene.materials.size()))
-      fail(scene, index, fmt::format("material {} of {}", material, scene.materials.size()));
+    if (material >= static_cast<int>(in.material_count))
+      fail(in, index, fmt::format("material {} of {}", material, in.material_count));
 }
 
 /// Reports the first triangle corner that has no valid box.
-[[noreturn]] void fail_corner(const SceneDescription& scene, std::span<const std::size_t> meshes) {
+[[noreturn]] void fail_corner(const MeshInputs& in, std::span<const std::size_t> meshes) {
   for (const std::size_t index : meshes) {
-    const Mesh& mesh = scene.meshes[index];
+    const Mesh& mesh = *in.meshes[index];
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (int corner = 0; corner < 3; ++corner) {
         const u32 vertex = mesh.triangles[t][corner];
         if (vertex >= mesh.positions.size())
-          fail(scene, index,
+          fail(in, index,
                fmt::format("triangle {} names vertex {}; wanted less than {}; mend the model", t, vertex,
                            mesh.positions.size()));
         const glm::vec3& p = mesh.positions[vertex];
         if (!in_range(p))
-          fail(scene, index,
+          fail(in, index,
                fmt::format("vertex {} is ({}, {}, {}); wanted finite numbers up to {:g}; mend the model",
                            vertex, p.x, p.y, p.z, farthest_vertex));
       }
@@ -117,22 +111,22 @@ struct Tree {
   Mesh copy;  // positions and triangles of several meshes, or scaled
   WideBvh bvh;
 
-  const Mesh& mesh(const SceneDescription& scene) const {
-    return copy.triangles.empty() ? scene.meshes[meshes[0]] : copy;
+  const Mesh& mesh(const MeshInputs& in) const {
+    return copy.triangles.empty() ? *in.meshes[meshes[0]] : copy;
   }
 };
 
 /// Joins the positions and triangles of several meshes.
-Mesh join_meshes(const SceneDescription& scene, std::span<const std::size_t> meshes) {
+Mesh join_meshes(const MeshInputs& in, std::span<const std::size_t> meshes) {
   Mesh joined;
   std::vector<glm::vec3>& positions = joined.positions.values();
   std::vector<glm::uvec3>& triangles = joined.triangles.values();
   for (const std::size_t i : meshes) {
-    const Mesh& mesh = scene.meshes[i];
+    const Mesh& mesh = *in.meshes[i];
     const auto first = static_cast<u32>(positions.size()), count = static_cast<u32>(mesh.positions.size());
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const glm::uvec3& triangle : mesh.triangles) {
-      if (triangle.x >= count || triangle.y >= count || triangle.z >= count) fail_corner(scene, {&i, 1});
+      if (triangle.x >= count || triangle.y >= count || triangle.z >= count) fail_corner(in, {&i, 1});
       triangles.push_back(triangle + first);
     }
   }
@@ -140,9 +134,9 @@ Mesh join_meshes(const SceneDescription& scene, std::span<const std::size_t> mes
 }
 
 /// The meshes of each BVH. Scaled ones are not shared.
-std::vector<Tree> plan_trees(const SceneDescription& scene, const std::vector<PlacedMesh>& placed) {
+std::vector<Tree> plan_trees(const MeshInputs& in, const std::vector<PlacedMesh>& placed) {
   std::vector<Tree> trees;
-  for (const std::vector<std::size_t>& group : mesh_groups(scene)) {
+  for (const std::vector<std::size_t>& group : in.groups) {
     const bool together = std::ranges::all_of(group, [&](std::size_t i) { return placed[i].unit == 1; });
     if (together)
       trees.push_back({group, {}, {}});
@@ -152,13 +146,13 @@ std::vector<Tree> plan_trees(const SceneDescription& scene, const std::vector<Pl
   return trees;
 }
 
-void build_tree(const SceneDescription& scene, double unit, Tree& tree) {
-  for (const std::size_t i : tree.meshes) check_attributes(scene, i);
+void build_tree(const MeshInputs& in, double unit, Tree& tree) {
+  for (const std::size_t i : tree.meshes) check_attributes(in, i);
   if (tree.meshes.size() > 1)
-    tree.copy = join_meshes(scene, tree.meshes);
+    tree.copy = join_meshes(in, tree.meshes);
   else if (unit != 1)
-    tree.copy = resized(scene.meshes[tree.meshes[0]], unit);
-  const Mesh& mesh = tree.mesh(scene);
+    tree.copy = resized(*in.meshes[tree.meshes[0]], unit);
+  const Mesh& mesh = tree.mesh(in);
   const auto fill = [&](std::span<Ref> refs) {
     std::atomic<bool> bad{false};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
@@ -168,10 +162,10 @@ void build_tree(const SceneDescription& scene, double unit, Tree& tree) {
         refs[t] = Ref::of(box, static_cast<u32>(t));
       }
     });
-    if (bad) fail_corner(scene, tree.meshes);
+    if (bad) fail_corner(in, tree.meshes);
   };
   WideBvhSettings settings;
-  if (scene.render.spatial_splits) settings.cut = &mesh;
+  if (in.spatial_splits) settings.cut = &mesh;
   tree.bvh = build_wide_bvh(mesh.triangles.size(), fill, settings);
 }
 
@@ -228,17 +222,17 @@ struct Rows {
   std::size_t nodes = 0, blocks = 0, triangles = 0, vertices = 0;
 };
 
-void check_rows(const SceneDescription& scene, const Rows& sum) {
+void check_rows(const MeshInputs& in, const Rows& sum) {
   if (sum.blocks > BVH_FIRST_MASK || sum.nodes >= BVH_LEAF || sum.triangles >= NO_PRIM ||
       sum.vertices >= NO_PRIM)
     throw SceneError(
-        scene.file.string(), "",
+        *in.file, "",
         fmt::format("{} triangles in {} blocks are more than the tables can index; use smaller meshes",
                     sum.triangles, sum.blocks));
 }
 
 /// The first rows of each tree, then the totals. Also stores those of the meshes.
-std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<Tree>& trees,
+std::vector<Rows> lay_out(const MeshInputs& in, const std::vector<Tree>& trees,
                           std::vector<PlacedMesh>& placed) {
   std::vector<Rows> first(1);
   for (const Tree& tree : trees) {
@@ -248,19 +242,19 @@ std::vector<Rows> lay_out(const SceneDescription& scene, const std::vector<Tree>
       placed[i].root = static_cast<u32>(first.back().nodes);
       placed[i].first_vertex = static_cast<u32>(next.vertices);
       placed[i].first_triangle = static_cast<u32>(next.triangles);
-      placed[i].triangle_count = static_cast<u32>(scene.meshes[i].triangles.size());
-      next.triangles += scene.meshes[i].triangles.size();
-      next.vertices += vertex_count(scene.meshes[i]);
+      placed[i].triangle_count = static_cast<u32>(in.meshes[i]->triangles.size());
+      next.triangles += in.meshes[i]->triangles.size();
+      next.vertices += vertex_count(*in.meshes[i]);
     }
     next.nodes += tree.bvh.nodes.size();
     next.blocks += tree.bvh.blocks.size();
     first.push_back(next);
   }
-  check_rows(scene, first.back());
+  check_rows(in, first.back());
   return first;
 }
 
-void resize_tables(const Rows& rows, CompiledScene& out) {
+void resize_tables(const Rows& rows, Meshes& out) {
   tbb::parallel_invoke([&] { out.nodes.resize(rows.nodes); }, [&] { out.blocks.resize(rows.blocks); },
                        [&] { out.triangles.resize(rows.triangles); },
                        [&] { out.vertices.resize(rows.vertices); });
@@ -303,9 +297,9 @@ std::vector<u32> distinct_materials(std::span<const TriangleShading> triangles) 
 }
 
 /// Writes a tree's meshes to the tables, in parallel.
-void fill_tables(const SceneDescription& scene, const Tree& tree, const Rows& first, u32 default_material,
-                 CompiledScene& out, std::vector<PlacedMesh>& placed) {
-  const Mesh& mesh = tree.mesh(scene);
+void fill_tables(const MeshInputs& in, const Tree& tree, const Rows& first, Meshes& out) {
+  std::vector<PlacedMesh>& placed = out.placed;
+  const Mesh& mesh = tree.mesh(in);
   const WideBvh& bvh = tree.bvh;
   double cost = 0;
   u32 stack = 0;
@@ -319,11 +313,11 @@ void fill_tables(const SceneDescription& scene, const Tree& tree, const Rows& fi
       },
       [&] {
         tbb::parallel_for(std::size_t{0}, tree.meshes.size(), [&](std::size_t k) {
-          const Mesh& own = tree.meshes.size() > 1 ? scene.meshes[tree.meshes[k]] : mesh;
+          const Mesh& own = tree.meshes.size() > 1 ? *in.meshes[tree.meshes[k]] : mesh;
           PlacedMesh& one = placed[tree.meshes[k]];
           const auto triangles =
               std::span(out.triangles.edit()).subspan(one.first_triangle, one.triangle_count);
-          fill_vertices(own, one.first_vertex, default_material,
+          fill_vertices(own, one.first_vertex, in.default_material,
                         std::span(out.vertices.edit()).subspan(one.first_vertex, vertex_count(own)),
                         triangles);
           one.materials = distinct_materials(triangles);
@@ -346,23 +340,20 @@ double mean_fill(const std::vector<Tree>& trees) {
 
 }  // namespace
 
-std::vector<PlacedMesh> add_meshes(const SceneDescription& scene, u32 default_material, CompiledScene& out) {
-  std::vector<PlacedMesh> placed(scene.meshes.size());
-  for (const Object& object : scene.objects)
-    if (const auto* shape = std::get_if<MeshShape>(&object.shape))
-      placed[std::size_t(shape->mesh)].used = true;
-  for (std::size_t i = 0; i < placed.size(); ++i)
-    if (placed[i].used) placed[i].unit = table_unit(scene.meshes[i]);
-  std::vector<Tree> trees = plan_trees(scene, placed);
+Meshes compile_meshes(const MeshInputs& in) {
+  Meshes out;
+  out.placed.resize(in.meshes.size());
+  for (std::size_t i = 0; i < in.meshes.size(); ++i)
+    if (in.meshes[i]) out.placed[i].used = true, out.placed[i].unit = table_unit(*in.meshes[i]);
+  std::vector<Tree> trees = plan_trees(in, out.placed);
   tbb::parallel_for(std::size_t{0}, trees.size(),
-                    [&](std::size_t i) { build_tree(scene, placed[trees[i].meshes[0]].unit, trees[i]); });
-  const std::vector<Rows> first = lay_out(scene, trees, placed);
+                    [&](std::size_t i) { build_tree(in, out.placed[trees[i].meshes[0]].unit, trees[i]); });
+  const std::vector<Rows> first = lay_out(in, trees, out.placed);
   resize_tables(first.back(), out);
-  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t i) {
-    fill_tables(scene, trees[i], first[i], default_material, out, placed);
-  });
-  out.figures.mean_block_fill = mean_fill(trees);
-  return placed;
+  tbb::parallel_for(std::size_t{0}, trees.size(),
+                    [&](std::size_t i) { fill_tables(in, trees[i], first[i], out); });
+  out.mean_block_fill = mean_fill(trees);
+  return out;
 }
 
 }  // namespace sundog

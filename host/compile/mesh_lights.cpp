@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/integrators.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -64,7 +63,7 @@ std::vector<u32> lamps_of(const SceneDescription& scene) {
 
 }  // namespace
 
-void add_mesh_lights(const SceneDescription& scene, CompiledScene& out) {
+MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, MeshLights out) {
   std::vector<u32> first = lamps_of(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -76,13 +75,14 @@ void add_mesh_lights(const SceneDescription& scene, CompiledScene& out) {
     first[i] = static_cast<u32>(out.lights.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       out.lights.push_back(light_of(object, mesh, mesh.triangles[t],
-                                    even_emission(scene, material_of(object, mesh, t)), out.origin));
-    out.features.area_lights = true;
+                                    even_emission(scene, material_of(object, mesh, t)), origin));
+    out.any = true;
   }
-  if (std::ranges::all_of(first, [](u32 light) { return light == NO_LIGHT; })) return;
+  if (std::ranges::all_of(first, [](u32 light) { return light == NO_LIGHT; })) return out;
   for (Instance& instance : out.instances.edit())
     if (instance.object < first.size() && first[instance.object] != NO_LIGHT)
       instance.light = first[instance.object];
+  return out;
 }
 
 }  // namespace sundog

@@ -1,15 +1,21 @@
 // Compiles emissive meshes to one light per triangle.
 #pragma once
 #include "compile/compiled_scene.h"
-#include "compile/mesh_bvh.h"
-#include "scene/description.h"
 
 namespace sundog {
 
+/// The lights of a scene with those of its meshes, and its instances with the rows of their lights.
+struct MeshLights {
+  SharedTable<Light> lights;
+  SharedTable<Instance> instances;
+  bool any = false;  // some mesh is a light
+};
+
 /// Appends a light for each triangle of meshes whose materials have a uniform emission. Stores the light's
-/// index in their instances, and in those of visible lights for path tracing. Call after placing instances.
-/// Meshes with textured emission or more than `most_shining` triangles are left to rays that hit them.
-void add_mesh_lights(const SceneDescription& scene, CompiledScene& out);
+/// index in their instances, and in those of visible lights for path tracing. Meshes with textured emission
+/// or more than `most_shining` triangles are left to rays that hit them. `before`: lights and instances
+/// without these.
+MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, MeshLights before);
 
 constexpr std::size_t most_shining = 200'000;
 

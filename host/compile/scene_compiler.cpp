@@ -10,16 +10,14 @@
 
 #include "base/error.h"
 #include "compile/camera.h"
-#include "compile/filter.h"
 #include "compile/light_tree.h"
 #include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
 #include "compile/mesh_lights.h"
-#include "compile/parts/parts.h"
+#include "compile/parts/inputs.h"
 #include "compile/parts/photons.h"
 #include "compile/placing/instances.h"
 #include "scene/integrators.h"
-#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -51,29 +49,6 @@ void check_integrator(const SceneDescription& scene) {
     throw SceneError(scene.file.string(), "/render/integrator",
                      fmt::format("wanted one of {}, found \"{}\"", fmt::join(integrator_names, ", "),
                                  scene.render.integrator));
-}
-
-/// Samples that grow in number must come from a sequence.
-u32 sampler_of(const RenderSettings& settings) {
-  const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
-  return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
-}
-
-void set_view(const SceneDescription& scene, CompiledScene& out) {
-  set_camera(scene, out.origin, out.info);
-  out.features.clear_glass = scene.image.transparent_glass;
-  out.features.lens = scene.camera.lens.radius > 0;
-  out.features.camera_motion = scene.camera.moves_to.has_value();
-  out.sampling = scene.render.sampling;
-  out.features.sampler = sampler_of(scene.render);
-  out.filter = filter_table(scene.render);
-  out.features.filter = !out.filter.empty();
-  out.info.roulette_depth = static_cast<u32>(scene.render.roulette == 65 ? 65537 : scene.render.roulette);
-  out.info.light_strategy = scene.render.light_strategy;
-  if (traces_paths(scene.render.integrator))
-    for (const Guide& guide : scene.render.caustics ? std::vector<Guide>{} : scene.render.guides)
-      out.guides.push_back(pack(guide.center - out.origin, guide.radius));
-  out.features.guides = !out.guides.empty();
 }
 
 /// log2 of each pixel's places in the blue noise sequence; rays to a light divide samples.
@@ -122,56 +97,124 @@ const SharedTable<float>& lobe_energies(bool glass) {
   return glass ? with_glass : usual;
 }
 
-/// Builds the light tables once all emitters are known.
-void finish_lights(const SceneDescription& scene, CompiledScene& out) {
-  add_mesh_lights(scene, out);
-  add_light_tree(scene, out);
-  if (traces_paths(out.integrator))
-    std::erase_if(out.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
+/// Adds a part's features to the whole's.
+void add_features(const SceneFeatures& part, SceneFeatures& whole) {
+#define SUNDOG_ADD_FEATURE(type, definition, name) whole.name = static_cast<type>(whole.name | part.name);
+  SCENE_FEATURES(SUNDOG_ADD_FEATURE)
+#undef SUNDOG_ADD_FEATURE
+  for (std::size_t i = 0; i < part.shapes.size(); ++i) whole.shapes[i] |= part.shapes[i];
+  whole.unbounded |= part.unbounded;
+  whole.bvh_stack = std::max(whole.bvh_stack, part.bvh_stack);
+}
+
+void take(const Lights& lights, CompiledScene& out) {
+  out.environments = lights.environments;
+  out.environment = lights.environment;
+  out.environment_shares = lights.environment_shares;
+  out.environment_cutpoints = lights.environment_cutpoints;
+  out.info.ambient = lights.ambient;
+  out.info.fog = lights.fog;
+  out.info.sees_environment = lights.sees_environment;
+  add_features(lights.features, out.features);
+}
+
+void take(const Surfaces& surfaces, CompiledScene& out) {
+  out.media = surfaces.media;
+  out.spectra = surfaces.spectra;
+  out.materials = surfaces.materials;
+  out.material_maps = surfaces.material_maps;
+  out.texture_nodes = surfaces.texture_nodes;
+  out.texture_values = surfaces.texture_values;
+  out.texel_levels = surfaces.texel_levels;
+  SharedTable<u32>* const texels[TEXEL_PAGES] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  for (std::size_t i = 0; i < TEXEL_PAGES; ++i) *texels[i] = surfaces.texels[i];
+  out.layers = surfaces.layers;
+  out.layer_rows = surfaces.layer_rows;
+  out.info.texel_page = surfaces.texel_page;
+  out.pattern_source = surfaces.pattern_source;
+  add_features(surfaces.features, out.features);
+}
+
+void take(const Meshes& meshes, const Mapping& mapping, CompiledScene& out) {
+  out.blocks = meshes.blocks;
+  out.triangles = meshes.triangles;
+  out.vertices = meshes.vertices;
+  out.extra_uvs = mapping.extra_uvs;
+  out.vertex_alphas = mapping.vertex_alphas;
+  out.tangents = mapping.tangents;
+  out.figures.mean_block_fill = meshes.mean_block_fill;
+}
+
+void take(const Instances& instances, CompiledScene& out) {
+  out.nodes = instances.nodes;
+  out.moves = instances.moves;
+  out.turns = instances.turns;
+  out.info.tlas_root = instances.tlas_root;
+  out.info.bounded_count = instances.bounded_count;
+  out.info.scene_center = instances.scene_center;
+  out.info.instance_count = instances.instance_count;
+  out.info.field_end = instances.field_end;
+  out.figures.sah_cost = instances.sah_cost;
+  out.figures.box = instances.box;
+  add_features(instances.features, out.features);
+}
+
+void take(const Fields& fields, CompiledScene& out) {
+  out.field_source = fields.source;
+  out.sdf_fields = fields.fields;
+  out.sdf_parameters = fields.parameters;
+  add_features(fields.features, out.features);
+}
+
+/// The view, and a scene's settings.
+CompiledScene begin(const SceneDescription& scene, const dvec3& origin) {
+  CompiledScene out;
+  CompiledView view = compile_view(scene, origin);
+  out.info = view.info;
+  out.origin = origin;
+  out.integrator = scene.render.integrator;
+  out.tracer = scene.render.tracer;
+  out.sampling = scene.render.sampling;
+  out.filter = std::move(view.filter);
+  out.guides = std::move(view.guides);
+  out.features = view.features;
+  return out;
+}
+
+/// What follows from all parts: lights of meshes, the tree over lights, photons.
+void finish(const SceneDescription& scene, const Lights& lights, const Instances& instances,
+            CompiledScene& out) {
+  MeshLights with_meshes = add_mesh_lights(scene, out.origin, {lights.lights, out.instances});
+  out.lights = std::move(with_meshes.lights);
+  out.instances = std::move(with_meshes.instances);
+  out.features.area_lights |= with_meshes.any;
+  LightTree tree = make_light_tree(scene.render, out.lights, lights.light_rays);
+  out.features.light_tree = !tree.nodes.empty();
+  out.light_nodes = std::move(tree.nodes);
+  out.light_leaves = std::move(tree.leaves);
+  out.light_rays = std::move(tree.rays);
+  if (out.features.rough || out.features.layers)
+    out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
+  Photons photons = plan_photons(scene, instances.boxes, out);
+  out.photons_by = photons.plan;
+  out.features.caustics = !photons.targets.empty();
+  out.photon_targets = std::move(photons.targets);
+  out.photon_lights = std::move(photons.lights);
+  set_counts(out);
+  set_figures(out);
 }
 
 }  // namespace
 
-void take_part(const CompiledScene& part, CompiledScene& out) {
-#define SUNDOG_TAKE_TABLE(type, host_type, name, label) \
-  if (!part.name.empty()) out.name = part.name;
-  SCENE_TABLES(SUNDOG_TAKE_TABLE)
-#undef SUNDOG_TAKE_TABLE
-#define SUNDOG_TAKE_FEATURE(type, definition, name) \
-  out.features.name = static_cast<type>(out.features.name | part.features.name);
-  SCENE_FEATURES(SUNDOG_TAKE_FEATURE)
-#undef SUNDOG_TAKE_FEATURE
-  for (std::size_t i = 0; i < part.features.shapes.size(); ++i)
-    out.features.shapes[i] |= part.features.shapes[i];
-  out.features.unbounded |= part.features.unbounded;
-  out.features.bvh_stack = std::max(out.features.bvh_stack, part.features.bvh_stack);
-}
-
 struct SceneCompiler::Parts {
-  HaloPart halo;
-  ScenePart lights;
-  SurfacesPart surfaces;
-  MeshesPart meshes;
-  ScenePart mapping;
-  InstancesPart instances;
-  ScenePart touching;
-  ScenePart fields;
-
-  /// Copies numbers found by the parts.
-  void set_numbers(CompiledScene& out) const {
-    out.info.ambient = lights.made.info.ambient;
-    out.info.fog = lights.made.info.fog;
-    out.info.sees_environment = lights.made.info.sees_environment;
-    out.info.texel_page = surfaces.made.info.texel_page;
-    out.info.tlas_root = instances.made.info.tlas_root;
-    out.info.bounded_count = instances.made.info.bounded_count;
-    out.info.scene_center = instances.made.info.scene_center;
-    out.info.instance_count = instances.made.info.instance_count;
-    out.info.field_end = instances.made.info.field_end;
-    out.figures.mean_block_fill = meshes.made.figures.mean_block_fill;
-    out.figures.sah_cost = instances.made.figures.sah_cost;
-    out.figures.box = instances.made.figures.box;
-  }
+  Memo<Halo> halo;
+  Memo<Lights> lights;
+  Memo<Surfaces> surfaces;
+  Memo<Meshes> meshes;
+  Memo<Mapping> mapping;
+  Memo<Instances> instances;
+  Memo<Touching> touching;
+  Memo<Fields> fields;
 };
 
 SceneCompiler::SceneCompiler() : parts_(std::make_unique<Parts>()) {}
@@ -179,73 +222,52 @@ SceneCompiler::~SceneCompiler() = default;
 SceneCompiler::SceneCompiler(SceneCompiler&&) noexcept = default;
 SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
 
-namespace {
-
-/// Makes the part unless its key is unchanged. Returns whether it was made.
-template <class P, class Make>
-bool renew(P& part, const ContentKey& key, const Make& make) {
-  if (part.key == key) return false;
-  P made = make();
-  made.key = key;
-  part = std::move(made);
-  return true;
-}
-
-}  // namespace
-
+//   environment ─▶ halo ─┐
+//   lights, fog ─────────┴▶ lights ──────────────────────────────────────┐
+//   materials, media, textures, images ─▶ surfaces ─┬▶ mapping ──────────┤
+//   meshes ────────────────────────────▶ meshes ────┴▶ instances ─┬──────┼▶ CompiledScene
+//   objects ──────────────────────────────────────────▲           └▶ touching ─▶ fields
 CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
-  CompiledScene out;
-  out.integrator = scene.render.integrator;
-  out.tracer = scene.render.tracer;
   check_objects(scene);
   check_integrator(scene);
   const std::vector<FieldView> views = views_of(scene);
-  out.origin = std::ranges::any_of(views, is_deep) ? scene.camera.position : local_origin(scene);
-  set_view(scene, out);
+  const dvec3 origin = any_deep(views) ? scene.camera.position : local_origin(scene);
+  CompiledScene out = begin(scene, origin);
 
-  Parts& p = *parts_;
-  renew(p.halo, halo_key(scene), [&] { return make_halo(scene); });
-  work_.lights +=
-      renew(p.lights, lights_key(scene, out.origin), [&] { return make_lights(scene, out.origin, p.halo); });
-  work_.surfaces += renew(p.surfaces, surfaces_key(scene), [&] { return make_surfaces(scene); });
-  const bool new_meshes =
-      renew(p.meshes, meshes_key(scene, p.surfaces), [&] { return make_meshes(scene, p.surfaces); });
-  work_.meshes += new_meshes;
-  if (new_meshes)
-    work_.bvhs += static_cast<std::uint64_t>(std::ranges::count(p.meshes.placed, true, &PlacedMesh::used));
-  renew(p.mapping, mapping_key(p.meshes, p.surfaces),
-        [&] { return make_mapping(scene, p.meshes, p.surfaces); });
-  const bool new_instances = renew(p.instances, instances_key(scene, p.meshes, p.surfaces, out.origin),
-                                   [&] { return make_instances(scene, p.meshes, p.surfaces, out.origin); });
-  work_.instances += new_instances;
-  work_.bvhs += new_instances;
-  take_part(p.lights.made, out);
-  take_part(p.surfaces.made, out);
-  take_part(p.meshes.made, out);
-  take_part(p.mapping.made, out);
-  take_part(p.instances.made, out);
-  parts_->set_numbers(out);
-  if (out.features.media) {
-    work_.touching += renew(p.touching, touching_key(scene, p.instances, out.origin),
-                            [&] { return make_touching(scene, p.instances, out.origin); });
-    out.features.touching = p.touching.made.features.touching;
-    out.instances = p.touching.made.instances;
+  auto& [halo, lights, surfaces, meshes, mapping, instances, touching, fields] = *parts_;
+  memo(halo, HaloInputs{&scene.environment}, compile_halo);
+  work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
+  work_.surfaces += memo(surfaces, surface_inputs(scene), compile_surfaces);
+  if (memo(meshes, mesh_inputs(scene, surfaces.value), compile_meshes)) {
+    ++work_.meshes;
+    work_.bvhs +=
+        static_cast<std::uint64_t>(std::ranges::count(meshes.value.placed, true, &PlacedMesh::used));
   }
-  const ContentKey placed = out.features.media ? p.touching.key : p.instances.key;
-  work_.fields += renew(p.fields, fields_key(scene, views, placed, out.origin),
-                        [&] { return make_fields(scene, views, out); });
-  take_part(p.fields.made, out);
-  out.field_source = p.fields.made.field_source;
-  out.pattern_source = p.surfaces.made.pattern_source;
-  out.features.camera_inside = is_camera_inside(scene.camera.position - out.origin,
-                                                p.instances.made.instances.rows(), p.instances.boxes);
-  finish_lights(scene, out);
-  if (out.features.rough || out.features.layers)
-    out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
-  add_photon_targets(scene, p.instances.boxes, out);
-  set_counts(out);
-  set_figures(out);
+  memo(mapping, mapping_inputs(scene, meshes.known(), surfaces.value), compile_mapping);
+  if (memo(instances, instance_inputs(scene, origin, meshes.known(), surfaces.value), compile_instances)) {
+    ++work_.instances;
+    ++work_.bvhs;
+  }
+  take(lights.value, out);
+  take(surfaces.value, out);
+  take(meshes.value, mapping.value, out);
+  take(instances.value, out);
+  const bool media = out.features.media;
+  if (media)
+    work_.touching += memo(touching, touching_inputs(scene, origin, instances.known()), compile_touching);
+  out.features.touching = media && touching.value.any;
+  out.instances = media ? touching.value.instances : instances.value.instances;
+  work_.fields +=
+      memo(fields,
+           field_inputs(scene, origin, views, {&out.instances, media ? touching.key : instances.key},
+                        instances.value.instance_count),
+           compile_field_tables);
+  take(fields.value, out);
+  if (any_deep(views)) out.instances = fields.value.instances;
+  out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
+                                                instances.value.instances.rows(), instances.value.boxes);
+  finish(scene, lights.value, instances.value, out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

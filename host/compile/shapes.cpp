@@ -14,13 +14,12 @@ namespace sundog {
 namespace {
 
 struct ShapeReader {
-  const SceneDescription& scene;
+  const std::string& file;
   const Object& object;
 
   void want(bool fine, const std::string& wanted) const {
     if (!fine)
-      throw SceneError(scene.file.string(), object.place,
-                       fmt::format("object \"{}\": wanted {}", object.name, wanted));
+      throw SceneError(file, object.place, fmt::format("object \"{}\": wanted {}", object.name, wanted));
   }
   void want_positive(double size, const char* name) const {
     want(size > 0 && std::isfinite(size), fmt::format("a {} above 0, found {}", name, size));
@@ -113,8 +112,8 @@ double box_distance(const dvec3& p, const dvec3& half, double round) {
 
 }  // namespace
 
-UnitShape unit_shape(const SceneDescription& scene, const Object& object) {
-  return std::visit(ShapeReader{scene, object}, object.shape);
+UnitShape unit_shape(const std::string& file, const Object& object) {
+  return std::visit(ShapeReader{file, object}, object.shape);
 }
 
 double reach(const UnitShape& unit, const dvec3& d) {

@@ -2,9 +2,10 @@
 // remaining parameters, and geometry of the unit shape: support, flat faces, distance.
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "compile/compiled_scene.h"
+#include "models/values/object.h"
 
 namespace sundog {
 
@@ -14,9 +15,9 @@ struct UnitShape {
   float4 parameters{};
 };
 
-/// Throws SceneError (at `object`'s place) for sizes that are not positive, and for a self-intersecting torus
-/// or rounded box.
-UnitShape unit_shape(const SceneDescription& scene, const Object& object);
+/// Throws SceneError (in `file`, at `object`'s place) for sizes that are not positive, and for a
+/// self-intersecting torus or rounded box.
+UnitShape unit_shape(const std::string& file, const Object& object);
 
 // The functions below take exact solids, not meshes or fields.
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "scene/integrators.h"
 #include "scene/spectra/upsample.h"
 
 namespace sundog {
@@ -24,8 +23,6 @@ std::vector<float> columns_of_colors() {
 }
 
 }  // namespace
-
-SpectraMaker::SpectraMaker(const SceneDescription& scene) : used_(traces_paths(scene.render.integrator)) {}
 
 u32 SpectraMaker::add(const Dispersion& dispersion) {
   if (!used_ || dispersion.kind == DispersionKind::none) return NO_SPECTRUM;

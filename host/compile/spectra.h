@@ -4,15 +4,15 @@
 #include <utility>
 #include <vector>
 
-#include "scene/description.h"
+#include "models/values/refraction.h"
 #include "shared/spectra.h"
 
 namespace sundog {
 
 class SpectraMaker {
  public:
-  /// Only paths carry wavelengths; with another integrator the table stays empty.
-  explicit SpectraMaker(const SceneDescription& scene);
+  /// Only paths carry wavelengths; else the table stays empty.
+  explicit SpectraMaker(bool paths) : used_(paths) {}
 
   /// The offset of a medium's indices, shared by equal dispersions; NO_SPECTRUM without dispersion.
   u32 add(const Dispersion& dispersion);

@@ -118,16 +118,17 @@ std::vector<CornerTangent> corner_tangents(const Mesh& mesh) {
   return corners;
 }
 
-void add_tangents(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, CompiledScene& out) {
-  if (!out.features.relief) return;
-  std::vector<u32> table(3 * out.triangles.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
-    if (!meshes[i].used) return;
-    u32* packed = table.data() + 3 * std::size_t{meshes[i].first_triangle};
-    for (const CornerTangent& corner : corner_tangents(scene.meshes[i]))
+SharedTable<u32> tangents_of(const MappingInputs& in) {
+  if (!in.relief) return {};
+  std::vector<u32> table(3 * in.meshes->triangles.size());
+  tbb::parallel_for(std::size_t{0}, in.sources->size(), [&](std::size_t i) {
+    const Mesh* mesh = (*in.sources)[i];
+    if (!mesh) return;
+    u32* packed = table.data() + 3 * std::size_t{in.meshes->placed[i].first_triangle};
+    for (const CornerTangent& corner : corner_tangents(*mesh))
       *packed++ = pack_tangent(corner.tangent, corner.mirrored);
   });
-  out.tangents = std::move(table);
+  return table;
 }
 
 }  // namespace sundog

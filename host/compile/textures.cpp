@@ -35,12 +35,12 @@ float4 pack4(const glm::dvec4& v) { return pack(dvec3(v), v.w); }
 /// Converts the textures that materials use to nodes, each once; skips unused images.
 class TextureCompiler {
  public:
-  TextureCompiler(const SceneDescription& scene, CompiledScene& out) : scene_(scene), out_(out) {}
+  TextureCompiler(const SurfaceInputs& in, Surfaces& out) : in_(in), out_(out) {}
 
   void compile() {
     out_.material_maps.push_back({});  // entry 0 means none
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-      if (const MaterialDescription& material = surface_for(scene_, scene_.materials[i]);
+    for (std::size_t i = 0; i < in_.materials.size(); ++i)
+      if (const MaterialDescription& material = surface_for(in_.paths, in_.materials[i]);
           has_maps(material)) {
         cut_images_.clear();
         find_cut_images(material.textures.opacity, material);
@@ -114,14 +114,17 @@ class TextureCompiler {
   }
 
   const TextureDescription& texture_at(int index, const MaterialDescription& material) const {
-    if (index >= static_cast<int>(scene_.textures.size()))
-      throw SceneError(scene_.file.string(), "",
+    if (index >= static_cast<int>(in_.textures.size()))
+      throw SceneError(*in_.file, "",
                        "material \"" + material.name + "\" names a texture that does not exist");
-    return scene_.textures[static_cast<std::size_t>(index)];
+    return in_.textures[static_cast<std::size_t>(index)];
   }
 
   const ImageDescription& image_at(int index) const {
-    return scene_.images.at(static_cast<std::size_t>(index));
+    const auto at = static_cast<std::size_t>(index);
+    if (at >= in_.images.size())
+      throw SceneError(*in_.file, "", "a texture names an image that does not exist");
+    return in_.images[at];
   }
 
   /// Adds the images whose alpha a texture uses. `depth` stops at graphs that add_graph() rejects.
@@ -165,13 +168,13 @@ class TextureCompiler {
   void add_graph(int index, const MaterialDescription& material, u32 below) {
     const TextureDescription& texture = texture_at(index, material);
     if (out_.texture_nodes.size() >= most_nodes)
-      throw SceneError(scene_.file.string(), "/textures",
+      throw SceneError(*in_.file, "/textures",
                        fmt::format("the materials' textures take more than {} images, patterns and colours, "
                                    "the most that a scene can have: \"{}\" is one too many",
                                    most_nodes, material.name));
     if (below + 2 > MOST_TEXTURE_STACK)
       throw SceneError(
-          scene_.file.string(), "/textures",
+          *in_.file, "/textures",
           "material \"" + material.name + "\" has a texture of too many others inside each other");
     for (u32 i = 0; i < 2; ++i)
       if (texture.of[i] >= 0) add_graph(texture.of[i], material, below + i);
@@ -262,8 +265,12 @@ class TextureCompiler {
 
   void write_images() {
     if (units_ > std::numeric_limits<u32>::max())
-      throw SceneError(scene_.file.string(), "", "the images take more than 64 GiB; use smaller ones");
-    const TexelPages pages = add_texel_pages(units_, TEXEL_PAGE_BYTES / TEXEL_UNIT, out_);
+      throw SceneError(*in_.file, "", "the images take more than 64 GiB; use smaller ones");
+    TexelTables made = make_texel_tables(units_, TEXEL_PAGE_BYTES / TEXEL_UNIT);
+    const TexelPages pages = made.pages;
+    out_.texel_page = static_cast<u32>(pages.units);
+    out_.features.texel_pages = made.several;
+    std::ranges::move(made.tables, out_.texels);
     const std::vector<std::pair<std::pair<int, SampleUse>, std::pair<u32, u32>>> images(levels_.begin(),
                                                                                         levels_.end());
     tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
@@ -272,8 +279,8 @@ class TextureCompiler {
     });
   }
 
-  const SceneDescription& scene_;
-  CompiledScene& out_;
+  const SurfaceInputs& in_;
+  Surfaces& out_;
   using CutImages = std::vector<const ImageDescription*>;
   CutImages cut_images_;                            // whose alpha is the current material's opacity
   std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture and its images weighted by alpha
@@ -293,25 +300,20 @@ bool has_maps(const MaterialDescription& material) {
   return textured || material.opacity < 1 || material.one_sided || material.metal_rough || material.coat > 0;
 }
 
-TexelPages add_texel_pages(std::size_t units, u32 least_page, CompiledScene& out) {
+TexelTables make_texel_tables(std::size_t units, u32 least_page) {
   const std::size_t unit_words = TEXEL_UNIT / sizeof(u32);
   const std::size_t quarter = (units + TEXEL_PAGES - 1) / TEXEL_PAGES;
   const std::size_t page =
       std::max<std::size_t>(least_page, (quarter + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT);
-  out.info.texel_page = static_cast<u32>(page);
-  out.features.texel_pages = units > page;
-  TexelPages pages{{}, page};
-  SharedTable<u32>* tables[] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
+  TexelTables made{{}, {{}, page}, units > page};
   tbb::parallel_for(std::size_t{0}, std::size_t{TEXEL_PAGES}, [&](std::size_t i) {
-    *tables[i] = zeroed_words((std::min(units, (i + 1) * page) - std::min(units, i * page)) * unit_words);
-    pages.bytes[i] = reinterpret_cast<std::uint8_t*>(tables[i]->edit().data());
+    made.tables[i] = zeroed_words((std::min(units, (i + 1) * page) - std::min(units, i * page)) * unit_words);
+    made.pages.bytes[i] = reinterpret_cast<std::uint8_t*>(made.tables[i].edit().data());
   });
-  return pages;
+  return made;
 }
 
-void add_textures(const SceneDescription& scene, CompiledScene& out) {
-  TextureCompiler(scene, out).compile();
-}
+void add_textures(const SurfaceInputs& in, Surfaces& out) { TextureCompiler(in, out).compile(); }
 
 namespace {
 
@@ -325,44 +327,41 @@ void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
         put(first_vertex + 3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
 }
 
+/// Calls visit(mesh, its place in the tables) for each mesh that is placed.
+void for_each_mesh(const MappingInputs& in, const auto& visit) {
+  for (std::size_t i = 0; i < in.sources->size(); ++i)
+    if (const Mesh* mesh = (*in.sources)[i]) visit(*mesh, in.meshes->placed[i]);
+}
+
 }  // namespace
 
-void add_further_uvs(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
-                     CompiledScene& out) {
-  const std::size_t sets = out.features.extra_uvs;
-  if (sets == 0) return;
-  std::vector<float> table(out.vertices.size() * sets * 2);
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    if (!meshes[i].used) continue;
-    const Mesh& mesh = scene.meshes[i];
+SharedTable<float> further_uvs(const MappingInputs& in) {
+  const std::size_t sets = in.extra_uvs;
+  if (sets == 0) return {};
+  std::vector<float> table(in.meshes->vertices.size() * sets * 2);
+  for_each_mesh(in, [&](const Mesh& mesh, const PlacedMesh& placed) {
     for (std::size_t set = 0; set < std::min(sets, mesh.further_uvs.size()); ++set) {
       const MeshArray<glm::vec2>& uvs = mesh.further_uvs[set];
       if (uvs.empty()) continue;
-      each_vertex(mesh, meshes[i].first_vertex, [&](std::size_t vertex, std::size_t from) {
+      each_vertex(mesh, placed.first_vertex, [&](std::size_t vertex, std::size_t from) {
         float* to = &table[2 * (vertex * sets + set)];
         to[0] = uvs[from].x;
         to[1] = uvs[from].y;
       });
     }
-  }
-  out.extra_uvs = std::move(table);
+  });
+  return table;
 }
 
-bool takes_vertex_colors(const SceneFeatures& features) {
-  return (features.texture_kinds >> TEXTURE_VERTEX_COLOR & 1u) != 0;
-}
-
-void add_vertex_alphas(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
-                       CompiledScene& out) {
-  if (!takes_vertex_colors(out.features)) return;
-  std::vector<float> table(out.vertices.size(), 1.0f);
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const Mesh& mesh = scene.meshes[i];
-    if (!meshes[i].used || mesh.alphas.empty()) continue;
-    each_vertex(mesh, meshes[i].first_vertex,
+SharedTable<float> vertex_alphas(const MappingInputs& in) {
+  if (!in.vertex_colors) return {};
+  std::vector<float> table(in.meshes->vertices.size(), 1.0f);
+  for_each_mesh(in, [&](const Mesh& mesh, const PlacedMesh& placed) {
+    if (mesh.alphas.empty()) return;
+    each_vertex(mesh, placed.first_vertex,
                 [&](std::size_t vertex, std::size_t from) { table[vertex] = mesh.alphas[from]; });
-  }
-  out.vertex_alphas = std::move(table);
+  });
+  return table;
 }
 
 }  // namespace sundog

@@ -47,7 +47,7 @@ dvec3 unit_direction(const NamedLight& named) {
   const dvec3& direction = named.light.direction;
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length))
-    throw SceneError(named.scene.file.string(), named.place + "/direction",
+    throw SceneError(named.file, named.place + "/direction",
                      fmt::format("wanted a direction, found ({}, {}, {}); give the way the light travels",
                                  direction.x, direction.y, direction.z));
   return direction / length;

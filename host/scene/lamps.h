@@ -9,7 +9,7 @@ namespace sundog {
 
 /// A light and its place in the scene file, for messages.
 struct NamedLight {
-  const SceneDescription& scene;
+  const std::string& file;
   const LightDescription& light;
   const std::string& place;
 };

@@ -20,7 +20,7 @@
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/names.h"
-#include "compile/environment.h"
+#include "compile/parts/steps.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -84,9 +84,8 @@ class SkyPicture {
  public:
   SkyPicture(EnvironmentDescription e, const HaloMap& map) {
     e.sun_azimuth = 0;
-    SceneDescription scene;
-    scene.environment = e;
-    add_environment(scene, flat_, &map);
+    const Halo halo{Halo(), &map};  // owns nothing
+    flat_ = compile_lights({.environment = &e, .halo = {&halo}});
   }
   dvec3 along(const dvec3& d) const {
     const int width = static_cast<int>(flat_.environments[0].width),
@@ -100,7 +99,7 @@ class SkyPicture {
   }
 
  private:
-  CompiledScene flat_;
+  Lights flat_;
 };
 
 Image picture_of(const HaloOptions& options, const EnvironmentDescription& e, const HaloMap& map, int rows) {

@@ -221,15 +221,15 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
   return to;
 }
 
-void add_layers(const SceneDescription& scene, CompiledScene& out) {
-  if (std::ranges::none_of(scene.materials, [&](const MaterialDescription& m) {
-        return surface_for(scene, m).layers.has_value();
+void add_layers(const SurfaceInputs& in, Surfaces& out) {
+  if (std::ranges::none_of(in.materials, [&](const MaterialDescription& m) {
+        return surface_for(in.paths, m).layers.has_value();
       }))
     return;
   LayerRows rows;
   std::vector<Layers> layers;
-  for (const MaterialDescription& any : scene.materials) {
-    const MaterialDescription& material = surface_for(scene, any);
+  for (const MaterialDescription& any : in.materials) {
+    const MaterialDescription& material = surface_for(in.paths, any);
     const MaterialTextures& textures = material.textures;
     layers.push_back(material.layers ? make_layers(*material.layers, textures, rows) : Layers{});
     if (!material.layers) continue;

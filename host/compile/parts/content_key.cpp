@@ -1,6 +1,8 @@
 // See content_key.h. A key takes all members of a struct, in their order, but those that are named here.
 #include "compile/parts/content_key.h"
 
+#include "compile/parts/steps.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -42,7 +44,7 @@ template <class T>
 concept Plain = NumberOrEnum<T> || requires { T::length(); };  // without bytes that do not count
 
 void add_member(KeyMaker& key, const Image& image) {
-  key.add_each(image.width, image.height, image.channels, image.data.size());
+  key.add(image.width).add(image.height).add(image.channels).add(image.data.size());
   key.bytes(image.data.data(), image.data.size() * sizeof image.data[0]);
 }
 
@@ -119,7 +121,7 @@ KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
 
 KeyMaker& KeyMaker::add_halo(const EnvironmentDescription& environment) {
   add_members(*this, environment.halo, environment.halo.optical_depth);
-  return add_each(environment.sun_altitude, environment.sun_size);
+  return add(environment.sun_altitude).add(environment.sun_size);
 }
 
 KeyMaker& KeyMaker::add(const MediumDescription& medium) {
@@ -165,5 +167,32 @@ KeyMaker& KeyMaker::add(const SdfDescription& field) {
   add_members(*this, field, field.name);
   return *this;
 }
+
+KeyMaker& KeyMaker::add(const Object& object) {
+  add_members(*this, object, object.name, object.place, object.light);  // lights are given rows later
+  return *this;
+}
+
+ContentKey key_of(const HaloInputs& inputs) {
+  KeyMaker key;
+  key.add(inputs.environment->type);
+  if (inputs.environment->type == EnvironmentType::halo) key.add_halo(*inputs.environment);
+  return key.key();
+}
+
+#define SUNDOG_KEY_OF(Inputs)               \
+  ContentKey key_of(const Inputs& inputs) { \
+    KeyMaker key;                           \
+    add_members(key, inputs);               \
+    return key.key();                       \
+  }
+SUNDOG_KEY_OF(LightInputs)
+SUNDOG_KEY_OF(SurfaceInputs)
+SUNDOG_KEY_OF(MeshInputs)
+SUNDOG_KEY_OF(MappingInputs)
+SUNDOG_KEY_OF(InstanceInputs)
+SUNDOG_KEY_OF(TouchingInputs)
+SUNDOG_KEY_OF(FieldInputs)
+#undef SUNDOG_KEY_OF
 
 }  // namespace sundog

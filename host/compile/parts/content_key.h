@@ -16,6 +16,23 @@ struct ContentKey {
   friend bool operator==(const ContentKey&, const ContentKey&) = default;
 };
 
+/// An earlier step's result as an input of a later one; the key of what it was made of stands for it.
+template <class T>
+struct Known {
+  const T* value = nullptr;
+  ContentKey key{};
+  const T& operator*() const { return *value; }
+  const T* operator->() const { return value; }
+};
+
+/// An input that no key counts: it appears in messages alone, or the key of another input stands for it.
+template <class T>
+struct Unkeyed {
+  T value{};
+  const T& operator*() const { return value; }
+  const T* operator->() const { return &value; }
+};
+
 template <class T>
 concept NumberOrEnum = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
@@ -30,6 +47,14 @@ class KeyMaker {
   }
   KeyMaker& add(std::string_view text);
   KeyMaker& add(const ContentKey& key) { return add(key.a).add(key.b); }
+  template <class T>
+  KeyMaker& add(const Known<T>& result) {
+    return add(result.key);
+  }
+  template <class T>
+  KeyMaker& add(const Unkeyed<T>&) {
+    return *this;
+  }
   template <glm::length_t N, class T>
   KeyMaker& add(const glm::vec<N, T>& v) {
     return bytes(&v, sizeof v);
@@ -53,19 +78,7 @@ class KeyMaker {
   KeyMaker& add(const Shape& shape);
   KeyMaker& add(const SdfDescription& field);
   KeyMaker& add(const SdfNode& node);
-
-  template <class T>
-  KeyMaker& add_all(const T& list) {
-    add(std::size(list));
-    for (const auto& item : list) add(item);
-    return *this;
-  }
-  /// Adds all arguments in order.
-  template <class... T>
-  KeyMaker& add_each(const T&... values) {
-    (add(values), ...);
-    return *this;
-  }
+  KeyMaker& add(const Object& object);
 
   ContentKey key() const;
 

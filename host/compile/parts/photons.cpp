@@ -176,24 +176,24 @@ constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of 
 
 }  // namespace
 
-void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> boxes, CompiledScene& out) {
-  if (!scene.render.caustics || !traces_paths(scene.render.integrator) || out.lights.empty()) return;
-  const std::vector<float4> balls = find_balls(scene, boxes, out);
+Photons plan_photons(const SceneDescription& description, std::span<const Bounds> boxes,
+                     const CompiledScene& scene) {
+  const RenderSettings& settings = description.render;
+  if (!settings.caustics || !traces_paths(settings.integrator) || scene.lights.empty()) return {};
+  const std::vector<float4> balls = find_balls(description, boxes, scene);
   if (balls.size() < 2 || std::ranges::all_of(balls, [](const float4& ball) { return !(ball.w > 0); }))
-    return;
-  std::vector<float> shares = share_photons(balls, out);
-  if (shares.empty()) return;
-  out.photon_lights = std::move(shares);
+    return {};
+  std::vector<float> shares = share_photons(balls, scene);
+  if (shares.empty()) return {};
   std::vector<PhotonTarget> targets = share_balls(balls);
-  append_planes(scene, out, targets);
-  out.photon_targets = std::move(targets);
-  out.photons_by.count = static_cast<u32>(scene.render.photons);
+  append_planes(description, scene, targets);
   const double radius =
-      scene.render.photon_radius > 0 ? scene.render.photon_radius : usual_radius(balls, scene.render.photons);
-  out.photons_by.radius = std::max(radius, least_radius);
-  out.photons_by.lights_inside =
-      std::ranges::any_of(out.lights, [&](const Light& light) { return may_be_inside(light, boxes, out); });
-  out.features.caustics = true;
+      settings.photon_radius > 0 ? settings.photon_radius : usual_radius(balls, settings.photons);
+  const bool inside = std::ranges::any_of(
+      scene.lights, [&](const Light& light) { return may_be_inside(light, boxes, scene); });
+  return {std::move(targets),
+          std::move(shares),
+          {static_cast<u32>(settings.photons), std::max(radius, least_radius), inside}};
 }
 
 }  // namespace sundog

@@ -6,9 +6,15 @@
 
 namespace sundog {
 
-/// Fills `out.photon_targets` and `out.photon_lights` and sets the feature, for path tracing with caustics in
-/// a scene with lights and smooth reflecting or refracting objects; else does nothing. `boxes`: one per
-/// instance of `out`, whose lights must be complete.
-void add_photon_targets(const SceneDescription& scene, std::span<const Bounds> boxes, CompiledScene& out);
+struct Photons {
+  SharedTable<PhotonTarget> targets;
+  SharedTable<float> lights;
+  PhotonPlan plan;
+};
+
+/// For path tracing with caustics in a scene with lights and smooth reflecting or refracting objects; else
+/// nothing. `boxes`: one per instance of `scene`, whose other tables must be complete.
+Photons plan_photons(const SceneDescription& description, std::span<const Bounds> boxes,
+                     const CompiledScene& scene);
 
 }  // namespace sundog

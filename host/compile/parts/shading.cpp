@@ -6,9 +6,9 @@
 #include "compile/halo/halo_map.h"
 #include "compile/layers/layers.h"
 #include "compile/materials.h"
-#include "compile/parts/parts.h"
+#include "compile/parts/steps.h"
 #include "compile/textures.h"
-#include "scene/integrators.h"
+#include "scene/pack.h"
 
 namespace sundog {
 namespace {
@@ -31,56 +31,32 @@ bool has_fractional_exponent(const Material& material) {
 
 }  // namespace
 
-ContentKey lights_key(const SceneDescription& scene, const dvec3& origin) {
-  KeyMaker key;
-  key.add(origin).add_all(scene.lights).add(scene.environment);
-  return key.add(scene.fog.color).add(scene.fog.density).add(fog_scatters(scene)).key();
+Halo compile_halo(const HaloInputs& in) {
+  const EnvironmentDescription& e = *in.environment;
+  if (e.type != EnvironmentType::halo) return nullptr;
+  return e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
 }
 
-ContentKey halo_key(const SceneDescription& scene) {
-  KeyMaker key;
-  key.add(scene.environment.type);
-  if (scene.environment.type == EnvironmentType::halo) key.add_halo(scene.environment);
-  return key.key();
+Lights compile_lights(const LightInputs& in) {
+  Lights lights;
+  add_lights(in, lights);
+  add_environment(in, lights);
+  lights.fog = pack(in.fog_color, in.fog_density);
+  lights.features.fog = in.fog_density > 0;
+  return lights;
 }
 
-HaloPart make_halo(const SceneDescription& scene) {
-  HaloPart part;
-  const EnvironmentDescription& e = scene.environment;
-  if (e.type == EnvironmentType::halo)
-    part.map = e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
-  return part;
-}
-
-ScenePart make_lights(const SceneDescription& scene, const dvec3& origin, const HaloPart& halo) {
-  ScenePart part;
-  part.made.origin = origin;
-  add_lights(scene, part.made);
-  add_environment(scene, part.made, halo.map.get());
-  add_fog(scene, part.made);
-  return part;
-}
-
-ContentKey surfaces_key(const SceneDescription& scene) {
-  KeyMaker key;
-  key.add_all(scene.media).add_all(scene.images).add_all(scene.textures).add_all(scene.materials);
-  if (fog_scatters(scene)) key.add(scene.fog.color).add(scene.fog.density).add(*scene.fog.anisotropy);
-  key.add(scene.render.caustics);
-  return key.add(lacks_materials(scene)).add(traces_paths(scene.render.integrator)).key();
-}
-
-SurfacesPart make_surfaces(const SceneDescription& scene) {
-  SurfacesPart part;
-  CompiledScene& made = part.made;
-  part.default_material = add_materials(scene, made);
-  add_textures(scene, made);
-  add_layers(scene, made);
-  made.features.media = absorbs(made.media[0]);
-  made.features.absorption = std::ranges::any_of(made.media, absorbs);
-  made.features.scattering =
-      traces_paths(scene.render.integrator) && std::ranges::any_of(made.media, scatters);
-  made.features.fractional_exponents = std::ranges::any_of(made.materials, has_fractional_exponent);
-  return part;
+Surfaces compile_surfaces(const SurfaceInputs& in) {
+  Surfaces surfaces;
+  SceneFeatures& features = surfaces.features;
+  surfaces.default_material = add_materials(in, surfaces);
+  add_textures(in, surfaces);
+  add_layers(in, surfaces);
+  features.media = absorbs(surfaces.media[0]);
+  features.absorption = std::ranges::any_of(surfaces.media, absorbs);
+  features.scattering = in.paths && std::ranges::any_of(surfaces.media, scatters);
+  features.fractional_exponents = std::ranges::any_of(surfaces.materials, has_fractional_exponent);
+  return surfaces;
 }
 
 }  // namespace sundog

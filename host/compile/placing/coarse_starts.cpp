@@ -91,7 +91,7 @@ std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec
   std::vector<CoarseStart> found;
   for (const Object& object : scene.objects) {
     if (std::holds_alternative<FieldShape>(object.shape)) continue;
-    const UnitShape unit = unit_shape(scene, object);
+    const UnitShape unit = unit_shape(scene.file.string(), object);
     const Seen seen(glm::scale(object.world_from_object, unit.scale), camera.position, origin);
     CoarseStart start;
     if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {

@@ -15,7 +15,6 @@
 #include "compile/placing/motion.h"
 #include "compile/shapes.h"
 #include "compile/textures.h"
-#include "compile/touching/touching.h"
 
 namespace sundog {
 namespace {
@@ -32,15 +31,15 @@ struct Placed {
   bool bounded() const { return instance.shape != SHAPE_PLANE; }
 };
 
-[[noreturn]] void fail_transform(const SceneDescription& scene, const Object& object) {
-  throw SceneError(scene.file.string(), object.place,
+[[noreturn]] void fail_transform(const std::string& file, const Object& object) {
+  throw SceneError(file, object.place,
                    fmt::format("object \"{}\": its transform cannot be inverted in single precision; "
                                "wanted scales that are neither zero nor extreme",
                                object.name));
 }
 
 /// Stores the inverse of `world_from_unit`; returns the transform that kernels effectively use.
-dmat4 set_transform(const SceneDescription& scene, const Object& object, const dmat4& world_from_unit,
+dmat4 set_transform(const std::string& file, const Object& object, const dmat4& world_from_unit,
                     Instance& instance) {
   const bool identity = world_from_unit == dmat4(1) && !object.moves();
   if (identity) instance.flags |= INSTANCE_IDENTITY;
@@ -50,7 +49,7 @@ dmat4 set_transform(const SceneDescription& scene, const Object& object, const d
     std::array<float, 4> values;
     for (int column = 0; column < 4; ++column) {
       const auto value = static_cast<float>(inverse[column][row]);
-      if (!std::isfinite(value)) fail_transform(scene, object);
+      if (!std::isfinite(value)) fail_transform(file, object);
       values[static_cast<std::size_t>(column)] = value;
       used[column][row] = double(value);
     }
@@ -63,11 +62,11 @@ dmat4 set_transform(const SceneDescription& scene, const Object& object, const d
   const dmat4 back = glm::inverse(used);
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row)
-      if (!std::isfinite(static_cast<float>(back[column][row]))) fail_transform(scene, object);
+      if (!std::isfinite(static_cast<float>(back[column][row]))) fail_transform(file, object);
   return back;
 }
 
-u32 surface_flags(const Material& material) {
+u32 surface_flags(const SurfaceFacts& material) {
   u32 flags = 0;
   if (material.flags & MATERIAL_TRANSMITS && !(material.flags & MATERIAL_SHADOW_OPAQUE))
     flags |= INSTANCE_FILTERS;
@@ -76,7 +75,7 @@ u32 surface_flags(const Material& material) {
 }
 
 /// A field's interval, rounded outwards.
-Bounds interval_of(const SdfDescription& field) {
+Bounds interval_of(const FieldInterval& field) {
   Bounds box = Bounds::none();
   for (int axis = 0; axis < 3; ++axis) {
     const auto lower = static_cast<float>(field.lower[axis]), upper = static_cast<float>(field.upper[axis]);
@@ -97,19 +96,17 @@ double checker_size(const SceneDescription& scene, const Object& object) {
 /// Converts objects to instances, and notes the kernel features that their materials need.
 class Placer {
  public:
-  Placer(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes, u32 default_material,
-         CompiledScene& out)
-      : scene_(scene), meshes_(meshes), default_material_(default_material), out_(out) {}
+  Placer(const InstanceInputs& in, Instances& out) : in_(in), out_(out) {}
 
   Placed place(const Object& object, u32 index) {
     Placed placed;
     Instance& instance = placed.instance;
-    UnitShape unit = unit_shape(scene_, object);
+    UnitShape unit = unit_shape(*in_.file, object);
     instance.shape = unit.shape;
     instance.parameters = unit.parameters;
     instance.object = index;
     const auto* shape = std::get_if<MeshShape>(&object.shape);
-    const PlacedMesh* mesh = shape ? &meshes_[static_cast<std::size_t>(shape->mesh)] : nullptr;
+    const PlacedMesh* mesh = shape ? &in_.meshes->placed[static_cast<std::size_t>(shape->mesh)] : nullptr;
     if (mesh) unit.scale = dvec3(mesh->unit);
     const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(object.world_from_object))));
     instance.pattern_scale = {static_cast<float>(unit.scale.x), static_cast<float>(unit.scale.y),
@@ -125,7 +122,7 @@ class Placer {
     if (mesh) boxes = mesh->boxes;
     if (const auto* field = std::get_if<FieldShape>(&object.shape)) {
       instance.root = static_cast<u32>(field->field);
-      interval = interval_of(scene_.fields[static_cast<std::size_t>(field->field)]);
+      interval = interval_of(in_.fields[static_cast<std::size_t>(field->field)]);
       boxes = {&interval, 1};
     }
     set_surface(object, mesh, instance);
@@ -137,13 +134,14 @@ class Placer {
   void set_place(const Object& object, const UnitShape& unit, std::span<const Bounds> boxes, Placed& placed) {
     const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
     dmat4 local_from_object = object.world_from_object;
-    local_from_object[3] -= glm::dvec4(out_.origin, 0);
-    if (!placed.bounded()) local_from_object = place_of_plane(scene_, object, out_.origin);
-    const dmat4 world_from_unit = set_transform(scene_, object, local_from_object * scale, placed.instance);
+    local_from_object[3] -= glm::dvec4(in_.origin, 0);
+    if (!placed.bounded()) local_from_object = in_.planes[planes_++];
+    const dmat4 world_from_unit =
+        set_transform(*in_.file, object, local_from_object * scale, placed.instance);
     if (object.moves()) set_motion(object, placed);
     if (!placed.bounded()) return;
     const bool exact = placed.instance.flags & INSTANCE_IDENTITY;
-    placed.box = object.moves() ? moving_bounds(object, unit, boxes, world_from_unit, out_.origin)
+    placed.box = object.moves() ? moving_bounds(object, unit, boxes, world_from_unit, in_.origin)
                                 : world_bounds(unit, boxes, world_from_unit, exact);
     placed.instance.world_center = sphere_around(placed.box);
     const bool solid = unit.shape != SHAPE_MESH && unit.shape != SHAPE_SDF;
@@ -151,7 +149,7 @@ class Placer {
   }
 
   void set_motion(const Object& object, Placed& placed) {
-    placed.moves = add_motion(scene_, object, out_.origin, out_.turns.edit());
+    placed.moves = add_motion(*in_.file, object, in_.origin, out_.turns.edit());
     out_.features.object_motion = true;
     out_.features.turns |= !object.turns.empty();
   }
@@ -163,32 +161,30 @@ class Placer {
       for (const u32 material : mesh->materials) use(material, instance);
       return;
     }
-    if (object.material < 0) instance.material = default_material_;
+    if (object.material < 0) instance.material = in_.default_material;
     use(instance.material, instance);
   }
 
   void use(u32 index, Instance& instance) {
-    const Material& material = out_.materials.at(index);
+    const SurfaceFacts& material = in_.surfaces.at(index);
     const u32 flags = surface_flags(material);
     instance.flags |= flags;
     if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS)) out_.features.secondary_rays = true;
-    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS) && material.reflection.w > 0)
+    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS) && material.rough)
       out_.features.rough = true;
-    if (material.kind == MATERIAL_DIELECTRIC && material.flags & MATERIAL_TRANSMITS &&
-        material.reflection.w > 0 && !(material.flags & MATERIAL_THIN))
+    if (material.kind == MATERIAL_DIELECTRIC && material.flags & MATERIAL_TRANSMITS && material.rough &&
+        !(material.flags & MATERIAL_THIN))
       out_.features.rough_glass = true;
     if (material.flags & (MATERIAL_WALL | MATERIAL_FROSTED)) out_.features.thin_walls = true;
-    const float4& shines = material.emission;
-    if (shines.x != 0 || shines.y != 0 || shines.z != 0) out_.features.emission = true;
+    if (material.shines) out_.features.emission = true;
     if (flags & INSTANCE_TRANSMITS) out_.features.media = true;
     if (flags & INSTANCE_TRANSMITS && instance.shape == SHAPE_SDF) out_.features.two_sided_fields = true;
     if (flags & INSTANCE_FILTERS) out_.features.shadow_filters = true;
   }
 
-  const SceneDescription& scene_;
-  const std::vector<PlacedMesh>& meshes_;
-  u32 default_material_;
-  CompiledScene& out_;
+  const InstanceInputs& in_;
+  Instances& out_;
+  std::size_t planes_ = 0;  // placed so far
 };
 
 /// Whether the camera may be inside this solid with a medium.
@@ -241,7 +237,7 @@ std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
 }
 
 /// Builds the scene BVH over the bounded instances, and sorts them in leaf order.
-void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_stack) {
+void add_scene_bvh(std::vector<Placed>& bounded, Instances& out, u32 mesh_stack) {
   const std::vector<Ref> refs = refs_of(bounded);
   WideBvhSettings settings;
   settings.block_width = 1;
@@ -278,10 +274,10 @@ void add_scene_bvh(std::vector<Placed>& bounded, CompiledScene& out, u32 mesh_st
     nodes.push_back(node);
   }
 
-  out.info.tlas_root = alone ? BVH_LEAF : root;
-  out.info.bounded_count = static_cast<u32>(bounded.size());
+  out.tlas_root = alone ? BVH_LEAF : root;
+  out.bounded_count = static_cast<u32>(bounded.size());
   out.features.bvh_stack = std::max(1u, stack_need(tree.nodes, 0) + mesh_stack);
-  out.figures.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
+  out.sah_cost = expected_cost(tree.nodes, 0, [&](u32 first, u32 count) {
     double sum = 0;
     for (u32 i = first; i < first + count; ++i) sum += bounded[i].cost;
     return sum;
@@ -326,15 +322,16 @@ dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const 
   return result;
 }
 
-std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vector<PlacedMesh>& meshes,
-                                  u32 default_material, CompiledScene& out) {
+Instances compile_instances(const InstanceInputs& in) {
+  Instances out;
+  out.nodes = in.meshes->nodes;
   std::vector<Placed> bounded, following, unbounded, fields;
   u32 mesh_stack = 0;
-  Placer placer(scene, meshes, default_material, out);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const Object& object = scene.objects[i];
+  Placer placer(in, out);
+  for (std::size_t i = 0; i < in.objects.size(); ++i) {
+    const Object& object = in.objects[i];
     if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
-      const PlacedMesh& mesh = meshes[static_cast<std::size_t>(shape->mesh)];
+      const PlacedMesh& mesh = in.meshes->placed[static_cast<std::size_t>(shape->mesh)];
       if (mesh.triangle_count == 0) continue;
       mesh_stack = std::max(mesh_stack, mesh.stack);
     }
@@ -347,37 +344,29 @@ std::vector<Bounds> add_instances(const SceneDescription& scene, const std::vect
         .push_back(placed);
   }
   join_sharing(std::move(following), bounded);
-  for (const Placed& placed : bounded) out.figures.box.extend(box_of_all(placed));
-  out.info.scene_center = bounded.empty() ? float4{} : sphere_around(out.figures.box);
-  const std::vector<Placed> large = take_large_solids(bounded, out.figures.box);
+  for (const Placed& placed : bounded) out.box.extend(box_of_all(placed));
+  out.scene_center = bounded.empty() ? float4{} : sphere_around(out.box);
+  const std::vector<Placed> large = take_large_solids(bounded, out.box);
   add_scene_bvh(bounded, out, mesh_stack);
   std::vector<Instance> instances;
   std::vector<float4> moves;
-  std::vector<Bounds> boxes;
   const auto append = [&](const std::vector<Placed>& list) {
     for (const Placed& placed : list) {
       instances.push_back(placed.instance);
       moves.push_back(placed.moves);
-      boxes.push_back(placed.box);
+      out.boxes.push_back(placed.box);
     }
   };
   append(bounded);
   append(large);
   append(unbounded);
-  out.info.instance_count = static_cast<u32>(instances.size());
+  out.instance_count = static_cast<u32>(instances.size());
   append(fields);
-  out.info.field_end = static_cast<u32>(instances.size());
+  out.field_end = static_cast<u32>(instances.size());
   out.instances = std::move(instances);
   if (out.features.object_motion) out.moves = std::move(moves);
   out.features.unbounded = !unbounded.empty();
-  return boxes;
-}
-
-void find_touching(const SceneDescription& scene, const std::vector<Bounds>& boxes, CompiledScene& out) {
-  std::vector<PlacedBody> bodies;
-  std::vector<Instance>& instances = out.instances.edit();
-  for (std::size_t i = 0; i < out.info.instance_count; ++i) bodies.push_back({&instances[i], boxes[i]});
-  mark_touching(scene, bodies, out.origin, out.features);
+  return out;
 }
 
 bool is_camera_inside(const dvec3& camera, std::span<const Instance> instances,

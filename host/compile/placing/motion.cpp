@@ -133,10 +133,10 @@ Bounds moving_bounds(const Object& object, const UnitShape& unit, std::span<cons
   return box;
 }
 
-float4 add_motion(const SceneDescription& scene, const Object& object, const dvec3& origin,
+float4 add_motion(const std::string& file, const Object& object, const dvec3& origin,
                   std::vector<Turn>& turns) {
   const auto fail = [&](std::string_view key, std::string_view wanted) {
-    throw SceneError(scene.file.string(), object.place + std::string(key), std::string(wanted));
+    throw SceneError(file, object.place + std::string(key), std::string(wanted));
   };
   float4 moves = pack(object.moves_by);
   if (!holds(moves)) fail("/moves_by", "wanted a move that single precision holds");

@@ -19,7 +19,7 @@ Bounds moving_bounds(const Object& object, const UnitShape& unit, std::span<cons
 
 /// Appends the object's turns. Returns its row of the table `moves`. Throws SceneError for numbers outside
 /// the range of floats.
-float4 add_motion(const SceneDescription& scene, const Object& object, const dvec3& origin,
+float4 add_motion(const std::string& file, const Object& object, const dvec3& origin,
                   std::vector<Turn>& turns);
 
 }  // namespace sundog

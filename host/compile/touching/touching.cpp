@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "compile/parts/steps.h"
 #include "compile/shapes.h"
 #include "compile/touching/box_tree.h"
 #include "compile/touching/round_surfaces.h"
@@ -66,20 +67,20 @@ Face place(const FlatFace& flat, const dmat4& world_from_unit) {
   return face;
 }
 
-Body make_body(const SceneDescription& scene, const PlacedBody& placed, const dvec3& origin) {
-  const Object& object = scene.objects[placed.instance->object];
-  Body body{placed.instance,
-            placed.box,
-            unit_shape(scene, object),
+Body make_body(const TouchingInputs& in, Instance& instance, const Bounds& box) {
+  const Object& object = (*in.objects)[instance.object];
+  Body body{&instance,
+            box,
+            unit_shape(*in.file, object),
             object.world_from_object,
             nullptr,
             0,
-            (placed.instance->flags & INSTANCE_TRANSMITS) != 0,
-            placed.instance->shape == SHAPE_PLANE,
+            (instance.flags & INSTANCE_TRANSMITS) != 0,
+            instance.shape == SHAPE_PLANE,
             {}};
   if (const auto* shape = std::get_if<MeshShape>(&object.shape))
-    body.mesh = &scene.meshes[static_cast<std::size_t>(shape->mesh)];
-  body.world_from_unit[3] -= glm::dvec4(origin, 0);
+    body.mesh = &(*in.meshes)[static_cast<std::size_t>(shape->mesh)];
+  body.world_from_unit[3] -= glm::dvec4(*in.origin, 0);
   const dvec3& s = body.unit.scale;
   body.world_from_unit = body.world_from_unit * dmat4(glm::dmat3(s.x, 0, 0, 0, s.y, 0, 0, 0, s.z));
   if (body.plane)
@@ -168,9 +169,10 @@ bool touch(const Body& a, const Body& b, double tolerance) {
 /// Marks bodies as it finds them.
 class Search {
  public:
-  Search(const SceneDescription& scene, std::span<PlacedBody> placed, const dvec3& origin) {
-    camera_ = camera_reach(scene, origin);
-    for (const PlacedBody& body : placed) bodies_.push_back(make_body(scene, body, origin));
+  /// `instances`: those to mark.
+  Search(const TouchingInputs& in, std::span<Instance> instances) : camera_(in.camera_reach) {
+    for (std::size_t i = 0; i < in.instances->instance_count; ++i)
+      bodies_.push_back(make_body(in, instances[i], in.instances->boxes[i]));
   }
 
   bool run() {
@@ -224,7 +226,7 @@ class Search {
 
   std::vector<Body> bodies_;
   std::map<const Mesh*, bool> within_;
-  double camera_ = 0;
+  double camera_;
   bool found_ = false;
 };
 
@@ -236,9 +238,11 @@ double camera_reach(const SceneDescription& scene, const dvec3& origin) {
   return reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 0;
 }
 
-void mark_touching(const SceneDescription& scene, std::span<PlacedBody> bodies, const dvec3& origin,
-                   SceneFeatures& features) {
-  features.touching = Search(scene, bodies, origin).run();
+Touching compile_touching(const TouchingInputs& in) {
+  Touching out;
+  out.instances = in.instances->instances;
+  out.any = Search(in, out.instances.edit()).run();
+  return out;
 }
 
 }  // namespace sundog

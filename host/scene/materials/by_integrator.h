@@ -2,16 +2,13 @@
 #pragma once
 #include <memory>
 
-#include "scene/description.h"
-#include "scene/integrators.h"
+#include "models/values/material.h"
 
 namespace sundog {
 
-/// The variant of a material for the scene's integrator.
-inline const MaterialDescription& surface_for(const SceneDescription& scene,
-                                              const MaterialDescription& material) {
-  const bool other = material.by_paths && traces_paths(scene.render.integrator);
-  return other ? *material.by_paths : material;
+/// The variant of a material for path tracing or the classical integrator.
+inline const MaterialDescription& surface_for(bool paths, const MaterialDescription& material) {
+  return material.by_paths && paths ? *material.by_paths : material;
 }
 
 /// Calls change(material) for every variant of a material.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "compile/materials.h"
+#include "compile/parts/steps.h"
 #include "devices.h"
 #include "every_kind.h"
 #include "scene/kinds.h"
@@ -82,13 +82,7 @@ std::vector<Estimate> estimate(const DeviceInfo& info, const std::vector<Lit>& l
 }
 
 /// The light as kernels see it.
-Light pack(const LightDescription& light) {
-  SceneDescription scene;
-  scene.lights.push_back(light);
-  CompiledScene flat;
-  add_lights(scene, flat);
-  return flat.lights.at(0);
-}
+Light pack(const LightDescription& light) { return compile_lights({.lights = {&light, 1}}).lights.at(0); }
 
 float4 pack(const dvec3& v) { return {float(v.x), float(v.y), float(v.z), 0}; }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "compile/environment.h"
+#include "compile/parts/steps.h"
 #include "device/choice.h"
 #include "devices.h"
 #include "scenes.h"
@@ -62,10 +62,7 @@ __kernel void draw(__global const Environment* environments, __global const floa
 )";
 
 std::vector<float4> draw(const DeviceInfo& info, const EnvironmentDescription& e, u32 lanes = 1) {
-  SceneDescription scene;
-  scene.environment = e;
-  CompiledScene flat;
-  add_environment(scene, flat);
+  const Lights flat = compile_lights({.environment = &e});
   Device device(info);
   const KernelDefines defines{{"TILE_W", lanes == 1 ? "1" : "4"},
                               {"TILE_H", lanes == 1 ? "1" : "4"},

@@ -147,7 +147,12 @@ double greatest_difference(const float4& a, const dvec4& b) {
 void cut_into_pages(u32 least, CompiledScene& flat) {
   const SharedTable<u32> texels = flat.texels0;
   const std::size_t bytes = texels.size() * sizeof(u32);
-  const TexelPages pages = add_texel_pages(bytes / TEXEL_UNIT, least, flat);
+  TexelTables made = make_texel_tables(bytes / TEXEL_UNIT, least);
+  const TexelPages pages = made.pages;
+  flat.info.texel_page = static_cast<u32>(pages.units);
+  flat.features.texel_pages = made.several;
+  flat.texels0 = made.tables[0], flat.texels1 = made.tables[1];
+  flat.texels2 = made.tables[2], flat.texels3 = made.tables[3];
   REQUIRE_FALSE(flat.texels1.empty());
   const std::size_t page = pages.units * TEXEL_UNIT;
   for (std::size_t i = 0; i * page < bytes; ++i)

@@ -23,10 +23,9 @@ bool is_listed(const json& list, const json& item) {
 }
 
 UnitShape unit_of(const Shape& shape) {
-  SceneDescription scene;
   Object object;
   object.shape = shape;
-  return unit_shape(scene, object);
+  return unit_shape("", object);
 }
 
 bool is_open(const Shape& shape) {

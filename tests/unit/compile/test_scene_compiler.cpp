@@ -223,6 +223,27 @@ TEST_CASE("a material's edit makes nothing but the surfaces, in scenes with medi
   }
 }
 
+TEST_CASE("instances notice each fact of a material that they read") {
+  SceneCompiler compiler;
+  SceneDescription scene = shipped("spheres");
+  scene.media.emplace_back().ior = 1.5;
+  MaterialDescription& material = scene.materials[static_cast<std::size_t>(scene.objects[0].material)];
+  material.medium = static_cast<int>(scene.media.size()) - 1;
+  material.transmission = dvec3(0.5);
+  material.roughness = 0.5;
+  const std::vector<std::function<void()>> edits = {[&] { material.type = MaterialType::dielectric; },
+                                                    [&] { material.roughness = 0; },
+                                                    [&] { material.roughness = 0.5, material.medium = -1; },
+                                                    [&] { material.wall_ior = 1.5; },
+                                                    [&] { material.emission = dvec3(1); },
+                                                    [&] { scene.render.integrator = "path"; }};
+  for (const auto& edit : edits) {
+    compiler.compile(scene);
+    edit();
+    CHECK(difference(compiler.compile(scene), compile(scene)).empty());
+  }
+}
+
 TEST_CASE("zero and minus zero are different content") {
   SceneCompiler compiler;
   SceneDescription scene = shipped("spheres");

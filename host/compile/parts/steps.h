@@ -1,0 +1,224 @@
+// The steps of compile(): functions from what they read to what they make. An input struct names all that its
+// step reads, and memo() makes a result anew only where the content key of its members changes.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "compile/parts/content_key.h"
+
+namespace sundog {
+
+/// The scene's file, for messages.
+using SceneFile = Unkeyed<std::string>;
+
+struct HaloInputs {
+  const EnvironmentDescription* environment;
+};
+/// The description's own map, or one that is traced; null without a halo.
+using Halo = std::shared_ptr<const HaloMap>;
+Halo compile_halo(const HaloInputs& in);
+
+struct LightInputs {
+  SceneFile file{};
+  dvec3 origin{0};
+  std::span<const LightDescription> lights{};
+  const EnvironmentDescription* environment = nullptr;
+  Known<Halo> halo{};
+  dvec3 fog_color{0};
+  double fog_density = 0;  // of fog that does not scatter
+};
+/// Lights of the scene file, the environment and its sun, with positions relative to the origin.
+struct Lights {
+  SharedTable<Light> lights;
+  SharedTable<LightRay> light_rays;
+  SharedTable<Environment> environments;
+  SharedTable<float4> environment;
+  SharedTable<float> environment_shares;
+  SharedTable<u32> environment_cutpoints;
+  SceneFeatures features;
+  float4 ambient{}, fog{};
+  u32 sees_environment = SEEN_BY_NONE;
+};
+/// Throws SceneError for a zero direction.
+Lights compile_lights(const LightInputs& in);
+
+struct SurfaceInputs {
+  SceneFile file{};
+  bool paths = false, caustics = false;
+  bool lacks_materials = false;  // some object or mesh has none
+  std::span<const MediumDescription> media{};
+  std::span<const ImageDescription> images{};
+  std::span<const TextureDescription> textures{};
+  std::span<const MaterialDescription> materials{};
+  const FogDescription* fog = nullptr;  // that scatters
+};
+struct Surfaces {
+  SharedTable<Medium> media;
+  SharedTable<float> spectra;
+  SharedTable<Material> materials;
+  SharedTable<MaterialMaps> material_maps;
+  SharedTable<TextureNode> texture_nodes;
+  SharedTable<float> texture_values;
+  SharedTable<TexelLevel> texel_levels;
+  SharedTable<u32> texels[TEXEL_PAGES];
+  SharedTable<Layers> layers;
+  SharedTable<float> layer_rows;
+  SceneFeatures features;
+  u32 texel_page = 0;
+  std::string pattern_source;
+  u32 default_material = NO_MATERIAL;  // of objects without one
+};
+/// Equal media are merged, except the world's at 0. Throws SceneError for an unknown texture.
+Surfaces compile_surfaces(const SurfaceInputs& in);
+
+struct MeshInputs {
+  SceneFile file{};
+  bool spatial_splits = false;
+  u32 default_material = NO_MATERIAL;
+  std::size_t material_count = 0;
+  std::vector<const Mesh*> meshes{};               // null: no object places it
+  std::vector<std::vector<std::size_t>> groups{};  // mesh_groups()
+  Unkeyed<std::vector<std::string>> places{};      // of the first object of each mesh
+};
+/// A mesh in the tables, with the facts that its instances need.
+struct PlacedMesh {
+  bool used = false;     // some object places it
+  bool follows = false;  // shares the BVH of the previous mesh in the triangle table
+  double unit = 1;       // unit of the tables' coordinates in mesh units: a power of two
+  u32 root = 0;          // root node of its BVH
+  u32 first_vertex = 0, first_triangle = 0;
+  u32 triangle_count = 0;
+  double cost = 0;             // expected cost of a ray that crosses the BVH's box
+  u32 stack = 0;               // traversal stack entries that the BVH may need
+  std::vector<Bounds> boxes;   // of its root's grandchildren: a tight hull for a rotated instance
+  std::vector<u32> materials;  // of its triangles, without duplicates
+};
+struct Meshes {
+  SharedTable<Bvh8Node> nodes;
+  SharedTable<TriangleBlock> blocks;
+  SharedTable<TriangleShading> triangles;
+  SharedTable<Vertex> vertices;
+  std::vector<PlacedMesh> placed;  // one for each mesh
+  double mean_block_fill = 0;
+};
+/// A mesh whose largest coordinate is beyond 1e11 or below 1e-11 is scaled to about 1, since products of its
+/// edges and transforms would leave a float's range. Throws SceneError for a non-finite or distant vertex,
+/// and for an index out of range.
+Meshes compile_meshes(const MeshInputs& in);
+
+struct MappingInputs {
+  Known<Meshes> meshes{};
+  Unkeyed<std::vector<const Mesh*>> sources{};
+  u32 extra_uvs = 0;  // sets of texture coordinates beside the first
+  bool relief = false, vertex_colors = false;
+};
+/// Further texture coordinates, alpha and tangents that textures need.
+struct Mapping {
+  SharedTable<float> extra_uvs;
+  SharedTable<float> vertex_alphas;
+  SharedTable<u32> tangents;
+};
+Mapping compile_mapping(const MappingInputs& in);
+
+/// A material's facts that instances depend on.
+struct SurfaceFacts {
+  u32 flags, kind;
+  bool rough, shines;
+};
+struct FieldInterval {
+  dvec3 lower, upper;
+};
+struct InstanceInputs {
+  SceneFile file{};
+  dvec3 origin{0};
+  Known<Meshes> meshes{};
+  u32 default_material = NO_MATERIAL;
+  std::span<const Object> objects{};
+  std::vector<FieldInterval> fields{};
+  std::vector<dmat4> planes{};  // place_of_plane() of each plane among the objects
+  std::vector<SurfaceFacts> surfaces{};
+};
+/// Bounded instances come first, in leaf order, then planes, then fields, which are not in the scene's BVH.
+/// Meshes without triangles have none.
+struct Instances {
+  SharedTable<Bvh8Node> nodes;  // those of meshes, and of the tree over instances
+  SharedTable<Instance> instances;
+  SharedTable<float4> moves;
+  SharedTable<Turn> turns;
+  SceneFeatures features;
+  std::vector<Bounds> boxes;  // one for each instance
+  u32 tlas_root = 0, bounded_count = 0, instance_count = 0, field_end = 0;
+  float4 scene_center{};
+  double sah_cost = 0;
+  Bounds box = Bounds::none();
+};
+/// Throws SceneError for a transform that is not invertible in single precision.
+Instances compile_instances(const InstanceInputs& in);
+
+struct TouchingInputs {
+  Known<Instances> instances{};
+  double camera_reach = 0;  // camera_reach(): rounding at the camera
+  SceneFile file{};
+  Unkeyed<dvec3> origin{};
+  Unkeyed<std::span<const Object>> objects{};
+  Unkeyed<std::span<const Mesh>> meshes{};
+};
+/// Instances with marks on those that touch others.
+struct Touching {
+  SharedTable<Instance> instances;
+  bool any = false;
+};
+Touching compile_touching(const TouchingInputs& in);
+
+/// `fields` as the camera sees them. In a deep view each field that an object places is compiled by itself,
+/// relative to the tables' origin: `fields` has one for each, in the order of their instances.
+struct FieldInputs {
+  SceneFile file{};
+  bool paths = false, deep = false;
+  std::vector<SdfDescription> fields{};
+  // Of deep views:
+  Known<SharedTable<Instance>> instances{};
+  dvec3 origin{0};
+  Unkeyed<u32> first_instance{};  // of fields
+  Unkeyed<std::span<const Object>> objects{};
+};
+struct Fields {
+  std::string source;  // generated/sdf.cl
+  SharedTable<SdfField> fields;
+  SharedTable<float> parameters;
+  SharedTable<Instance> instances;  // of deep views: with the indices of these fields
+  SceneFeatures features;
+};
+Fields compile_field_tables(const FieldInputs& in);
+
+ContentKey key_of(const HaloInputs& inputs);
+ContentKey key_of(const LightInputs& inputs);
+ContentKey key_of(const SurfaceInputs& inputs);
+ContentKey key_of(const MeshInputs& inputs);
+ContentKey key_of(const MappingInputs& inputs);
+ContentKey key_of(const InstanceInputs& inputs);
+ContentKey key_of(const TouchingInputs& inputs);
+ContentKey key_of(const FieldInputs& inputs);
+
+/// A step's last result.
+template <class Value>
+struct Memo {
+  ContentKey key{};
+  Value value{};
+  Known<Value> known() const { return {&value, key}; }
+};
+
+/// Makes the result unless the memo's was made of equal inputs. Returns whether it was made; an exception
+/// leaves the memo as it was.
+template <class Value, class Inputs>
+bool memo(Memo<Value>& last, const Inputs& inputs, Value (*compile)(const Inputs&)) {
+  const ContentKey key = key_of(inputs);
+  if (last.key == key) return false;
+  last = {key, compile(inputs)};
+  return true;
+}
+
+}  // namespace sundog
