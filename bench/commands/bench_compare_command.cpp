@@ -9,12 +9,12 @@
 #include <optional>
 #include <set>
 
-#include "bench/commands/bench_options.h"
-#include "bench/commands/known_report.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
-#include "app/options/options.h"
 #include "app/process/exit_status.h"
 #include "base/error.h"
+#include "bench/commands/bench_options.h"
+#include "bench/commands/known_report.h"
 #include "bench/runs/ratio.h"
 
 namespace sundog {
@@ -275,7 +275,7 @@ void add_bench_compare(Arguments& bench, Command& chosen) {
         "the JSON of a bench, or a folder with that of several calls; one alone: its devices")
       ->required();
   add_report_options(app, *options);
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return bench_compare(*options); }}; });
+  app->callback([options, &chosen] { chosen = Command{[options] { return bench_compare(*options); }}; });
 }
 
 }  // namespace sundog

@@ -11,12 +11,12 @@
 #include <sstream>
 #include <tuple>
 
-#include "app/options/commands.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/pick_devices.h"
 #include "app/process/environment.h"
+#include "app/process/exit_status.h"
 #include "app/process/revision.h"
 #include "app/process/warnings.h"
 #include "base/cache_folder.h"
@@ -184,16 +184,10 @@ void add_bench(Arguments& root, Command& chosen) {
   Arguments* bench =
       root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
   bench->require_subcommand(1);
-  add_bench_workgroup(*bench, chosen);
-  add_bench_threads(*bench, chosen);
-  add_bench_rays(*bench, chosen);
-  add_bench_samples(*bench, chosen);
-  add_bench_quality(*bench, chosen);
-  add_bench_textures(*bench, chosen);
-  add_bench_devices(*bench, chosen);
-  add_bench_kernels(*bench, chosen);
-  add_bench_roofline(*bench, chosen);
-  add_bench_compare(*bench, chosen);
+  for (AddCommand* add :
+       {add_bench_workgroup, add_bench_threads, add_bench_rays, add_bench_samples, add_bench_quality,
+        add_bench_textures, add_bench_devices, add_bench_kernels, add_bench_roofline, add_bench_compare})
+    add(*bench, chosen);
 }
 
 }  // namespace sundog

@@ -4,13 +4,12 @@
 // own, which calls add_bench_command() (bench_run.h). It measures parts by a BenchRun, each with measure()
 // and add_to(Report&), and ends with publish().
 #pragma once
+#include "app/options/command.h"
 #include "app/options/options.h"
 #include "bench/report/report.h"
 #include "compile/compiled_scene.h"
 
 namespace sundog {
-
-class Arguments;
 
 /// Where a report is written; empty: nowhere.
 struct ReportFiles {
@@ -75,16 +74,7 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 /// "a,b" -> a, b.
 std::vector<std::string> split_names(const std::string& text);
 
-void add_bench(Arguments& root, Command& chosen);
-void add_bench_threads(Arguments& bench, Command& chosen);
-void add_bench_devices(Arguments& bench, Command& chosen);
-void add_bench_kernels(Arguments& bench, Command& chosen);
-void add_bench_workgroup(Arguments& bench, Command& chosen);
-void add_bench_rays(Arguments& bench, Command& chosen);
-void add_bench_samples(Arguments& bench, Command& chosen);
-void add_bench_quality(Arguments& bench, Command& chosen);
-void add_bench_textures(Arguments& bench, Command& chosen);
-void add_bench_roofline(Arguments& bench, Command& chosen);
-void add_bench_compare(Arguments& bench, Command& chosen);
+AddCommand add_bench_threads, add_bench_devices, add_bench_kernels, add_bench_workgroup, add_bench_rays,
+    add_bench_samples, add_bench_quality, add_bench_textures, add_bench_roofline, add_bench_compare;
 
 }  // namespace sundog

@@ -3,10 +3,10 @@
 #include <map>
 #include <memory>
 
-#include "bench/commands/bench_options.h"
-#include "bench/commands/bench_progress.h"
 #include "app/process/interrupt.h"
 #include "base/arguments.h"
+#include "bench/commands/bench_options.h"
+#include "bench/commands/bench_progress.h"
 #include "bench/runs/measure.h"
 
 namespace sundog {
@@ -62,8 +62,9 @@ Arguments* add_bench_command(Arguments& bench, Command& chosen, const std::strin
                              int (*run)(const Options&), bool scene_needed = true) {
   Arguments* app = bench.add_subcommand(name, description);
   add_bench_options(app, *options, scene_needed);
-  app->callback(
-      [options, run, &chosen] { chosen = RunLater{[options, run] { return run(*options); }, true}; });
+  app->callback([options, run, &chosen] {
+    chosen = {.run = [options, run] { return run(*options); }, .stops_on_signal = true};
+  });
   return app;
 }
 

@@ -1,5 +1,5 @@
-// See tune_command.h.
-#include "bench/commands/tune_command.h"
+// `sundog tune`: finds and keeps what is fastest on a device; --show, --forget, --export and --import what is
+// kept.
 
 #include <fmt/format.h>
 
@@ -7,14 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/commands/bench_options.h"
-#include "bench/commands/tune_devices.h"
-#include "app/options/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "bench/commands/bench_options.h"
+#include "bench/commands/tune_devices.h"
 #include "render/device/tuning.h"
 #include "scene/json/parse.h"
 
@@ -152,7 +152,7 @@ void add_tune(Arguments& root, Command& chosen) {
   value(app, "--export", "FILE", options->export_to, "write all results to this file");
   value(app, "--import", "FILE", options->import_from,
         "read results that --export wrote, for devices of this machine");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return run_tune(*options); }}; });
+  app->callback([options, &chosen] { chosen = Command{[options] { return run_tune(*options); }}; });
 }
 
 }  // namespace sundog

@@ -10,15 +10,15 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "bench/commands/bench_progress.h"
-#include "app/options/commands.h"
 #include "app/process/child_process.h"
 #include "app/process/environment.h"
+#include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/standard_streams.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/memory_file.h"
+#include "bench/commands/bench_progress.h"
 #include "bench/rays/self_check.h"
 #include "bench/report/report.h"
 #include "bench/tune/tuner.h"

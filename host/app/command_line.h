@@ -1,6 +1,6 @@
 // The command line of `sundog`, read into one of its commands.
 #pragma once
-#include "app/options/options.h"
+#include "app/options/command.h"
 
 namespace sundog {
 

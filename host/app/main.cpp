@@ -7,12 +7,9 @@
 #include <csignal>
 #include <cstdio>
 #include <future>
-#include <string_view>
 
 #include "app/command_line.h"
-#include "app/commands/devices_command.h"
 #include "app/job/job.h"
-#include "app/options/commands.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
@@ -24,28 +21,15 @@
 namespace sundog {
 namespace {
 
-int run(const RenderCommand& command) { return render_command(command); }
-int run(const DevicesOptions& command) { return devices_command(command); }
-int run(const InfoCommand& command) { return info_command(command); }
-int run(const MergeCommand& command) { return merge_command(command); }
-int run(const CompareCommand& command) { return compare_command(command); }
-/// In a thread of its own: drivers that work in the caller's thread need more stack than the first one has.
-int run(const RunLater& command) {
+int run(const Command& command) {
+  if (command.in_first_thread) return command.run();
   if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
   return std::async(std::launch::async, command.run).get();
 }
-int run(const ShowText& command) {
-  if (command.status == exit_done || job_rank() <= 0)
-    fmt::print(command.status == exit_done ? stdout : stderr, "{}", command.text);
-  return command.status;
-}
 
 int run_command_line(int argc, char** argv) {
-  const std::string_view name = argc > 1 ? argv[1] : "";
-  if (name == "compile") return compile_command(argc, argv);
-  if (name == "worker") return worker_command(argc, argv);
   // All processes of a job have the same command line: its errors are reported once.
-  Command command = ShowText{};
+  Command command;
   const auto parse = [&] {
     command = parse_command_line(argc, argv);
     return exit_done;
@@ -53,7 +37,7 @@ int run_command_line(int argc, char** argv) {
   // mpirun ends a job at the first rank that fails, and may lose what another prints then: rank 0 alone
   // fails.
   if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
-  const int status = std::visit([](const auto& chosen) { return run(chosen); }, command);
+  const int status = run(command);
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
   return status;
 }

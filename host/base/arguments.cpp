@@ -29,6 +29,8 @@ Arguments::Arguments(const std::string& about, const std::string& name)
 Arguments::Arguments(CLI::App* app) : app_(app) {}
 Arguments::~Arguments() = default;
 
+Arguments* Arguments::hidden() { return app_->group(""), this; }
+
 Arguments* Arguments::add_subcommand(const std::string& name, const std::string& about) {
   commands_.emplace_back(new Arguments(app_->add_subcommand(name, about)));
   return commands_.back().get();

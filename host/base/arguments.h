@@ -38,6 +38,7 @@ class Arguments {
   Arguments& operator=(const Arguments&) = delete;
 
   Arguments* add_subcommand(const std::string& name, const std::string& about);
+  Arguments* hidden();  // omitted from help
   void require_subcommand(int count);
   /// Called after parsing if this command was chosen.
   void callback(std::function<void()> call);

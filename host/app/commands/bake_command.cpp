@@ -1,6 +1,5 @@
-// See bake_command.h. In: two models, or scenes. Out: a PNG whose texels are those of the plain model's
-// texture coordinates.
-#include "app/commands/bake_command.h"
+// `sundog bake`: a map of a detailed model for a plain one. In: two models, or scenes. Out: a PNG whose
+// texels are those of the plain model's texture coordinates.
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include <memory>
 
 #include "app/bake/bake.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
@@ -145,7 +145,7 @@ void add_bake(Arguments& root, Command& chosen) {
   values(app, "--device", "SPEC", options->devices, device_help);
   outside_files(app, options->outside_files);
   app->add_flag("-q,--quiet", options->quiet, "no progress bar and no summary");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return bake_map(*options); }}; });
+  app->callback([options, &chosen] { chosen = Command{[options] { return bake_map(*options); }}; });
 }
 
 }  // namespace sundog

@@ -1,6 +1,6 @@
-// See check_command.h. This process makes no OpenCL call: every driver and every device is looked at by a
-// child of its own, so that one that crashes or hangs is a line of the report.
-#include "app/commands/check_command.h"
+// `sundog check`: a doctor's report of drivers, caches and devices. This process makes no OpenCL call: every
+// driver and every device is looked at by a child of its own, so that one that crashes or hangs is a line of
+// the report.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/check_report.h"
-#include "app/options/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/pick_devices.h"
 #include "app/process/child_process.h"
@@ -265,8 +265,7 @@ void add_check(Arguments& root, Command& chosen) {
   app->add_option("--worker", options->worker)->hidden();
   app->callback([options, &chosen] {
     if (options->devices.empty()) options->devices = devices_of_environment();
-    chosen =
-        RunLater{[options] { return options->worker.empty() ? check(*options) : work(options->worker); }};
+    chosen = Command{[options] { return options->worker.empty() ? check(*options) : work(options->worker); }};
   });
 }
 

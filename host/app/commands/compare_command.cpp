@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/options/commands.h"
+#include "app/options/command.h"
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "base/file.h"
 #include "base/image_compare.h"
@@ -16,6 +19,12 @@ namespace sundog {
 namespace {
 
 using nlohmann::json;
+
+struct CompareCommand {
+  std::string a, b, diff;
+  double tolerance = 0;
+  bool json = false;
+};
 
 /// JSON has no infinity.
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
@@ -108,9 +117,7 @@ int report_sizes(const CompareCommand& command, const Image& a, const Image& b) 
   return exit_difference;
 }
 
-}  // namespace
-
-int compare_command(const CompareCommand& command) {
+int compare(const CompareCommand& command) {
   check_output_files({command.diff}, {command.a, command.b});
   if (!command.diff.empty()) {
     check_image_path(command.diff, false);
@@ -130,6 +137,24 @@ int compare_command(const CompareCommand& command) {
   const bool layers_pass =
       std::ranges::all_of(layers.both, [](const auto& layer) { return layer.second.over_tolerance == 0; });
   return difference.over_tolerance > 0 || !layers_pass ? exit_difference : exit_done;
+}
+
+}  // namespace
+
+void add_compare(Arguments& root, Command& chosen) {
+  const auto command = std::make_shared<CompareCommand>();
+  const auto tolerance = std::make_shared<std::string>("0");
+  Arguments* app = root.add_subcommand("compare", "Compare two images; exit status 6 when they differ");
+  value(app, "A", "FILE", command->a, "image file: .png, .jpg, .exr, .hdr or .pfm")->required();
+  value(app, "B", "FILE", command->b, "image file")->required();
+  value(app, "--tolerance", "T", *tolerance,
+        "greatest difference that passes, in linear colour (1 is white; default 0)");
+  value(app, "--diff", "FILE", command->diff, "write a picture that shows where they differ");
+  app->add_flag("--json", command->json, "print the figures as JSON");
+  app->callback([command, tolerance, &chosen] {
+    command->tolerance = parse_tolerance(*tolerance);
+    chosen = {.run = [command] { return compare(*command); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

@@ -3,23 +3,41 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include "app/options/commands.h"
+#include <memory>
+#include <string>
+
+#include "app/options/command.h"
 #include "app/process/environment.h"
 #include "app/process/interrupt.h"
+#include "base/arguments.h"
 #include "base/error.h"
 #include "device/compile_process.h"
 
 namespace sundog {
 
-int compile_command(int argc, const char* const* argv) {
-  if (argc != 3 || ::isatty(STDOUT_FILENO))
+namespace {
+
+int compile_for(const std::string& place) {
+  if (place.empty() || ::isatty(STDOUT_FILENO))
     throw UsageError("compile is not a command for people: sundog starts it");
   // Ctrl-C and a hang-up go to all of a terminal's processes; the one that started this decides. What it may
   // leave behind when it ends at once is of no use to anyone.
   hold_back({SIGINT, SIGHUP});
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  serve_compile(program_environment(), argv[2], STDIN_FILENO, STDOUT_FILENO);
+  serve_compile(program_environment(), place, STDIN_FILENO, STDOUT_FILENO);
   return exit_done;
+}
+
+}  // namespace
+
+void add_compile(Arguments& root, Command& chosen) {
+  Arguments* app =
+      root.add_subcommand("compile", "Compile a program for the process that started this")->hidden();
+  const auto place = std::make_shared<std::string>();
+  app->add_option("P:D", *place, "the device");
+  app->callback([place, &chosen] {
+    chosen = {.run = [place] { return compile_for(*place); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

@@ -1,15 +1,18 @@
-#include "app/commands/devices_command.h"
+// `sundog devices`: every platform and device, with what each can do.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
+#include "app/options/command.h"
 #include "app/process/environment.h"
+#include "base/arguments.h"
 #include "base/error.h"
 #include "device/choice.h"
 #include "device/devices.h"
@@ -130,22 +133,32 @@ void print_table(const std::vector<DeviceInfo>& rows, const DeviceInfo* chosen) 
   }
 }
 
-}  // namespace
-
-int devices_command(const DevicesOptions& options) {
+/// Prints a table, or an object of schema 1. A list where nothing is usable is what was asked for, too.
+int list(bool as_json) {
   const std::vector<DeviceInfo> rows = list_devices();
   const DeviceInfo* chosen = default_device(rows);
-  if (options.json) {
-    json list = json::array();
-    for (const DeviceInfo& row : rows) list.push_back(device_json(row, &row == chosen));
+  if (as_json) {
+    json all = json::array();
+    for (const DeviceInfo& row : rows) all.push_back(device_json(row, &row == chosen));
     fmt::print("{}\n",
-               json{{"schema", 1}, {"devices", list}}.dump(2, ' ', false, json::error_handler_t::replace));
+               json{{"schema", 1}, {"devices", all}}.dump(2, ' ', false, json::error_handler_t::replace));
   } else if (rows.empty()) {
     fmt::print("There is no OpenCL platform: install one (Debian: pocl-opencl-icd).\n");
   } else {
     print_table(rows, chosen);
   }
-  return 0;
+  return exit_done;
+}
+
+}  // namespace
+
+void add_devices(Arguments& root, Command& chosen) {
+  const auto as_json = std::make_shared<bool>(false);
+  Arguments* app = root.add_subcommand("devices", "List every OpenCL platform and device");
+  app->add_flag("--json", *as_json, "as JSON");
+  app->callback([as_json, &chosen] {
+    chosen = {.run = [as_json] { return list(*as_json); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

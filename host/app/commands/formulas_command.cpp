@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/options/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "formula/functions.h"
 #include "formula/list.h"
@@ -69,7 +69,7 @@ void add_formulas(Arguments& root, Command& chosen) {
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "as JSON");
   app->callback([json, &chosen] {
-    chosen = RunLater{[json] {
+    chosen = Command{[json] {
       fmt::print("{}", *json ? formulas_json() : formula_list_text());
       return static_cast<int>(exit_done);
     }};

@@ -1,6 +1,6 @@
-// See gallery_command.h. In: a folder to write to, and scenes, or none: those that come with sundog. Out: a
-// PNG for each, and index.html, written anew after each picture, so that an interrupt leaves a whole page.
-#include "app/commands/gallery_command.h"
+// `sundog gallery`: scenes as pictures on one page. In: a folder to write to, and scenes, or none: those that
+// come with sundog. Out: a PNG for each, and index.html, written anew after each picture, so that an
+// interrupt leaves a whole page.
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
@@ -171,7 +172,7 @@ void add_gallery(Arguments& root, Command& chosen) {
   value(app, "--samples", "N", options->samples, "samples a pixel (default: each scene's)");
   outside_files(app, options->outside_files);
   app->add_flag("-q,--quiet", options->quiet, "no progress and no names");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return gallery(*options); }}; });
+  app->callback([options, &chosen] { chosen = Command{[options] { return gallery(*options); }}; });
 }
 
 }  // namespace sundog

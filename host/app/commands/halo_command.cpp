@@ -1,5 +1,5 @@
-// See halo_command.h. In: a scene's halo, or a usual one. Out: a picture of the sky, and figures.
-#include "app/commands/halo_command.h"
+// `sundog halo`: the sky's map of a halo as a picture. In: a scene's halo, or a usual one. Out: a picture of
+// the sky, and figures.
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
@@ -193,7 +194,7 @@ void add_halo(Arguments& root, Command& chosen) {
   outside_files(app, options->outside_files);
   app->add_flag("--json", options->json, "print the figures as JSON");
   app->add_flag("-q,--quiet", options->quiet, "no progress bar and no summary");
-  app->callback([options, &chosen] { chosen = RunLater{[options] { return make_picture(*options); }}; });
+  app->callback([options, &chosen] { chosen = Command{[options] { return make_picture(*options); }}; });
 }
 
 }  // namespace sundog

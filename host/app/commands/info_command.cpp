@@ -1,9 +1,11 @@
 // `sundog info SCENE`: what it holds, without a device.
 #include <fmt/format.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/options/commands.h"
+#include "app/options/command.h"
+#include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/process/environment.h"
 #include "app/process/scene_figures.h"
@@ -16,6 +18,13 @@ namespace sundog {
 namespace {
 
 using nlohmann::json;
+
+struct InfoCommand {
+  std::string scene;
+  bool outside_files = false;          // as for render
+  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE"
+  bool json = false;
+};
 
 /// {"point": 2, "spot": 1} as "2 point, 1 spot".
 std::string counts_text(const json& counts) {
@@ -79,9 +88,7 @@ CompiledScene compile_overridden(const SceneDescription& scene, const InfoComman
   }
 }
 
-}  // namespace
-
-int info_command(const InfoCommand& command) {
+int print_figures(const InfoCommand& command) {
   for (const std::string& setting : command.overrides) check_override(setting);
   const SceneDescription scene =
       load_scene(command.scene, command.overrides, with_streams({.outside_files = command.outside_files}));
@@ -94,6 +101,21 @@ int info_command(const InfoCommand& command) {
   else
     print_text(figures);
   return exit_done;
+}
+
+}  // namespace
+
+void add_info(Arguments& root, Command& chosen) {
+  const auto command = std::make_shared<InfoCommand>();
+  Arguments* app = root.add_subcommand("info", "What a scene holds: triangles, lights, BVH figures, bytes");
+  value(app, "SCENE", "FILE", command->scene, scene_help)->required();
+  values(app, "--set", "POINTER=VALUE", command->overrides,
+         "change the scene, as in /render/spatial_splits=true");
+  outside_files(app, command->outside_files);
+  app->add_flag("--json", command->json, "as JSON");
+  app->callback([command, &chosen] {
+    chosen = {.run = [command] { return print_figures(*command); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

@@ -1,5 +1,4 @@
-// See kernels_command.h.
-#include "app/commands/kernels_command.h"
+// `sundog kernels`: lists the plain kernel files, or prints one in lanes, or what varies in it and why.
 
 #include <fmt/format.h>
 
@@ -7,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "app/options/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "base/error.h"
@@ -99,7 +98,7 @@ void add_kernels(Arguments& root, Command& chosen) {
       throw UsageError("kernels: --scene, --gpu and --out go together");
     if (c->lanes != 0 && c->lanes != 1 && c->lanes != 4 && c->lanes != 8 && c->lanes != 16)
       throw UsageError(fmt::format("--lanes: wanted 1, 4, 8 or 16, found {}", c->lanes));
-    chosen = RunLater{[c] {
+    chosen = Command{[c] {
       fmt::print("{}", !c->scene.empty() ? write_programs(*c)
                        : c->file.empty() ? list_text()
                                          : made_text(*c));

@@ -9,8 +9,8 @@
 
 #include "app/job/job.h"
 #include "app/job/remote_devices.h"
-#include "app/options/commands.h"
 #include "app/process/environment.h"
+#include "app/process/exit_status.h"
 #include "render/remote/hang_watch.h"
 #include "render/remote/remote_values.h"
 #include "render/remote/worker_process.h"

@@ -3,21 +3,23 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <cstdlib>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/job/remote_devices.h"
-#include "app/options/commands.h"
+#include "app/options/command.h"
 #include "app/process/environment.h"
 #include "app/process/interrupt.h"
+#include "base/arguments.h"
 #include "base/error.h"
 #include "render/remote/hang_watch.h"
 #include "render/remote/silence.h"
 
 namespace sundog {
 
-int worker_command(int argc, const char* const* argv) {
-  const int descriptor = argc > 2 ? std::atoi(argv[2]) : -1;
+namespace {
+
+int serve_device(int descriptor) {
   if (descriptor < 3) throw UsageError("worker is not a command for people: --isolate starts it");
   // Ctrl-C and a hang-up go to all of a terminal's processes; the one that has the frame decides.
   hold_back({SIGINT, SIGHUP});
@@ -47,6 +49,23 @@ int worker_command(int argc, const char* const* argv) {
       },
       list_devices);
   return exit_done;
+}
+
+struct WorkerOptions {
+  int descriptor = -1;
+  std::string name;
+};
+
+}  // namespace
+
+void add_worker(Arguments& root, Command& chosen) {
+  Arguments* app = root.add_subcommand("worker", "Serve a device to the process that started this")->hidden();
+  const auto options = std::make_shared<WorkerOptions>();
+  app->add_option("DESCRIPTOR", options->descriptor, "the socket to that process");
+  app->add_option("NAME", options->name, "for lists of processes");
+  app->callback([options, &chosen] {
+    chosen = {.run = [options] { return serve_device(options->descriptor); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

@@ -100,7 +100,8 @@ std::string see_help(const CommandWords& command) { return fmt::format("(see {} 
 
 std::vector<std::string> command_names(const CommandWords& parent) {
   std::vector<std::string> names;
-  for (const CommandWords& command : parent.commands) names.push_back(command.name);
+  for (const CommandWords& command : parent.commands)
+    if (!command.hidden) names.push_back(command.name);
   return names;
 }
 

@@ -17,6 +17,7 @@ struct CommandWords {
   std::string name, line;  // "rays", "sundog bench rays"
   std::vector<OptionWords> options;
   std::vector<CommandWords> commands;
+  bool hidden = false;  // not for people
 };
 
 /// The innermost command that the line names. Throws UsageError for an unknown command or option, and for an
@@ -26,6 +27,7 @@ const CommandWords& check_words(const CommandWords& root, int argc, const char* 
 /// "(see sundog bench rays --help)"
 std::string see_help(const CommandWords& command);
 
+/// Of those that are not hidden.
 std::vector<std::string> command_names(const CommandWords& parent);
 
 }  // namespace sundog

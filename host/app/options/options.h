@@ -1,9 +1,7 @@
 // The command line as values: what the user asked for, checked as far as it can be without reading a file.
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "app/options/frames.h"
@@ -55,41 +53,5 @@ struct RenderCommand : PictureOptions {
   bool outside_files = false;  // the scene and its models may name files outside their folders
   bool quiet = false, verbose = false;
 };
-
-struct DevicesOptions {
-  bool json = false;
-};
-
-struct InfoCommand {
-  std::string scene;
-  bool outside_files = false;          // as for render
-  std::vector<std::string> overrides;  // "JSON_POINTER=VALUE"
-  bool json = false;
-};
-
-struct CompareCommand {
-  std::string a, b, diff;
-  double tolerance = 0;
-  bool json = false;
-};
-
-struct MergeCommand : PictureOptions {
-  std::vector<std::string> parts;
-};
-
-/// --help or --version: a text for stdout. Without a command: the short help, for stderr.
-struct ShowText {
-  std::string text;
-  int status = 0;  // exit status
-};
-
-/// A command that needs no value here: its own file declares its options and does its work.
-struct RunLater {
-  std::function<int()> run;      // returns the exit status
-  bool stops_on_signal = false;  // it has a StopOnSignal: no thread is to end by the signals themselves
-};
-
-using Command = std::variant<RenderCommand, DevicesOptions, InfoCommand, CompareCommand, MergeCommand,
-                             RunLater, ShowText>;
 
 }  // namespace sundog

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
-#include "app/options/commands.h"
+#include "app/options/command.h"
+#include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
+#include "app/options/picture_options.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
@@ -15,8 +18,13 @@
 #include "render/film/part.h"
 
 namespace sundog {
+namespace {
 
-int merge_command(const MergeCommand& command) {
+struct MergeCommand : PictureOptions {
+  std::vector<std::string> parts;
+};
+
+int merge(const MergeCommand& command) {
   check_output_files({command.out}, command.parts);
   const ToneMap tone_map = parse_tone_map(command);
   check_picture(command, false);
@@ -37,6 +45,23 @@ int merge_command(const MergeCommand& command) {
   save_image({image, aovs, whole.film, whole.key, {}, command.format, file}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
+}
+
+}  // namespace
+
+void add_merge(Arguments& root, Command& chosen) {
+  const auto command = std::make_shared<MergeCommand>();
+  Arguments* app = root.add_subcommand("merge", "Join the parts that render --tiles has written");
+  app->add_option("PART", command->parts, "files that render --tiles has written")
+      ->required()
+      ->type_name("FILE");
+  add_picture(app, *command);
+  app->add_flag("--transparent", command->transparent,
+                "keep alpha in a .png, of parts that were so rendered");
+  app->callback([command, &chosen] {
+    check_format(*command);
+    chosen = {.run = [command] { return merge(*command); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

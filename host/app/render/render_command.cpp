@@ -1,133 +1,185 @@
-// `sundog render`: scene file -> description -> flat tables -> image -> file.
+// `sundog render`: its options.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
-#include <optional>
+#include <memory>
 
-#include "app/job/job.h"
-#include "app/options/commands.h"
-#include "app/options/output_files.h"
-#include "app/process/environment.h"
-#include "app/process/exit_status.h"
-#include "app/process/interrupt.h"
-#include "app/process/save_image.h"
-#include "app/process/standard_streams.h"
-#include "app/process/warnings.h"
-#include "app/render/denoise.h"
-#include "app/render/metadata.h"
-#include "app/render/render_frame.h"
+#include "app/options/command.h"
+#include "app/options/option_helpers.h"
+#include "app/options/option_values.h"
+#include "app/options/picture_options.h"
 #include "app/render/render_frames.h"
-#include "base/cache_folder.h"
-#include "base/clock.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "scene/load.h"
+#include "base/names.h"
+#include "scene/integrators.h"
+#include "scene/kinds.h"
 
 namespace sundog {
 namespace {
 
-/// What is written again and again needs a file's name.
-void check_write_every(const RenderCommand& command) {
-  if (command.write_every > 0 &&
-      (command.part || is_standard_stream(command.out) || is_pipe_or_device(command.out)))
-    throw UsageError(fmt::format("-o {}: --write-every wants an image file", command.out));
-}
+/// The options of `render` as typed, before they are checked.
+struct TypedRender {
+  RenderCommand command;
+  std::string size, samples, seed, max_depth, integrator, filter, filter_radius, adaptive, time_limit, noise,
+      write_every, work_group = "auto", split = "dynamic", part, region, tile, frames, step;
+  bool subsample = false, caustics = false;
+};
 
-/// What is done to a whole picture, and words in its file.
-void check_extras(const RenderCommand& command) {
-  if (command.part && (command.denoise || command.metadata))
-    throw UsageError(
-        fmt::format("{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or "
-                    "--tiles out",
-                    command.out));
-  if (!command.far.empty() && (command.part || std::ranges::count(command.aovs, "depth") == 0))
-    throw UsageError(fmt::format("--far {}: {}", command.far,
-                                 command.part ? "a part keeps its infinite depths: give --far to merge"
-                                              : "is for the AOV depth: give --aov depth as well"));
-  for (const std::string& name : command.aovs)
-    if (command.part && (name == "samples" || name == "variance"))
-      throw UsageError(fmt::format("--aov {}: wants a whole frame: leave --tiles out", name));
-  if (command.metadata && !keeps_texts(format_name(command)))
-    throw UsageError(fmt::format("{}: --metadata is for .png and .exr files", command.out));
-  if (command.metadata) static_cast<void>(time_of_picture());
-  if (command.denoise) static_cast<void>(Denoiser());
-}
-
-/// What would otherwise be found out after the render.
-void check_outputs(const RenderCommand& command) {
-  if (command.part && !command.out.ends_with(".part"))
-    throw UsageError(
-        fmt::format("{}: with --tiles, OUT is a part of the frame and ends in .part", command.out));
-  if (job_rank() >= 0 && is_standard_stream(command.out))
-    throw UsageError("-o -: under mpirun, whose standard output is for text, a picture wants a file");
-  if (is_standard_stream(command.resume)) throw UsageError("--resume -: a checkpoint wants a file");
-  check_output_files(output_files(command), {command.scene});
-  check_write_every(command);
-  check_extras(command);
-  if (command.part)
-    check_writable(command.out);
-  else
-    check_picture(command, !command.aovs.empty());
-  for (const std::string& file : {command.stats, command.resume})
-    if (!file.empty() && !is_standard_stream(file)) check_writable(file);
-}
-
-/// Frames are files of their own.
-void check_frames(const RenderCommand& command) {
-  for (const std::string& file : {command.out, command.stats})
-    if (!command.frames.empty() && is_standard_stream(file))
-      throw UsageError("--frames writes numbered files: wanted a name for them, found -");
-}
-
-/// Of this process, or of rank 0 of a job.
-int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
-  const Stopwatch clock;
-  Setup setup{stop, job, {}, nullptr};
-  check_frames(command);
-  check_outputs(command.frames.empty() ? command : frame_command(command, command.frames.front()));
-  if (is_standard_stream(command.out) || is_standard_stream(command.stats)) claim_standard_output();
-  TimeLedger times;
-  std::optional<LoadedScene> scene;
-  if (command.frames.empty()) {
-    stop_loses_nothing(command, setup);
-    const auto load = [&] {
-      return std::make_shared<const SceneDescription>(
-          load_scene(command.scene, command.overrides, load_options(command)));
-    };
-    scene = load_and_compile(command, load, setup, times);
-    print_warnings(scene->description->warnings);
+/// The options that only shorten a --set come first, so that a --set of the same value wins.
+std::vector<std::string> collect_overrides(const TypedRender& typed) {
+  std::vector<std::string> all;
+  if (!typed.size.empty()) all = parse_image_size(typed.size);
+  if (!typed.samples.empty())
+    all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
+  if (typed.seed == "frame")
+    all.emplace_back("/render/seed=frame");
+  else if (!typed.seed.empty())
+    all.push_back(fmt::format("/render/seed={}", parse_number("--seed", typed.seed, 0, 2147483647)));
+  if (!typed.max_depth.empty())
+    all.push_back(
+        fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 65536)));
+  if (typed.caustics && !typed.integrator.empty() && !traces_paths(typed.integrator))
+    throw UsageError(fmt::format("--caustics: photons are for --integrator path, not {}", typed.integrator));
+  if (typed.caustics) all.insert(all.end(), {"/render/integrator=\"path\"", "/render/caustics=true"});
+  if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
+  if (!typed.filter.empty()) all.push_back(fmt::format("/render/filter=\"{}\"", typed.filter));
+  if (!typed.filter_radius.empty()) all.push_back("/render/filter_radius=" + typed.filter_radius);
+  for (const std::string& setting : tone_map_overrides(typed.command)) all.push_back(setting);
+  if (!typed.adaptive.empty())
+    all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
+  if (typed.subsample) all.push_back("/render/subsample/on=true");
+  if (typed.command.transparent) all.push_back("/image/transparent=true");
+  // What may end early begins with a sample of each pixel.
+  if (typed.adaptive.empty() && !typed.subsample && (!typed.time_limit.empty() || !typed.noise.empty()))
+    all.push_back("/render/progressive=true");
+  for (const std::string& setting : typed.command.overrides) {
+    check_override(setting);
+    all.push_back(setting);
   }
-  if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
-    print_warnings({{why}});
-  if (setup.devices.empty()) setup.devices = choose_devices(command, job);
-  if (scene) return render_one(command, *std::move(scene), setup, clock, times).status;
-  if (!job && !command.isolate) setup.session = std::make_unique<RenderSession>(setup.devices);
-  return render_frames(command, setup);
+  return all;
+}
+
+constexpr const char* light_parts = "light_parts";  // stands for all parts of light
+
+/// The AOVs, each once.
+std::vector<std::string> with_parts_named(const std::vector<std::string>& typed) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::count(all, name) == 0) all.push_back(name);
+  };
+  for (const std::string& name : typed) {
+    if (name != light_parts) add(name);
+    for (const std::string& part : aov_names())
+      if (name == light_parts && is_light(part)) add(part);
+  }
+  return all;
+}
+
+RenderCommand checked(const TypedRender& typed) {
+  RenderCommand command = typed.command;
+  check_format(command);
+  command.overrides = collect_overrides(typed);
+  command.work_group = parse_work_group(typed.work_group);
+  command.split = parse_split(typed.split);
+  if (!typed.frames.empty())
+    command.frames =
+        parse_frames(typed.frames, typed.step.empty() ? 1 : parse_number("--step", typed.step, 1, 999999));
+  if (typed.frames.empty() && (!typed.step.empty() || command.skip_existing))
+    throw UsageError(fmt::format("{} is for an animation: give its --frames as well",
+                                 command.skip_existing ? "--skip-existing" : "--step"));
+  if (!typed.part.empty()) command.part = parse_part(typed.part);
+  if (!typed.region.empty()) command.region = parse_region(typed.region);
+  if (command.part && command.region)
+    throw UsageError("--crop makes a part of the picture as a picture: leave --tiles out");
+  if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
+  if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
+  if (!typed.write_every.empty()) command.write_every = parse_amount("--write-every", typed.write_every);
+  if (!typed.tile.empty()) command.tile = parse_number("--tile", typed.tile, 4, 65536);
+  if (command.devices.empty()) command.devices = devices_of_environment();
+  command.aovs = with_parts_named(command.aovs);
+  for (const std::string& name : command.aovs)
+    if (std::ranges::count(aov_names(), name) == 0)
+      throw UsageError(
+          fmt::format("--aov {}: {}", name,
+                      did_you_mean(name, aov_names(),
+                                   fmt::format("wanted one of {}", fmt::join(aov_names(), ", ")), "")));
+  return command;
 }
 
 }  // namespace
 
-int render_command(const RenderCommand& command) {
-  // An interrupt reaches every process of a job; rank 0 decides.
-  std::optional<StopOnSignal> stop;
-  if (job_rank() > 0)
-    hold_back({SIGINT, SIGTERM, SIGHUP});
-  else
-    stop.emplace();
-  if (job_rank() < 0) return render_here(command, *stop, nullptr);
-  std::unique_ptr<Mailbox> job;
-  const auto join = [&] {
-    job = join_job();
-    return exit_done;
-  };
-  if (const int status = exit_status_of(join, job_rank() == 0)) return status;
-  if (job->rank() > 0) serve_job(std::move(job));
-  const int status = exit_status_of([&] { return render_here(command, *stop, job.get()); });
-  std::fflush(nullptr);
-  job->leave(status);
-  return status;
+void add_render(Arguments& root, Command& chosen) {
+  const auto typed = std::make_shared<TypedRender>();
+  RenderCommand& command = typed->command;
+  Arguments* app = root.add_subcommand(
+      "render", "Render a scene to an image file; under mpirun, on the devices of all its processes");
+  value(app, "SCENE", "FILE", command.scene, scene_help)->required();
+  add_picture(app, command);
+  values(app, "--device", "SPEC", command.devices, device_help);
+  value(app, "--tiles", "I/N", typed->part,
+        "render part I of N only, into a .part file that `sundog merge` takes");
+  app->add_flag("--isolate", command.isolate,
+                "a worker process for each device: a driver that crashes or hangs takes nothing else along");
+  value(app, "--size", "WxH", typed->size, "width and height in pixels");
+  value(app, "--crop", "X,Y,WxH", typed->region,
+        "only this rectangle of the picture: X and Y are its upper left corner, from that of the picture");
+  value(app, "--samples", "N", typed->samples, "samples a pixel");
+  value(app, "--max-depth", "N", typed->max_depth,
+        "greatest depth of the ray tree; 1: the camera's rays alone. Without it paths end by chance");
+  value(app, "--seed", "N", typed->seed,
+        "other random numbers: pictures of several seeds have a mean with less noise; frame: the frame's "
+        "number, as --frames has it without a seed");
+  value(app, "--integrator", "NAME", typed->integrator,
+        fmt::format("how light is followed: {}", fmt::join(integrator_names, ", ")));
+  app->add_flag("--caustics", typed->caustics,
+                "path tracing with photons, which bring the light behind glass and off mirrors");
+  value(app, "--filter", "NAME", typed->filter,
+        fmt::format("how a pixel's samples add up: {}", fmt::join(filter_names, ", ")));
+  value(app, "--filter-radius", "R", typed->filter_radius, "the filter's reach in pixels");
+  value(app, "--adaptive", "T", typed->adaptive,
+        "more samples only where the picture's estimated error is above T; --samples is the most");
+  app->add_flag("--subsample", typed->subsample,
+                "samples for every second pixel each way, and for the others where they are needed");
+  value(app, "--time-limit", "S", typed->time_limit,
+        "end the render after S seconds and write the picture so far");
+  value(app, "--noise-threshold", "T", typed->noise,
+        "end the render when its mean estimated error is below T");
+  value(app, "--write-every", "S", typed->write_every, "write the picture so far every S seconds");
+  values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
+  value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
+  value(app, "--split", "HOW", typed->split,
+        "share the frame among devices: dynamic (by measured speed), static (fixed parts by estimated speed) "
+        "or "
+        "fixed shares such as 3,1");
+  value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
+  value(app, "--frames", "LIST", typed->frames,
+        "render these frames of the scene's animation, as 0..48, 48..0 or 1,4,10..20, to numbered files "
+        "(out_0001.png, or where OUT has ####)");
+  value(app, "--step", "N", typed->step, "of each range of --frames render every Nth frame");
+  app->add_flag("--skip-existing", command.skip_existing,
+                "leave frames alone whose picture is there and not empty");
+  value(app, "--stats", "FILE", command.stats,
+        "write rays, times and devices to this JSON file; -: the standard output");
+  values(app, "--aov", "NAME", command.aovs,
+         fmt::format("an extra image in the .exr: {}; {}: all ten parts of light",
+                     fmt::join(aov_names(), ", "), light_parts));
+  app->add_flag("--transparent", command.transparent,
+                "leave what is behind the scene out of .png and .exr: their alpha says what covers it");
+  app->add_flag("--denoise", command.denoise,
+                "take the noise out of the picture by Open Image Denoise, a library that is loaded for it");
+  app->add_flag("--metadata", command.metadata,
+                "write scene, settings, devices, version and time into the .png or .exr");
+  value(app, "--resume", "FILE", command.resume,
+        "checkpoint: written when interrupted, continued from when it is there");
+  app->add_flag("--allow-native-code", command.native_code,
+                "take OpenCL C that the scene carries (\"native\"); only for files that you trust");
+  outside_files(app, command.outside_files);
+  app->add_flag("-q,--quiet", command.quiet, "no progress bar and no summary");
+  app->add_flag("-v,--verbose", command.verbose, "tell more: times, rays, kernels");
+  app->callback([typed, &chosen] {
+    chosen = {.run = [command = checked(*typed)] { return render_scene(command); }, .in_first_thread = true};
+  });
 }
 
 }  // namespace sundog

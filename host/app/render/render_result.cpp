@@ -10,8 +10,8 @@
 #include <map>
 
 #include "app/job/job.h"
-#include "app/options/commands.h"
 #include "app/options/output_files.h"
+#include "app/process/exit_status.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "app/process/warnings.h"

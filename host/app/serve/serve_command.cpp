@@ -1,4 +1,5 @@
-#include "app/serve/serve_command.h"
+// `sundog serve`: the viewer as a page that a browser on this machine, or at the end of an ssh tunnel, shows.
+// Prints one URL, and serves until it is interrupted.
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include <memory>
 #include <thread>
 
+#include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
@@ -112,7 +114,7 @@ void add_serve(Arguments& root, Command& chosen) {
         "keep the token in this file, so that open pages come back when the server is started anew");
   app->callback([options, &chosen] {
     for (const std::string& host : options->hosts) check_host(host);
-    chosen = RunLater{[options] { return serve(*options); }, true};
+    chosen = {.run = [options] { return serve(*options); }, .stops_on_signal = true};
   });
 }
 
