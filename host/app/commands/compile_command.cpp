@@ -34,7 +34,7 @@ void add_compile(Arguments& root, Command& chosen) {
   Arguments* app =
       root.add_subcommand("compile", "Compile a program for the process that started this")->hidden();
   const auto place = std::make_shared<std::string>();
-  app->add_option("P:D", *place, "the device");
+  app->add_option("DEVICE", *place, "P:D");
   app->callback([place, &chosen] {
     chosen = {.run = [place] { return compile_for(*place); }, .in_first_thread = true};
   });
