@@ -135,7 +135,7 @@ void take(const Surfaces& surfaces, CompiledScene& out) {
   add_features(surfaces.features, out.features);
 }
 
-void take(const Meshes& meshes, const Mapping& mapping, CompiledScene& out) {
+void take(const Meshes& meshes, const MeshMapping& mapping, CompiledScene& out) {
   out.blocks = meshes.blocks;
   out.triangles = meshes.triangles;
   out.vertices = meshes.vertices;
@@ -211,7 +211,7 @@ struct SceneCompiler::Parts {
   Memo<Lights> lights;
   Memo<Surfaces> surfaces;
   Memo<Meshes> meshes;
-  Memo<Mapping> mapping;
+  Memo<MeshMapping> mapping;
   Memo<Instances> instances;
   Memo<Touching> touching;
   Memo<Fields> fields;

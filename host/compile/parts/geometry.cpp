@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-Mapping compile_mapping(const MappingInputs& in) {
+MeshMapping compile_mapping(const MappingInputs& in) {
   return {further_uvs(in), vertex_alphas(in), tangents_of(in)};
 }
 

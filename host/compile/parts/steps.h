@@ -116,12 +116,12 @@ struct MappingInputs {
   bool relief = false, vertex_colors = false;
 };
 /// Further texture coordinates, alpha and tangents that textures need.
-struct Mapping {
+struct MeshMapping {
   SharedTable<float> extra_uvs;
   SharedTable<float> vertex_alphas;
   SharedTable<u32> tangents;
 };
-Mapping compile_mapping(const MappingInputs& in);
+MeshMapping compile_mapping(const MappingInputs& in);
 
 /// A material's facts that instances depend on.
 struct SurfaceFacts {
