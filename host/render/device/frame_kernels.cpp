@@ -105,31 +105,46 @@ unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const Ke
   return 0;  // the build failed: the caller repeats it and reports the error
 }
 
+struct KernelPick {
+  KernelConfig config;
+  Fit fit = Fit::own;
+  bool built = true;
+};
+
 /// The kernels to draw with: the wanted ones if they are built or nothing can stand in for them, not even a
 /// draft.
-KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
-                           FrameKernels& kernels, KernelUpdate& update) {
-  if (!kernels.builder || device.has(integrator.entry, wanted.defines, wanted.generated)) return wanted;
+KernelPick pick(Device& device, const Integrator& integrator, const KernelConfig& wanted,
+                const FrameKernels& kernels) {
+  const auto is_built = [&](const KernelConfig& one) {
+    return device.has(integrator.entry, one.defines, one.generated);
+  };
+  if (!kernels.builder) return {wanted, Fit::own, false};
+  if (is_built(wanted)) return {wanted, Fit::own};
   std::vector<KernelConfig> candidates = kernels.builder->built();
   candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
   candidates.insert(candidates.end(), kernels.general.begin(), kernels.general.end());
   std::ranges::stable_partition(candidates, [](const KernelConfig& one) { return !interprets(one); });
-  for (const KernelConfig& general : candidates)
-    if (stands_in(general, wanted) && device.has(integrator.entry, general.defines, general.generated)) {
-      kernels.wanted = std::move(wanted);
-      return general;
-    }
-  const KernelOrder order{integrator.entry, integrator.kernel, wanted};
-  for (const KernelConfig& draft : candidates)
-    if (drafts(draft, wanted) && !kernels.builder->has_tried(order) &&
-        device.has(integrator.entry, draft.defines, draft.generated)) {
-      kernels.wanted = std::move(wanted);
-      kernels.is_draft = true;
-      return draft;
-    }
-  if (photons) begin_photon_tracer(device, integrator, wanted);
-  update.built += wait_for_kernels(device, *kernels.builder, order);
-  return wanted;
+  for (const KernelConfig& one : candidates)
+    if (stands_in(one, wanted) && is_built(one)) return {one, Fit::exact};
+  const bool tried = kernels.builder->has_tried({integrator.entry, integrator.kernel, wanted});
+  for (const KernelConfig& one : candidates)
+    if (!tried && drafts(one, wanted) && is_built(one)) return {one, Fit::draft};
+  return {wanted, Fit::own, false};
+}
+
+/// Kernels for `wanted`: its own, which are waited for where a builder makes them, or stand-ins.
+KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
+                           FrameKernels& kernels, KernelUpdate& update) {
+  KernelPick picked = pick(device, integrator, wanted, kernels);
+  kernels.fit = picked.fit;
+  if (picked.fit != Fit::own) {
+    kernels.wanted = std::move(wanted);
+  } else if (kernels.builder && !picked.built) {
+    if (photons) begin_photon_tracer(device, integrator, wanted);
+    update.built +=
+        wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, std::move(wanted)});
+  }
+  return std::move(picked.config);
 }
 
 /// Updates the kernels for the scene, keeping suitable ones.
@@ -142,7 +157,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   if (kernels.light) config.defines["HAS_LIGHT_PARTS"] = "1";
   if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
   kernels.wanted.reset();
-  kernels.is_draft = false;
+  kernels.fit = Fit::own;
   if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
   const bool photons = scene.features.caustics;
   const auto is_there = [&] {
@@ -194,9 +209,11 @@ void build_general_kernels(const Device& device, FrameKernels& kernels) {
 }
 
 bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
-  if (!kernels.builder || !kernels.wanted || kernels.is_draft || !keeps_programs(device)) return false;
+  if (!kernels.builder || !kernels.wanted || kernels.fit == Fit::draft || !keeps_programs(device))
+    return false;
   if (!kernels.builder->has_built({kernels.entry, kernels.integrator.name, *kernels.wanted})) return false;
   kernels.config = std::move(*kernels.wanted);
+  kernels.fit = Fit::own;
   kernels.wanted.reset();
   RenderTimes times;
   kernels.integrator = integrator_kernel(build(device, kernels.entry, kernels.config, kernels, times),
@@ -207,7 +224,7 @@ bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
 }
 
 bool may_end_draft(const FrameKernels& kernels) {
-  return kernels.is_draft &&
+  return kernels.fit == Fit::draft &&
          kernels.builder->has_tried({kernels.entry, kernels.integrator.name, *kernels.wanted});
 }
 

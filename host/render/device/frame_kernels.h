@@ -19,6 +19,10 @@ struct NotWantedAnyMore : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// How the kernels that draw relate to those that the scene wants: they are these, or others that give the
+/// same bits, or others that round differently.
+enum class Fit { own, exact, draft };
+
 using PhotonKernel = SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>;
 
 struct FrameKernels {
@@ -46,7 +50,7 @@ struct FrameKernels {
   KernelBuilder* builder = nullptr;         // builds while other kernels draw; may be null
   std::vector<KernelConfig> known;          // kernels that this device has built
   std::optional<KernelConfig> wanted;       // being built while others stand in
-  bool is_draft = false;                    // the stand-ins round differently
+  Fit fit = Fit::own;                       // of `config`
   std::vector<KernelConfig> general;        // with a builder: stand-ins for the scene's kernels
   std::vector<KernelConfig> built_general;  // those of them known to be built
 };

@@ -51,7 +51,7 @@ class TileRenderer {
   /// The specialisation of its kernels; changes before a tile when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
   /// Whether the picture must be drawn again by other kernels, and whether those are built.
-  bool draws_draft() const { return kernels_.is_draft; }
+  bool draws_draft() const { return kernels_.fit == Fit::draft; }
   bool may_end_draft() const { return sundog::may_end_draft(kernels_); }
   /// Maximum work-group size of its kernels; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
