@@ -49,7 +49,8 @@ class Schema {
     SchemaRule& rule = rules_.emplace_back();
     found->second = &rule;
     if (node.contains("type"))
-      rule.type = static_cast<Type>(std::ranges::find(type_names, node["type"]) - type_names.begin());
+      rule.type = static_cast<Type>(
+          std::ranges::find(type_names, node["type"].get_ref<const std::string&>()) - type_names.begin());
     if (node.contains("title")) rule.title = node["title"].get_ref<const std::string&>();
     if (node.contains("enum"))
       for (const json& name : node["enum"]) rule.names.emplace_back(name.get_ref<const std::string&>());

@@ -187,7 +187,7 @@ JsonValue JsonValue::member(std::string_view key, std::string_view what) const {
   if (found == json_->end()) fail(fmt::format("missing key \"{}\": wanted {}", key, what));
   const SchemaRule& rule = rule_of(SchemaRule::Type::object);
   const auto known = rule.keys.find(key);
-  return child(key, *found, known == rule.keys.end() ? nullptr : known->second.rule);
+  return child(key, *found, known == rule.keys.end() ? rule.others : known->second.rule);
 }
 
 std::string JsonValue::type() const {

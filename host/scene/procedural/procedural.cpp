@@ -1,7 +1,12 @@
 // Reads recipes of generated meshes and calls their generators.
 #include "scene/procedural/procedural.h"
 
+#include <fmt/format.h>
+
+#include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
+#include "scene/procedural/lathe.h"
+#include "scene/procedural/terrain.h"
 
 namespace sundog {
 
@@ -22,17 +27,24 @@ IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
   return cavity;
 }
 
-/// Of a recipe that is only checked the mesh is empty.
-Mesh read_ice_block(JsonObject& object, bool checks) {
+/// The block of a recipe, except "level" and "wall".
+IceBlock read_block(JsonObject& object) {
   IceBlock block;
-  std::string part;
-  object.read("seed", block.seed, "subdivision", block.subdivision, "part", part);
+  object.read("seed", block.seed, "subdivision", block.subdivision);
   block.outer = read_surface(object, block.outer);
   if (const auto cavity = object.find("cavity")) {
     block.hollow = true;
     block.cavity = cavity->object("generate_ice_cavity",
                                   [&](JsonObject& inner) { return read_cavity(inner, block.outer); });
   }
+  return block;
+}
+
+// Of a recipe that is only checked the mesh is empty.
+Mesh read_ice_block(JsonObject& object, bool checks) {
+  const IceBlock block = read_block(object);
+  std::string part;
+  object.read("part", part);
   if (part == "ice") return checks ? Mesh() : make_ice(block);
   const double level = object.at("level").number();
   double wall = 0;
@@ -40,11 +52,81 @@ Mesh read_ice_block(JsonObject& object, bool checks) {
   return checks ? Mesh() : make_ice_liquid(block, level, wall);
 }
 
-Mesh follow(const JsonValue& recipe, bool checks) {
-  recipe.type();
+std::vector<procedural::ProfilePoint> read_profile(const JsonValue& value) {
+  std::vector<procedural::ProfilePoint> points;
+  for (const JsonValue& item : value.items("points")) {
+    const JsonItems numbers = item.items("numbers");
+    points.push_back({{numbers[0].number(), numbers[1].number()}});
+    if (numbers.size() > 2) points.back().rounding = numbers[2].number();
+    if (points.back().rounding < 0) numbers[2].wanted("a rounding of 0 or more");
+  }
+  return points;
+}
+
+Lathe read_lathe(JsonObject& object) {
+  Lathe lathe;
+  lathe.profile = read_profile(object.at("profile"));
+  object.read("curve", lathe.curve, "segments", lathe.segments);
+  return lathe;
+}
+
+Extrusion read_extrusion(JsonObject& object) {
+  Extrusion extrusion;
+  extrusion.outline = read_profile(object.at("outline"));
+  object.read("curve", extrusion.curve, "height", extrusion.height, "facets", extrusion.facets);
+  return extrusion;
+}
+
+Terrain read_terrain(JsonObject& object) {
+  Terrain terrain;
+  object.read("seed", terrain.seed, "size", terrain.size, "height", terrain.height);
+  object.read("feature", terrain.feature, "ridges", terrain.ridges, "octaves", terrain.octaves);
+  object.read("cells", terrain.cells);
+  return terrain;
+}
+
+/// The recipe of the mesh that the key "vessel" names.
+JsonValue find_vessel(const JsonValue& name, const JsonValue& meshes) {
+  const auto mesh = meshes.json().find(name.text());
+  const bool generated = mesh != meshes.json().end() && mesh->is_object() && mesh->contains("generate");
+  const std::string type = generated ? (*mesh)["generate"].value("type", "") : "";
+  if (type != "lathe" && type != "ice_block")
+    name.fail(fmt::format(
+        "\"{}\" is no vessel; wanted the name of a mesh that a \"lathe\" or an \"ice_block\" generates",
+        name.text()));
+  return meshes.member(name.text(), "a mesh").member("generate", "a recipe");
+}
+
+Mesh read_fill(JsonObject& object, const JsonValue& meshes, bool checks) {
+  const JsonValue recipe = find_vessel(object.at("vessel"), meshes), to = object.at("to");
+  double meniscus = 0;
+  object.read("meniscus", meniscus);
+  const bool ice = recipe.type() == "ice_block";
+  if (ice && meniscus > 0) object.at("meniscus").fail("only the liquid in a lathe has a meniscus");
+  if (checks) return {};
+  if (!ice) return make_lathe_liquid(recipe.object("generate_lathe", read_lathe), to.number(), meniscus);
+  const IceBlock block = recipe.object("generate_ice_block", [](JsonObject& vessel) {
+    for (const char* key : {"part", "level", "wall"}) vessel.check(key);
+    return read_block(vessel);
+  });
+  return make_ice_liquid(block, to.number());
+}
+
+template <class Shape>
+Mesh made(const Shape& shape, Mesh (*make)(const Shape&), bool checks) {
+  return checks ? Mesh() : make(shape);
+}
+
+Mesh follow(const JsonValue& recipe, const JsonValue& meshes, bool checks) {
+  const std::string type = recipe.type();
   try {
-    return recipe.object("generate_ice_block",
-                         [&](JsonObject& object) { return read_ice_block(object, checks); });
+    return recipe.object("generate_" + type, [&](JsonObject& object) {
+      if (type == "lathe") return made(read_lathe(object), make_lathe, checks);
+      if (type == "extrusion") return made(read_extrusion(object), make_extrusion, checks);
+      if (type == "terrain") return made(read_terrain(object), make_terrain, checks);
+      if (type == "fill") return read_fill(object, meshes, checks);
+      return read_ice_block(object, checks);
+    });
   } catch (const GenerateError& error) {
     recipe.fail(error.what());
   }
@@ -52,8 +134,14 @@ Mesh follow(const JsonValue& recipe, bool checks) {
 
 }  // namespace
 
-Mesh generate_mesh(const JsonValue& recipe) { return follow(recipe, false); }
+Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes) { return follow(recipe, meshes, false); }
 
-void check_recipe(const JsonValue& recipe) { follow(recipe, true); }
+void check_recipe(const JsonValue& recipe, const JsonValue& meshes) { follow(recipe, meshes, true); }
+
+std::string recipe_key(const JsonValue& recipe, const JsonValue& meshes) {
+  std::string key = recipe.json().dump();
+  if (recipe.type() == "fill") key += find_vessel(recipe.member("vessel", "a mesh"), meshes).json().dump();
+  return key;
+}
 
 }  // namespace sundog

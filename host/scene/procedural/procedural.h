@@ -5,13 +5,16 @@
 
 namespace sundog {
 
-/// Generates the mesh of a recipe: an object with "type" and that type's parameters. Equal recipes give equal
-/// meshes, to the bit, on every machine. Read parameters through `recipe.object("generate_<type>", ...)`,
-/// which throws SceneError with the pointer; scenes/scene.schema.json must list the same keys under
-/// $defs/generate_<type>.
-Mesh generate_mesh(const JsonValue& recipe);
+/// Generates the mesh of a recipe: an object with "type" and that type's parameters; `meshes` is the scene's
+/// table, in which a fill finds its vessel. Equal recipes give equal meshes, to the bit, on every machine.
+/// Throws SceneError with the pointer. The keys of a type are those of $defs/generate_TYPE in
+/// scenes/scene.schema.json.
+Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes);
 
 /// Reads the parameters alone.
-void check_recipe(const JsonValue& recipe);
+void check_recipe(const JsonValue& recipe, const JsonValue& meshes);
+
+/// All that decides the mesh.
+std::string recipe_key(const JsonValue& recipe, const JsonValue& meshes);
 
 }  // namespace sundog

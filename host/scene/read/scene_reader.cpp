@@ -79,7 +79,7 @@ class SceneReader {
     names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
     if (const auto meshes = object.find("meshes"))
       for (const auto& [name, value] : meshes->members("meshes"))
-        meshes_.emplace(name, read_mesh(value, name));
+        meshes_.emplace(name, read_mesh(value, name, *meshes));
     add_made_meshes();
     if (const auto fields = object.find("fields"))
       for (const auto& [name, value] : fields->members("fields")) {
@@ -128,7 +128,7 @@ class SceneReader {
 
   ModelOptions model_options() const { return {.outside_files = root_.context().outside_files}; }
 
-  ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name) {
+  ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name, const JsonValue& meshes) {
     static constexpr std::string_view sources[] = {"file", "generate"};
     return value.object("mesh", [&](JsonObject& object) {
       const std::string source = object.one_of(sources);
@@ -139,10 +139,10 @@ class SceneReader {
         object.read("crease_angle", options.crease_angle);
         return library_.load(object, from, file, options);
       }
-      const auto generate = [&] { return model_of(generate_mesh(from), name); };
+      const auto generate = [&] { return model_of(generate_mesh(from, meshes), name); };
       if (!cache()) return library_.add(generate(), name);
-      if (cache()->checks()) check_recipe(from);
-      return library_.add(cache()->model(from.json().dump(), from.pointer(), generate), name);
+      if (cache()->checks()) check_recipe(from, meshes);
+      return library_.add(cache()->model(recipe_key(from, meshes), from.pointer(), generate), name);
     });
   }
 

@@ -14,26 +14,26 @@
 namespace {
 
 /// The page under docs/ that describes each command.
-const std::map<std::string, std::string> pages{{"render", "command-line"},
-                                               {"merge", "command-line"},
-                                               {"info", "command-line"},
-                                               {"formulas", "command-line"},
-                                               {"kernels", "command-line"},
-                                               {"compare", "command-line"},
-                                               {"bake", "textures"},
-                                               {"devices", "devices"},
-                                               {"check", "devices"},
-                                               {"tune", "devices"},
-                                               {"bench workgroup", "benchmarks"},
-                                               {"bench threads", "benchmarks"},
-                                               {"bench devices", "benchmarks"},
-                                               {"bench rays", "benchmarks"},
-                                               {"bench samples", "benchmarks"},
-                                               {"bench quality", "benchmarks"},
-                                               {"bench kernels", "benchmarks"},
-                                               {"bench textures", "benchmarks"},
-                                               {"bench roofline", "benchmarks"},
-                                               {"halo", "halo"}};
+const std::map<std::string, std::string> pages{{"render", "reference/command-line"},
+                                               {"merge", "reference/command-line"},
+                                               {"info", "reference/command-line"},
+                                               {"formulas", "reference/command-line"},
+                                               {"kernels", "reference/command-line"},
+                                               {"compare", "reference/command-line"},
+                                               {"bake", "guide/textures"},
+                                               {"devices", "guide/devices"},
+                                               {"check", "guide/devices"},
+                                               {"tune", "guide/devices"},
+                                               {"bench workgroup", "guide/benchmarks"},
+                                               {"bench threads", "guide/benchmarks"},
+                                               {"bench devices", "guide/benchmarks"},
+                                               {"bench rays", "guide/benchmarks"},
+                                               {"bench samples", "guide/benchmarks"},
+                                               {"bench quality", "guide/benchmarks"},
+                                               {"bench kernels", "guide/benchmarks"},
+                                               {"bench textures", "guide/benchmarks"},
+                                               {"bench roofline", "guide/benchmarks"},
+                                               {"halo", "guide/halo"}};
 
 /// The long options in a text: "--size", as a whole.
 std::set<std::string> options_in(const std::string& text) {

@@ -1,0 +1,198 @@
+// See lathe.h.
+#include "scene/procedural/lathe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/procedural/ice_block.h"
+
+namespace sundog {
+
+namespace {
+
+using glm::dvec2;
+using procedural::Profile;
+using procedural::ProfileStep;
+
+/// Steps along the profile may turn twice as far as those around the axis.
+Profile profile_of(const Lathe& lathe) {
+  Profile profile = procedural::follow(lathe.profile, lathe.curve,
+                                       procedural::turn_by(2.0 / std::max(lathe.segments, 16)).x);
+  for (const ProfileStep& step : profile)
+    if (step.a.x < 0 || step.b.x < 0)
+      throw GenerateError(fmt::format("the profile crosses the axis near a height of {:.4g}", step.a.y));
+  procedural::check_crossings(profile);
+  const dvec2 first = profile.front().a, last = profile.back().b;
+  const bool closed = (first.x == 0 && last.x == 0) || first == last;
+  return closed && procedural::area_of(profile) < 0 ? procedural::reversed(profile) : profile;
+}
+
+class LatheMesh {
+ public:
+  explicit LatheMesh(int segments) : segments_(static_cast<unsigned>(segments)) {
+    for (unsigned k = 0; k < segments_; ++k) circle_.push_back(procedural::turn_by(double(k) / segments_));
+    circle_.push_back(circle_.front());
+  }
+
+  Mesh turn(const Profile& profile) {
+    double whole = 0, way = 0;
+    for (const ProfileStep& step : profile) whole += glm::length(step.b - step.a);
+    unsigned end = 0;
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+      const ProfileStep& step = profile[i];
+      const bool smooth = i > 0 && glm::dot(profile[i - 1].normal_b, step.normal_a) > 1 - 1e-9;
+      const unsigned start = smooth ? end : add_ring(step.a, step.normal_a, way / whole);
+      way += glm::length(step.b - step.a);
+      end = add_ring(step.b, step.normal_b, way / whole);
+      join(start, step.a.x == 0, end, step.b.x == 0);
+    }
+    Mesh mesh;
+    mesh.positions = std::move(positions_);
+    mesh.normals = std::move(normals_);
+    mesh.uvs = std::move(uvs_);
+    mesh.triangles = std::move(triangles_);
+    return mesh;
+  }
+
+ private:
+  unsigned add_ring(const dvec2& p, const dvec2& normal, double v) {
+    const auto first = static_cast<unsigned>(positions_.size());
+    for (unsigned k = 0; k <= segments_; ++k) {
+      const dvec2 c = circle_[k];
+      positions_.emplace_back(p.x * c.x, p.y, -p.x * c.y);
+      normals_.emplace_back(normal.x * c.x, normal.y, -normal.x * c.y);
+      uvs_.emplace_back(double(k) / segments_, v);
+    }
+    return first;
+  }
+  void join(unsigned a, bool a_on_axis, unsigned b, bool b_on_axis) {
+    for (unsigned k = 0; k < segments_; ++k) {
+      if (!a_on_axis) triangles_.emplace_back(a + k, a + k + 1, b + k + 1);
+      if (!b_on_axis) triangles_.emplace_back(a + k, b + k + 1, b + k);
+    }
+  }
+
+  unsigned segments_;
+  std::vector<dvec2> circle_;
+  std::vector<glm::vec3> positions_, normals_;
+  std::vector<glm::vec2> uvs_;
+  std::vector<glm::uvec3> triangles_;
+};
+
+double distance_to(const ProfileStep& step, const dvec2& p) {
+  const dvec2 along = step.b - step.a;
+  const double share = std::clamp(glm::dot(p - step.a, along) / glm::dot(along, along), 0.0, 1.0);
+  return glm::length(p - step.a - share * along);
+}
+
+/// Where a line that begins below a height reaches it.
+dvec2 at_height(const dvec2& low, const dvec2& high, double height) {
+  return {low.x + (high.x - low.x) * ((height - low.y) / (high.y - low.y)), height};
+}
+
+/// The inside of a vessel from its floor on the axis to its rim; `outside`: the rest of the profile.
+struct Vessel {
+  std::vector<ProfileStep> inside, outside;
+};
+Vessel vessel_of(const Profile& profile) {
+  const char* wanted =
+      "the profile is no vessel: it must go from the axis around the rim and back to the axis";
+  if (profile.front().a.x != 0 || profile.back().b.x != 0) throw GenerateError(wanted);
+  const auto rim = std::ranges::max_element(profile, {}, [](const ProfileStep& step) { return step.b.y; });
+  if (profile.back().b.y >= rim->b.y) throw GenerateError(wanted);
+  return {procedural::reversed(Profile(rim + 1, profile.end())), Profile(profile.begin(), rim + 1)};
+}
+
+/// The part of a vessel's inside that is below a height.
+Profile below(const Profile& inside, double height) {
+  Profile wall;
+  for (const ProfileStep& step : inside) {
+    wall.push_back(step);
+    if (step.b.y < height) continue;
+    wall.back().b = at_height(step.a, step.b, height);
+    break;
+  }
+  return wall;
+}
+
+/// Continues a curve straight to a point.
+void go_to(const dvec2& p, Profile& to) {
+  const dvec2 at = to.back().b;
+  if (p == at) return;
+  const dvec2 along = p - at, normal = glm::normalize(dvec2(along.y, -along.x));
+  to.push_back({at, p, normal, normal});
+}
+
+/// The wall from the axis to the height `top`, moved into the glass on its right.
+Profile moved_right(const Profile& wall, double depth, double top) {
+  const dvec2 start{0, wall.front().a.y - depth};
+  Profile body{{start, start, {0, -1}, {0, -1}}};
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    const dvec2 normal = wall[i].normal_b, next = i + 1 < wall.size() ? wall[i + 1].normal_a : normal;
+    const double miter = 1 + glm::dot(normal, next);  // the lines beside a corner meet behind it
+    std::vector<dvec2> moved{wall[i].b + normal * depth};
+    if (miter > 0.5)
+      moved.front() = wall[i].b + (normal + next) * (depth / miter);
+    else
+      moved.push_back(wall[i].b + next * depth);
+    for (const dvec2& p : moved) {
+      if (p.x <= 0) continue;
+      go_to(p.y < top ? p : at_height(body.back().b, p, top), body);
+      if (p.y >= top) break;
+    }
+    if (body.back().b.y >= top) break;
+  }
+  if (body.back().b.y < top) go_to({body.back().b.x, top}, body);
+  body.erase(body.begin());
+  return body;
+}
+
+/// The liquid's surface from within the wall to the axis. The meniscus falls from the wall by a cubic, whose
+/// slope is 1 there and 0 where it ends.
+void add_surface(double radius, double level, double meniscus, Profile& body) {
+  constexpr int steps = 24;
+  const double width = std::min(radius, 3 * meniscus);
+  if (meniscus > 0) go_to({radius, level + meniscus}, body);
+  for (int i = 0; meniscus > 0 && i < steps; ++i) {
+    const double from = 1 - double(i) / steps, till = 1 - double(i + 1) / steps;
+    const auto normal = [&](double left) {
+      return glm::normalize(dvec2(-3 * meniscus * left * left, width));
+    };
+    const dvec2 end(radius - width * (1 - till), level + meniscus * till * till * till);
+    body.push_back({body.back().b, end, normal(from), normal(till)});
+  }
+  go_to({0, level}, body);
+}
+
+}  // namespace
+
+Mesh make_lathe(const Lathe& lathe) { return LatheMesh(lathe.segments).turn(profile_of(lathe)); }
+
+Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
+  const auto [inside, outside] = vessel_of(profile_of(lathe));
+  const double top = level + meniscus, floor = inside.front().a.y, rim = inside.back().b.y;
+  if (!(level > floor && top < rim))
+    throw GenerateError(fmt::format(
+        "the liquid would stand from {:.6g} to {:.6g}; wanted it between the vessel's floor, {:.6g}, and its "
+        "rim, {:.6g}",
+        level, top, floor, rim));
+  const Profile wall = below(inside, top);
+  double thickness = INFINITY;
+  for (const ProfileStep& step : wall)
+    for (const ProfileStep& other : outside) thickness = std::min(thickness, distance_to(other, step.b));
+  // Where the wall bends within its thickness, the liquid's end has to keep nearer to it.
+  for (double depth = thickness / 2;; depth /= 2) {
+    Profile body = moved_right(wall, depth, top);
+    add_surface(wall.back().b.x, level, meniscus, body);
+    try {
+      procedural::check_crossings(body);
+      return LatheMesh(lathe.segments).turn(body);
+    } catch (const GenerateError&) {
+      if (depth < thickness / 64) throw;
+    }
+  }
+}
+
+}  // namespace sundog

@@ -1,0 +1,27 @@
+// Surfaces of revolution about y from a profile, and the liquid that fills such a vessel.
+#pragma once
+#include <vector>
+
+#include "scene/description.h"
+#include "scene/procedural/profile.h"
+
+namespace sundog {
+
+struct Lathe {
+  std::vector<procedural::ProfilePoint> profile;  // (radius, height)
+  procedural::ProfileCurve curve = procedural::ProfileCurve::lines;
+  int segments = 256;  // around the axis, 3..4096
+};
+
+/// The surface with the profile's exact normals; u turns from +x to -z, v follows the profile's length. It
+/// is closed, and faces outwards, if both ends of the profile are on the axis, or if it returns to its
+/// start; else it is a sheet that faces the right of the profile. Throws GenerateError for a profile that
+/// crosses itself or the axis.
+Mesh make_lathe(const Lathe& lathe);
+
+/// The liquid in a vessel, up to y = `level` on the axis and higher by `meniscus` at the wall. It reaches
+/// half way into the wall where that is thinnest, so no surfaces coincide; the vessel needs the higher
+/// priority. Throws GenerateError like make_lathe, and if the profile is no vessel or the level is not in it.
+Mesh make_lathe_liquid(const Lathe& vessel, double level, double meniscus);
+
+}  // namespace sundog

@@ -1,0 +1,84 @@
+// See terrain.h.
+#include "scene/procedural/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/procedural/random.h"
+
+namespace sundog {
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+double smooth(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+double height_at(const Terrain& terrain, const dvec2& p) {
+  double sum = 0, share = 1, weight = 1;
+  dvec3 at(p.x / terrain.feature, 0.5, p.y / terrain.feature);
+  for (int octave = 0; octave < terrain.octaves; ++octave) {
+    const double noise = procedural::gradient_noise(terrain.seed + static_cast<std::uint64_t>(octave), at);
+    const double ridge = 1 - 3 * std::abs(noise), hill = noise;
+    if (octave == 0) {
+      // The hills stand in a plain; ridges rise where they are high.
+      sum = hill + terrain.ridges * (smooth(-0.25, 0.6, hill) - hill);
+      weight = 1 + terrain.ridges * (smooth(-0.2, 0.35, hill) - 1);
+    } else {
+      const double value = hill + terrain.ridges * (0.9 * ridge - hill);
+      sum += share * weight * value;
+      weight *= 1 + terrain.ridges * (std::clamp(0.55 + 0.45 * ridge, 0.0, 1.0) - 1);
+    }
+    share *= 0.5;
+    // Turned by 3/5 and 4/5, so that lattices of octaves do not lie on each other.
+    at = {2 * (0.8 * at.x - 0.6 * at.z) + 17, 0.5, 2 * (0.6 * at.x + 0.8 * at.z) + 31};
+  }
+  return sum;
+}
+
+}  // namespace
+
+Mesh make_terrain(const Terrain& terrain) {
+  const double longer = std::max(terrain.size.x, terrain.size.y);
+  const auto cells = [&](double side) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(terrain.cells * side / longer)));
+  };
+  const std::size_t nx = cells(terrain.size.x), nz = cells(terrain.size.y);
+  const auto place = [&](std::size_t i, std::size_t k) {
+    return dvec2((double(i) / double(nx) - 0.5) * terrain.size.x,
+                 (double(k) / double(nz) - 0.5) * terrain.size.y);
+  };
+  std::vector<double> heights;
+  heights.reserve((nx + 1) * (nz + 1));
+  for (std::size_t k = 0; k <= nz; ++k)
+    for (std::size_t i = 0; i <= nx; ++i) heights.push_back(height_at(terrain, place(i, k)));
+  const auto [low, high] = std::ranges::minmax(heights);
+  for (double& h : heights) h = high > low ? (h - low) * (terrain.height / (high - low)) : 0;
+
+  const auto height = [&](std::size_t i, std::size_t k) { return heights[k * (nx + 1) + i]; };
+  Mesh mesh;
+  for (std::size_t k = 0; k <= nz; ++k)
+    for (std::size_t i = 0; i <= nx; ++i) {
+      const std::size_t left = i > 0 ? i - 1 : i, right = std::min(i + 1, nx), back = k > 0 ? k - 1 : k,
+                        front = std::min(k + 1, nz);
+      const double dx = (height(right, k) - height(left, k)) / (place(right, k).x - place(left, k).x);
+      const double dz = (height(i, front) - height(i, back)) / (place(i, front).y - place(i, back).y);
+      const dvec2 p = place(i, k);
+      mesh.positions.values().emplace_back(p.x, height(i, k), p.y);
+      mesh.normals.values().emplace_back(procedural::normalized({-dx, 1, -dz}));
+      mesh.uvs.values().emplace_back(double(i) / double(nx), 1 - double(k) / double(nz));
+    }
+  for (std::size_t k = 0; k < nz; ++k)
+    for (std::size_t i = 0; i < nx; ++i) {
+      const auto a = static_cast<unsigned>(k * (nx + 1) + i), b = a + static_cast<unsigned>(nx) + 1;
+      mesh.triangles.values().emplace_back(a, b, b + 1);
+      mesh.triangles.values().emplace_back(a, b + 1, a + 1);
+    }
+  return mesh;
+}
+
+}  // namespace sundog

@@ -1,0 +1,24 @@
+// Mountains from noise: a grid over a rectangle, with its heights.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "scene/description.h"
+
+namespace sundog {
+
+struct Terrain {
+  std::uint64_t seed = 1;
+  glm::dvec2 size{10, 10};  // along x and z, about the origin
+  double height = 2;        // of the highest point over the lowest, which is at y = 0
+  double feature = 4;       // width of the largest hills
+  double ridges = 0.7;      // 0: rolling hills, 1: sharp ridges over flat valleys
+  int octaves = 9;          // 1..16; each has half the size of the one before
+  int cells = 256;          // along the longer side, 1..4096: up to 2 cells^2 triangles
+};
+
+/// A sheet that faces up, smooth, with u along x and v along -z. Heights are a sum of gradient noise whose
+/// octaves count less in valleys (Musgrave, in Ebert and others 2003, "Texturing and Modeling", chapter 16).
+Mesh make_terrain(const Terrain& terrain);
+
+}  // namespace sundog

@@ -1,0 +1,65 @@
+// Extrusions and terrains: closed or level where they should be, of the right volume and range.
+#include <algorithm>
+#include <cmath>
+
+#include "catch.h"
+#include "scene/mesh_faults.h"
+#include "scene/procedural/extrusion.h"
+#include "scene/procedural/ice_block.h"
+#include "scene/procedural/terrain.h"
+
+using namespace sundog;
+using glm::dvec3;
+
+namespace {
+
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles)
+    sum += glm::dot(dvec3(mesh.positions[t.x]),
+                    glm::cross(dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z]))) /
+           6;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("an extrusion is closed and has its outline's area times its height, whichever way that runs") {
+  // An L with a rounded outer corner.
+  Extrusion extrusion{.outline = {{{0, 0}}, {{3, 0}, 0.5}, {{3, 1}}, {{1, 1}}, {{1, 2}}, {{0, 2}}},
+                      .height = 0.5,
+                      .facets = 512};
+  const double area = 4 - 0.25 * (1 - 3.14159265358979 / 4);
+  for (int way = 0; way < 2; ++way) {
+    const Mesh mesh = make_extrusion(extrusion);
+    const MeshFaults faults = find_faults(mesh);
+    CHECK(faults.open_edges == 0);
+    CHECK(faults.turned_edges == 0);
+    CHECK(faults.inside_out == 0);
+    CHECK(volume(mesh) == Approx(area * 0.5).epsilon(1e-4));
+    std::ranges::reverse(extrusion.outline);
+  }
+  extrusion.outline = {{{0, 0}}, {{1, 1}}, {{1, 0}}, {{0, 1}}};
+  CHECK_THROWS_WITH(make_extrusion(extrusion), Catch::Contains("crosses itself near ["));
+}
+
+TEST_CASE("a terrain has its size and height, faces up, and is another one for another seed") {
+  Terrain terrain{.size = {8, 4}, .height = 1.5, .cells = 64};
+  const Mesh mesh = make_terrain(terrain);
+  CHECK(mesh.triangles.size() == 2 * 64 * 32);
+  glm::vec3 low = mesh.positions[0], high = low;
+  for (const glm::vec3& p : mesh.positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  CHECK(low == glm::vec3(-4, 0, -2));
+  CHECK(high == glm::vec3(4, 1.5f, 2));
+  for (const auto& t : mesh.triangles) {
+    const glm::vec3 normal =
+        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+    CHECK(normal.y > 0);
+    CHECK(glm::dot(normal, mesh.normals[t.x]) > 0);
+  }
+  terrain.seed = 2;
+  CHECK_FALSE(make_terrain(terrain).positions == mesh.positions);
+}
