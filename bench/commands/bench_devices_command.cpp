@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
+#include "bench/commands/bench_run.h"
 #include "bench/frames/device_ranking.h"
 
 namespace sundog {

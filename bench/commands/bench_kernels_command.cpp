@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
+#include "bench/commands/bench_run.h"
 #include "bench/frames/kernel_figures.h"
 #include "bench/report/machine.h"
 #include "render/device/kernel_config.h"

@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "bench/commands/bench_run.h"
 #include "bench/quality/quality.h"
 
 namespace sundog {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <sstream>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "base/error.h"
+#include "bench/commands/bench_run.h"
 #include "bench/rays/ray_sets.h"
 #include "bench/rays/ray_times.h"
 

@@ -1,8 +1,8 @@
 // `sundog bench roofline`: what a device can do at most, and where the tracer's kernels lie below that.
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
+#include "bench/commands/bench_run.h"
 #include "bench/roofline/roofline.h"
 
 namespace sundog {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bench/commands/known_report.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
@@ -21,6 +20,7 @@
 #include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "bench/commands/known_report.h"
 #include "bench/report/machine.h"
 #include "bench/runs/energy.h"
 #include "device/driver_folder.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "base/error.h"
+#include "bench/commands/bench_run.h"
 #include "bench/frames/sample_scaling.h"
 
 namespace sundog {

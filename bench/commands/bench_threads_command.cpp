@@ -7,11 +7,11 @@
 #include <memory>
 #include <thread>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "app/process/progress.h"
 #include "base/error.h"
+#include "bench/commands/bench_run.h"
 #include "bench/frames/thread_budget.h"
 #include "bench/report/machine.h"
 

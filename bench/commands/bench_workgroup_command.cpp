@@ -6,12 +6,12 @@
 #include <array>
 #include <memory>
 
-#include "bench/commands/bench_run.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/names.h"
+#include "bench/commands/bench_run.h"
 #include "bench/frames/frame_runner.h"
 #include "bench/frames/work_groups.h"
 #include "bench/rays/ray_sets.h"

@@ -1,7 +1,7 @@
 // Damaged PNG, JPEG, WebP, EXR and HDR files: each prefix, and each byte changed. Each is an image within the
 // limits or an error; none crashes or takes long.
-#include <base/pixels/image_codecs.h>
 #include <base/limits.h>
+#include <base/pixels/image_codecs.h>
 #include <base/pixels/stored_image.h>
 
 #include <string>
