@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ctime>
 #include <thread>
 
 #include "base/clock.h"
@@ -64,7 +63,7 @@ struct EmbreePeer::State {
   bool instanced = false;
   u32 balls = 0;                  // the geometry of all balls
   std::vector<u32> ball_objects;  // the objects that they are
-  double seconds = 0, processor_seconds = 0;
+  double seconds = 0;
 
   ~State() {
     if (scene) rtcReleaseScene(scene);
@@ -128,7 +127,6 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
   std::vector<RTCGeometry> geometries;
   for (const Mesh& mesh : scene.meshes) geometries.push_back(embree_mesh(state.device, mesh, quality));
   const Stopwatch clock;
-  const std::clock_t start = std::clock();
   if (state.instanced) {
     for (RTCGeometry geometry : geometries) {
       state.meshes.push_back(state.new_scene(options));
@@ -147,14 +145,11 @@ EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& optio
   if (!balls.empty()) state.attach(state.scene, embree_spheres(state.device, balls), state.balls);
   rtcCommitScene(state.scene);
   state.seconds = clock.seconds();
-  state.processor_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 EmbreePeer::~EmbreePeer() = default;
 
 double EmbreePeer::build_seconds() const { return state_->seconds; }
-
-double EmbreePeer::build_processor_seconds() const { return state_->processor_seconds; }
 
 void EmbreePeer::intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits, unsigned threads,
                            EmbreeWidth width, bool coherent) const {

@@ -31,7 +31,6 @@ class EmbreePeer {
   ~EmbreePeer();
 
   double build_seconds() const;
-  double build_processor_seconds() const;  // of all threads together
 
   /// Nearest hits in [t_min, t_max], on `threads` threads. Coherent: 16 rays in a row run close together.
   void intersect(std::span<const Ray> rays, std::span<EmbreeHit> hits, unsigned threads,
