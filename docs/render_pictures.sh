@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 if [ "${1:-}" = gallery ]; then
   shift
   scenes=$root/scenes/gallery pictures=$root/docs/pictures/gallery
-  [ -e "$scenes/wine_glass.ply" ] || "$scenes/make_meshes.py"
+  [ -e "$scenes/whisky_glass.ply" ] || "$scenes/make_meshes.py"
   [ $# -gt 0 ] || set -- $(cd "$scenes" && basename -s .json ./*.json)
   for name; do
     "$root/run.sh" render "$scenes/$name.json" -o "$pictures/$name.jpg" --time-limit 600 --denoise --resume "$pictures/$name.checkpoint"

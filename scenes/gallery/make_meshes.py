@@ -46,16 +46,6 @@ def round_corners(points, steps=6):
     return np.array(out)
 
 
-def spline(points, per=8):
-    """Catmull-Rom through (r, y) points."""
-    P = np.array(points, float); Q = np.vstack([2 * P[0] - P[1], P, 2 * P[-1] - P[-2]]); out = []
-    for i in range(1, len(Q) - 2):
-        for t in np.linspace(0, 1, per, endpoint=False):
-            a, b, c, d = Q[i - 1], Q[i], Q[i + 1], Q[i + 2]
-            out.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t ** 2 + (3 * b - 3 * c + d - a) * t ** 3))
-    out.append(Q[-2]); r = np.array(out); r[:, 0] = np.maximum(r[:, 0], 0); return r
-
-
 def lathe(name, profile, segments=96, crease=40.0, radius=None):
     """Profile (r, y) from the axis at the bottom, outside up, back to the axis: a closed solid.
     Normals are those of the profile, split where it turns by more than `crease` degrees.
@@ -248,34 +238,6 @@ def build():
     shore("shore.ply")
     dusk("dusk.hdr")
     tumbler()
-    # wine glass
-    bowl_out = spline([(0.045, 0.86), (0.12, 0.90), (0.30, 1.02), (0.415, 1.22), (0.435, 1.42), (0.40, 1.66), (0.345, 1.92)], 7)
-    stem = spline([(0.36, 0.02), (0.30, 0.032), (0.16, 0.052), (0.07, 0.09), (0.036, 0.20), (0.030, 0.45), (0.032, 0.72), (0.045, 0.86)], 6)
-    bowl_in = spline([(0.333, 1.925), (0.388, 1.66), (0.422, 1.42), (0.401, 1.225), (0.288, 1.04), (0.12, 0.935), (0, 0.915)], 7)
-    lathe("wine_glass.ply", np.vstack([[(0, 0), (0.355, 0.0), (0.366, 0.008)], stem, bowl_out[1:], [(0.339, 1.930)], bowl_in]), 448, crease=35)
-    lv = 1.46
-    mid = [p for p in spline([(0, 0.89), (0.12, 0.915), (0.295, 1.03), (0.408, 1.222), (0.4275, lv)], 8)]
-    lathe("wine.ply", mid + [(0, lv)], 112)
-    # water glass: straight, heavy foot
-    lathe("water_glass.ply", round_corners([(0, 0), (0.30, 0, 0.02), (0.325, 0.02, 0.03), (0.37, 1.30, 0.012), (0.348, 1.305, 0.012), (0.310, 0.16, 0.09), (0.0, 0.12)], 7), 448, crease=35)
-    wl = 0.92
-    r = 0.317 + (0.36 - 0.317) * (wl - 0.10) / 1.2
-    lathe("water.ply", round_corners([(0, 0.07), (0.31, 0.07, 0.06), (r, wl)], 6).tolist() + [(0, wl)], 112)
-    # honey jar: a belly and a neck with a lip
-    jo = spline([(0.30, 0.02), (0.385, 0.09), (0.43, 0.28), (0.43, 0.46), (0.37, 0.66), (0.315, 0.74), (0.315, 0.80)], 7)
-    ji = spline([(0.285, 0.80), (0.285, 0.73), (0.34, 0.64), (0.398, 0.45), (0.398, 0.28), (0.355, 0.115), (0.25, 0.07), (0, 0.062)], 7)
-    lathe("honey_jar.ply", np.vstack([[(0, 0), (0.27, 0)], jo, [(0.336, 0.815), (0.342, 0.835), (0.336, 0.855), (0.31, 0.862), (0.29, 0.85)], ji]), 448, crease=38)
-    hl = 0.58
-    lathe("honey.ply", np.vstack([spline([(0, 0.035), (0.26, 0.045), (0.37, 0.10), (0.414, 0.28), (0.414, 0.45), (0.372, hl)], 7), [(0, hl)]]), 448)
-    # honey dipper: grooved head on a stick, along y
-    pts = [(0, 0), (0.05, 0.0)]
-    for i in range(7):
-        y = 0.02 + i * 0.05; R = 0.06 + 0.055 * np.sin(np.pi * (i + 0.7) / 7.4)
-        pts += [(R - 0.008, y), (R, y + 0.008), (R, y + 0.020), (R - 0.008, y + 0.028), (0.045, y + 0.030), (0.045, y + 0.049)]
-    pts += [(0.03, 0.385), (0.024, 0.42), (0.022, 1.2), (0.03, 1.25), (0.03, 1.28), (0.018, 1.30), (0, 1.302)]
-    lathe("dipper.ply", pts, 40)
-    # a walker in a cloak, 1 unit tall, feet at the origin
-    lathe("walker.ply", np.vstack([spline([(0.0, 0.0), (0.10, 0.01), (0.155, 0.05), (0.145, 0.22), (0.115, 0.50), (0.125, 0.70), (0.105, 0.80), (0.045, 0.845), (0.05, 0.875), (0.066, 0.92), (0.05, 0.975), (0, 0.995)], 4)]), 24)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,8 @@ Profile profile_of(const Lathe& lathe) {
   return closed && procedural::area_of(profile) < 0 ? procedural::reversed(profile) : profile;
 }
 
+constexpr std::size_t most_facets = 4'000'000;
+
 class LatheMesh {
  public:
   explicit LatheMesh(int segments) : segments_(static_cast<unsigned>(segments)) {
@@ -37,6 +39,10 @@ class LatheMesh {
   }
 
   Mesh turn(const Profile& profile) {
+    const std::size_t facets = profile.size() * segments_;
+    if (facets > most_facets)
+      throw GenerateError(fmt::format("the lathe takes {} facets, and may take {}; wanted fewer \"segments\"",
+                                      facets, most_facets));
     double whole = 0, way = 0;
     for (const ProfileStep& step : profile) whole += glm::length(step.b - step.a);
     unsigned end = 0;

@@ -206,7 +206,12 @@ Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double 
   for (const ProfilePoint& place : places) all.push_back(place.at);
   if (all.empty() || std::ranges::all_of(all, [&](const dvec2& p) { return p == all.front(); }))
     throw GenerateError("wanted at least two different points");
-  return spline ? follow_spline(all, cos_turn) : follow_lines(places, cos_turn);
+  Profile profile = spline ? follow_spline(all, cos_turn) : follow_lines(places, cos_turn);
+  if (profile.size() > most_steps)
+    throw GenerateError(
+        fmt::format("the curve takes {} steps, and may take {}; wanted fewer facets or points",
+                    profile.size(), most_steps));
+  return profile;
 }
 
 Profile reversed(const Profile& profile) {

@@ -19,6 +19,7 @@ struct ProfileStep {
   glm::dvec2 a, b, normal_a, normal_b;
 };
 using Profile = std::vector<ProfileStep>;
+inline constexpr std::size_t most_steps = 16384;
 
 /// Cosine and sine of `share` of a turn, with the same bits on every machine.
 glm::dvec2 turn_by(double share);
@@ -27,7 +28,7 @@ glm::dvec2 turn_by(double share);
 /// centripetal Catmull-Rom curve (Yuksel and others 2011, "Parameterization and Applications of Catmull-Rom
 /// Curves"); a point given twice is a corner of it, and the line x = 0 mirrors what ends on it. A curve whose
 /// last point is its first is closed. Throws GenerateError for fewer than two places, a rounding of a spline,
-/// and one that the lines beside it have no room for.
+/// one that the lines beside it have no room for, and more than `most_steps`.
 Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double cos_turn);
 
 /// The same curve from its other end.

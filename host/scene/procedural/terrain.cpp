@@ -1,6 +1,8 @@
 // See terrain.h.
 #include "scene/procedural/terrain.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -52,10 +54,10 @@ Mesh make_terrain(const Terrain& terrain) {
     return dvec2((double(i) / double(nx) - 0.5) * terrain.size.x,
                  (double(k) / double(nz) - 0.5) * terrain.size.y);
   };
-  std::vector<double> heights;
-  heights.reserve((nx + 1) * (nz + 1));
-  for (std::size_t k = 0; k <= nz; ++k)
-    for (std::size_t i = 0; i <= nx; ++i) heights.push_back(height_at(terrain, place(i, k)));
+  std::vector<double> heights((nx + 1) * (nz + 1));
+  tbb::parallel_for(std::size_t{0}, nz + 1, [&](std::size_t k) {
+    for (std::size_t i = 0; i <= nx; ++i) heights[k * (nx + 1) + i] = height_at(terrain, place(i, k));
+  });
   const auto [low, high] = std::ranges::minmax(heights);
   for (double& h : heights) h = high > low ? (h - low) * (terrain.height / (high - low)) : 0;
 

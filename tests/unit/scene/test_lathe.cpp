@@ -168,4 +168,11 @@ TEST_CASE("profiles that make no solid are refused with their place") {
   for (const double level : {0.1, 0.2, 2.0, 3.0})
     CHECK_THAT(refused_liquid(beaker(), level), Catch::Contains("vessel's floor, 0.2, and its rim, 2"));
   CHECK_THAT(refused_liquid(beaker(), 1.96, 0.05), Catch::Contains("its rim, 2"));
+  std::vector<ProfilePoint> waves{{{0, 0}}};
+  for (int i = 1; i < 900; ++i) waves.push_back({{1 + i % 2, 0.01 * i}});
+  Lathe fine = spline(waves);
+  fine.segments = 2048;
+  CHECK_THAT(refusal(fine), Catch::Contains("steps, and may take 16384"));
+  CHECK_THAT(refusal(lines({{{0, 0}}, {{1, 0}, 0.4}, {{1, 1}, 0.4}, {{0, 1}}}, 4096)),
+             Catch::Contains("facets, and may take"));
 }
