@@ -1,4 +1,4 @@
-"""The scenes that sundog and Mitsuba render: every number once, and the scene file that sundog reads.
+"""The scenes that sundog and its peers among path tracers render: every number once, and the scene file that sundog reads.
 
 y up, right-handed, linear Rec.709, 256x256 pixels, box filter of one pixel, paths of up to 32 surfaces. Walls and the ground are boxes whose inner
 faces are the scenes' quads, spheres are exact, in both programs. The sky is a picture, 512x256, -z in its middle and +x right of it.
