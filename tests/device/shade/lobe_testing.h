@@ -24,6 +24,7 @@ inline constexpr u32 count = 1u << 12;
 
 inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
+#include "shared/lobes.h"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
 Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4 tint) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
