@@ -25,8 +25,8 @@ check() {  # FILE OPTION...
   "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter -Wno-pragma-once-outside-header -Werror -I"$made" -Ikernels \
     "${@:2}" "$1" || failed=1
 }
-for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0 $all" \
-  "-DTILE_W=4 -DTILE_H=4 $few" "-DTILE_W=1 -DTILE_H=1 -DSUNDOG_PORTABLE $few"; do
+for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DWIDE_VECTORS=0 $all" \
+  "-DTILE_W=4 -DTILE_H=4 $few" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DSUNDOG_PORTABLE $few"; do
   for file in kernels/lib/*/*.cl kernels/entry/*.cl; do
     unused=""; case "$file" in kernels/lib/*) unused=-Wno-unused-function ;; esac  # a library file alone uses nothing
     # shellcheck disable=SC2086
@@ -39,8 +39,8 @@ brings="PARALLAX:RELIEF RELIEF:MAPS RELIEF:UV METAL_ROUGH:MAPS COAT_MAPS:LAYER_M
   LIGHT_TREE:AREA_LIGHTS ROUGH_GLASS:ROUGH ROUGH:SECONDARY SHADOW_FILTERS:SECONDARY ABSORPTION:MEDIA SCATTERING:MEDIA TOUCHING:MEDIA
   DISPERSION:MEDIA GLOW:SDF OCCLUSION:SDF SOFT_SHADOWS:SDF MESH:BVH"
 of_paths="DISPERSION SCATTERING GUIDES CAUSTICS"  # no frame of Whitted's integrator has them
-lanes=("-DTILE_W=4 -DTILE_H=4" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE" "-DTILE_W=1 -DTILE_H=1 -DSUNDOG_PORTABLE"
-  "-DTILE_W=1 -DTILE_H=1 -DWIDE_VECTORS=0")
+lanes=("-DTILE_W=4 -DTILE_H=4" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DSUNDOG_PORTABLE"
+  "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DWIDE_VECTORS=0")
 RANDOM=${2:-1}
 for ((i = 0; i < ${1:-24}; ++i)); do
   unset has; declare -A has

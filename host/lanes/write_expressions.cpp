@@ -262,7 +262,7 @@ std::string Writer::varying_cast(const Expression& e) {
   if (to.is(T::real)) return fmt::format("TO_REAL({})", text);
   if (to.is(T::integer))
     return from.is(T::real) ? fmt::format("TO_MASK({})", text)
-           : was_natural    ? fmt::format("UINTS_TO_MASK({})", text)
+           : was_natural    ? fmt::format("AS_MASK({})", text)
                             : text;
   if (to.is(T::natural))
     return from.is(T::real) ? fmt::format("REAL_TO_UINTS({})", text) : fmt::format("AS_UINTS({})", text);
@@ -292,11 +292,8 @@ std::string Writer::varying_element(const Expression& e) {
   const char* part = e.type.is(Type::Kind::real) ? "REAL_LANE" : "MASK_LANE";
   const std::string place = fmt::format("{}[MASK_LANE({}, {})]", place_of(*e.of[0]), index, lane);
   line(fmt::format("{0} {1} = ({0})(0);", type_text(e.type, true), name));
-  line(fmt::format("for (u32 bits_ = lane_bits({}); bits_; bits_ &= bits_ - 1u) {{", mask_));
-  line(fmt::format("  const u32 {} = lowest_bit(bits_);", lane));
   const std::string found = varies(*e.of[0]) ? fmt::format("{}({}, {})", part, place, lane) : place;
-  line(fmt::format("  {}({}, {}) = {};", part, name, lane, found));
-  line("}");
+  line(fmt::format("EACH_LANE({0}, {1}) {2}({3}, {0}) = {4};", lane, mask_, part, name, found));
   return name;
 }
 

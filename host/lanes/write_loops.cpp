@@ -161,7 +161,7 @@ void Writer::each_alike(const Statement& s) {
     return line("}");
   }
   std::string all = simple(of);
-  if (v.type.is(Type::Kind::natural)) all = fmt::format("UINTS_TO_MASK({})", all);
+  if (v.type.is(Type::Kind::natural)) all = fmt::format("AS_MASK({})", all);
   const std::string left = fresh("left"), word = fresh("word"), mask = fresh("m");
   line(fmt::format("u32 {};", word));
   line(fmt::format("for (u32 {0} = lane_bits({1}); {0};) {{", left, mask_));

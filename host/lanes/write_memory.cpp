@@ -24,7 +24,7 @@ bool Writer::is_gathered(const Expression& e) {
 
 std::string Writer::index_of(const Expression& e) {
   const std::string text = lanes(e);
-  return e.type.is(Type::Kind::natural) ? fmt::format("UINTS_TO_MASK({})", text) : text;
+  return e.type.is(Type::Kind::natural) ? fmt::format("AS_MASK({})", text) : text;
 }
 
 /// table[index].member.x: words at a place of each lane. `extra`: words behind it; `whole`: all parts.

@@ -265,11 +265,8 @@ std::string Writer::scatter(const Expression& to, const std::string& value) {
   const std::string name = fresh("value"), lane = fresh("lane"), index = simple(*to.of[1]);
   const char* part = to.type.is(Type::Kind::real) ? "REAL_LANE" : "MASK_LANE";
   line(fmt::format("const {} {} = {};", type_text(to.type, true), name, value));
-  line(fmt::format("for (u32 bits_ = lane_bits({}); bits_; bits_ &= bits_ - 1u) {{", mask_));
-  line(fmt::format("  const u32 {} = lowest_bit(bits_);", lane));
-  line(fmt::format("  {0}({1}[MASK_LANE({2}, {3})], {3}) = {0}({4}, {3});", part, place_of(*to.of[0]), index,
-                   lane, name));
-  line("}");
+  line(fmt::format("EACH_LANE({3}, {5}) {0}({1}[MASK_LANE({2}, {3})], {3}) = {0}({4}, {3});", part,
+                   place_of(*to.of[0]), index, lane, name, mask_));
   return "";
 }
 

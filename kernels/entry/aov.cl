@@ -6,6 +6,7 @@
 #include "lib/shade/bsdf.cl"
 #include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
+#include "plain/shade/lobes.cl"
 #include "plain/shade/specular.cl"
 #include "shared/launch.h"
 
@@ -25,25 +26,20 @@
 NEVER_INLINE void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
                                  u32* counts, __global float4* aovs) {
   const Features f = mean_features(scene, stack, TO_MASK(x), TO_MASK(y), lanes, counts);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global float4* out = aovs + AOV_VECTORS * i;
     out[3] = (float4)(get3(&f.albedo, i), 0.0f);
     out[4] = (float4)(get3(&f.normal, i), 0.0f);
   }
 }
-#else
-static inline void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
-                                  u32* counts, __global float4* aovs) {}
 #endif
 
 #if ALL_AOVS
 // The steps that the ray of each lane alone marches.
-#if HAS_SDF
 static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK lanes) {
   REAL steps = (REAL)(0.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  if (!HAS_SDF) return steps;
+  EACH_LANE(i, lanes) {
     u32 counts[COUNTERS];
     for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
     start_marching(counts);
@@ -55,11 +51,6 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
   }
   return steps;
 }
-#else
-static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK lanes) {
-  return (REAL)(0.0f);
-}
-#endif
 
 // The vectors behind the first five, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
 NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
@@ -67,8 +58,7 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
   const Rays camera = camera_rays(scene->info, x, y);
   const SceneRays middle = scene_rays(&camera, stack);
   const REAL steps = steps_alone(scene, &middle, lanes);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global float4* out = aovs + AOV_VECTORS * i;
     const bool seen = MASK_LANE(hit, i) != 0;
     const float3 ng = seen ? get3(&s->ng, i) : (float3)(0.0f);
@@ -76,9 +66,6 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
     out[6] = (float4)(seen ? REAL_LANE(s->at.u, i) : 0.0f, seen ? REAL_LANE(s->at.v, i) : 0.0f, 0.0f, 0.0f);
   }
 }
-#else
-static inline void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
-                              const SurfaceInteractions* s, u32* counts, __global float4* aovs) {}
 #endif
 
 // see_surfaces() for camera rays in the middles of pixels, which pass surfaces that are cut away; s and bsdf
@@ -91,8 +78,8 @@ static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, 
     interact(scene, rays->o, rays->d, &met->hit, &met->face, hit, s);
     set_footprints(scene, rays, met->hit.t, s);
     note_depth(met, s);
-    add_parallax(scene, rays->d, hit, s);
-    add_relief(scene, rays->d, hit, s);
+    HAVING(HAS_PARALLAX, add_parallax(scene, rays->d, hit, s);)
+    HAVING(HAS_RELIEF, add_relief(scene, rays->d, hit, s);)
     *bsdf = make_bsdfs(scene, s, met->before, met->after, hit);
     if (!HAS_SHADOW_FILTERS) return hit;
     const SpecularSplits split = bsdf_specular(scene, bsdf, negate3(rays->d), hit);
@@ -131,13 +118,12 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   SurfaceInteractions s;
   Bsdfs bsdf;
   const MASK hit = see_middles(scene, &rays, lanes, &met, &s, &bsdf, counts);
-  const REAL3 albedo = albedo_of(&bsdf);
+  const REAL3 albedo = surface_color(scene, &bsdf, negate3(rays.d), hit);
   const REAL sunk = ways_to_heights(scene, &s, rays.d, hit);
   const REAL3 world = add3(add3(along3(s.p, sunk, rays.d), all3(scene->info->origin_rest.xyz)),
                            all3(scene->info->origin.xyz));
   const REAL depth = (met.hit.t + sunk) * dot3(rays.d, all3(scene->info->camera_forward.xyz));
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global float4* out = aovs + AOV_VECTORS * (first + i);
     if (!MASK_LANE(hit, i)) {
       out[0] = (float4)(0.0f, 0.0f, 0.0f, INFINITY);
@@ -149,8 +135,8 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     out[1] = (float4)(get3(&world, i), (float)scene->instances[MASK_LANE(met.hit.instance, i)].object);
     out[2] = (float4)(get3(&albedo, i), (float)MASK_LANE(met.face.material, i));
   }
-  write_features(scene, stack, x, y, lanes, counts, aovs + AOV_VECTORS * first);
-  write_more(scene, stack, x, y, lanes, hit, &s, counts, aovs + AOV_VECTORS * first);
+  HAVING(FEATURE_AOVS, write_features(scene, stack, x, y, lanes, counts, aovs + AOV_VECTORS * first);)
+  HAVING(ALL_AOVS, write_more(scene, stack, x, y, lanes, hit, &s, counts, aovs + AOV_VECTORS * first);)
   add_finished(counters, lane_count(lanes), pixel_count);
 }
 

@@ -61,8 +61,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   __global const u32* restrict pixels, MediaStack around, MASK idle,
                                   LaneWork* work, PathStates* paths, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
-  for (u32 bits = lane_bits(idle & MASK_OF(work->left == 0)); bits; bits &= bits - 1u)
-    take_pixel(launch, pixels, lowest_bit(bits), work, counts, ray_counts);
+  EACH_LANE(lane, idle & MASK_OF(work->left == 0)) take_pixel(launch, pixels, lane, work, counts, ray_counts);
   const BegunSamples begun = {work->at, idle & MASK_OF(work->left != 0)};
   if (!any_lane(begun.lanes)) return NO_LANES;
   work->at.sample -= begun.lanes;
@@ -77,24 +76,20 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
 #if HAS_MATTES
 static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
                               const PathStates* paths, MASK lanes, __global float4* restrict film) {
-  for (u32 bits = lane_bits(lanes & MASK_OF(paths->matte != 0.0f)); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits);
+  EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f)) {
     add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane)),
               MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
               work->sign[lane] * REAL_LANE(paths->matte, lane));
   }
 }
-#else
-static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
-                              const PathStates* paths, MASK lanes, __global float4* restrict film) {}
 #endif
 
 // Adds the parts of the light `all` of samples that have ended, as store_sample() adds that.
 #if HAS_LIGHT_PARTS
 static inline void add_part(const Launch* launch, const LaneWork* work, const REAL3* light,
                             const float* shares, MASK lanes, u32 part, __global float4* restrict film) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits), place = (u32)MASK_LANE(work->place, lane);
+  EACH_LANE(lane, lanes) {
+    const u32 place = (u32)MASK_LANE(work->place, lane);
     __global float* sum =
         (__global float*)(sample_sums(launch, film, place) + FIRST_LIGHT_VECTOR) + 3u * part;
     const float3 added = shares[lane] * get3(light, lane);
@@ -113,8 +108,7 @@ NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, cons
                                   const PathStates* paths, const REAL3* all, MASK lanes,
                                   __global float4* restrict film) {
   float shares[BATCH];
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits);
+  EACH_LANE(lane, lanes) {
     const float3 light = get3(all, lane);
     shares[lane] = work->sign[lane] * limiting_share(light, scene->info->max_component);
     if (!all_finite(light)) MASK_LANE(lanes, lane) = 0;
@@ -122,10 +116,6 @@ NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, cons
   u32 part = 0u;
   LIGHT_PARTS(ADD_PART)
 }
-#else
-static inline void add_light_parts(const Scene* scene, const Launch* launch, const LaneWork* work,
-                                   const PathStates* paths, const REAL3* all, MASK lanes,
-                                   __global float4* restrict film) {}
 #endif
 
 // One work-item of the kernel below: items [first, end).
@@ -150,18 +140,17 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     note_own_rays(begun, counts);
     start_marching(counts);
     lanes = going & step_path(scene, &paths, &rays, !any_lane(lanes), counts, going);
-    add_mattes(scene, launch, &work, &paths, going, film);
+    HAVING(HAS_MATTES, add_mattes(scene, launch, &work, &paths, going, film);)
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
     const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);
     const REAL alpha = coverage_of(&paths, over);
-    for (u32 bits = lane_bits(over); bits; bits &= bits - 1u) {
-      const u32 lane = lowest_bit(bits);
+    EACH_LANE(lane, over) {
       const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane)),
                    limited = limit_components(radiance, scene->info->max_component);
       store_sample((u32)MASK_LANE(work.place, lane), limited, work.sign[lane], film, weights, counts);
     }
-    add_light_parts(scene, launch, &work, &paths, &seen, over, film);
+    HAVING(HAS_LIGHT_PARTS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

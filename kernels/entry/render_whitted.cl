@@ -32,9 +32,6 @@ static inline void set_tile_sums(const Launch* launch, u32 item, const float* si
     REAL_LANE(tile->sign, lane) = signs[lane];
   }
 }
-#else
-static inline void set_tile_sums(const Launch* launch, u32 item, const float* signs,
-                                 __global float4* restrict film, TileSamples* tile) {}
 #endif
 
 // One work-item of the kernel below.
@@ -54,7 +51,7 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     float signs[BATCH];
     TileSamples tile;
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
-    set_tile_sums(launch, item, signs, film, &tile);
+    HAVING(HAS_MATTES, set_tile_sums(launch, item, signs, film, &tile);)
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
     trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);

@@ -21,8 +21,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     MASK_LANE(at.sample, i) = (int)(number % SOBOL_SAMPLES);
     if (number < launch->last) MASK_LANE(lanes, i) = -1;
   }
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
-    cells[first - launch->first + lowest_bit(bits)] = NO_PHOTON;
+  EACH_LANE(i, lanes) cells[first - launch->first + i] = NO_PHOTON;
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
   Photons photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
   Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
@@ -32,16 +31,16 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   begun.t_max = (REAL)(INFINITY);
   set_ray_times(starts.time, &begun);
   SceneRays rays = scene_rays(&begun, 0);
-  for (u32 bits = lane_bits(starts.lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), light = (u32)MASK_LANE(starts.light, i);
+  EACH_LANE(i, starts.lanes) {
+    const u32 light = (u32)MASK_LANE(starts.light, i);
     set_media(&rays, i, (MediaStack)light_media[2u * light + 1u] << 32 | light_media[2u * light]);
   }
   Landings landings = {0};
   for (lanes = starts.lanes; any_lane(lanes);) {
     start_marching(counts);
     const MASK going = lanes & step_photon(scene, &photons, &rays, &landings, counts, lanes);
-    for (u32 bits = lane_bits(lanes & landings.is); bits; bits &= bits - 1u) {
-      const u32 i = lowest_bit(bits), to = first - launch->first + i;
+    EACH_LANE(i, lanes & landings.is) {
+      const u32 to = first - launch->first + i;
       const float3 flux = get3(&landings.flux, i);
       const float3 p = still_point(scene, (u32)MASK_LANE(landings.instance, i), get3(&landings.p, i),
                                    REAL_LANE(starts.time, i));

@@ -1,7 +1,6 @@
 // The flattened two-level BVH. One node array holds the scene BVH (`tlas`, over instances) and all mesh BVHs
 // (`blas`, over triangle blocks), with absolute child indices.
-#ifndef SUNDOG_SHARED_BVH_H
-#define SUNDOG_SHARED_BVH_H
+#pragma once
 #include "shared/shapes.h"
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
@@ -137,4 +136,3 @@ typedef struct Ray {
 SUNDOG_SHARED_SIZE(Ray, 32)
 
 SUNDOG_SHARED_END
-#endif

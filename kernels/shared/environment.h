@@ -1,6 +1,5 @@
 // The environment light: an equirectangular picture and the tables to sample its directions.
-#ifndef SUNDOG_SHARED_ENVIRONMENT_H
-#define SUNDOG_SHARED_ENVIRONMENT_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -27,4 +26,3 @@ SUNDOG_SHARED_SIZE(Environment, 64)
 #define CELLS_BETWEEN_PIXELS 1.0f
 
 SUNDOG_SHARED_END
-#endif

@@ -2,8 +2,7 @@
 // needed code is compiled. SceneFeatures and the -D options are generated from this list. A new feature is a
 // line here, a line that sets it in host/compile, and kernel code that tests it.
 //   FEATURE(type on the host, definition, member of SceneFeatures)
-#ifndef SUNDOG_SHARED_FEATURES_H
-#define SUNDOG_SHARED_FEATURES_H
+#pragma once
 
 // A table:
 // clang-format off
@@ -59,5 +58,3 @@
   FEATURE(u32, EXTRA_UVS, extra_uvs)                /* sets of texture coordinates beside the first */  \
   FEATURE(u32, SDF_FLAGS, field_flags)              /* SdfField.flags that some field has */
 // clang-format on
-
-#endif

@@ -4,8 +4,7 @@
 //   OP(name, expression of the operands)
 // Operands: A, B, C, D numbers; MA, MB, MC masks; PA, PB, PC, PD points; SA, SB samples; T a number of the
 // table, Q the table from there; N a whole number; I the iteration; K the cell of a repetition.
-#ifndef SUNDOG_SHARED_FIELD_OPS_H
-#define SUNDOG_SHARED_FIELD_OPS_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -105,4 +104,3 @@ enum FieldOp SUNDOG_ENUM_OF_U32 {
 #define FIELD_FUNCTIONS 4u
 
 SUNDOG_SHARED_END
-#endif

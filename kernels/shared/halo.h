@@ -1,6 +1,5 @@
 // Halos: launch parameters and counters of the kernel that traces light through ice crystals.
-#ifndef SUNDOG_SHARED_HALO_H
-#define SUNDOG_SHARED_HALO_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -50,4 +49,3 @@ typedef struct HaloLaunch {
 SUNDOG_SHARED_SIZE(HaloLaunch, 64)
 
 SUNDOG_SHARED_END
-#endif

@@ -1,7 +1,6 @@
 // One launch of an integrator: items [first_item, last_item) of a pixel rectangle, row by row, and samples
 // [first_sample, first_sample + sample_count) of each pixel. A work-item processes `run` consecutive items.
-#ifndef SUNDOG_SHARED_LAUNCH_H
-#define SUNDOG_SHARED_LAUNCH_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -27,4 +26,3 @@ typedef struct Launch {
 SUNDOG_SHARED_SIZE(Launch, 52)
 
 SUNDOG_SHARED_END
-#endif

@@ -1,7 +1,6 @@
 // Layered materials, from the top: fuzz, a coat, a film, and a base (a metal, or a dielectric over a diffuse
 // ground), in the terms of OpenPBR 1.1 (host/models/values/openpbr.h has names and ranges).
-#ifndef SUNDOG_SHARED_LAYERS_H
-#define SUNDOG_SHARED_LAYERS_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -79,4 +78,3 @@ typedef struct Layers {
 SUNDOG_SHARED_SIZE(Layers, 176)
 
 SUNDOG_SHARED_END
-#endif

@@ -1,8 +1,7 @@
 // The parts into which AOVs divide the light of a pixel, in the order in which their sum is its colour. The
 // kernels add each part's samples to 3 floats, which lie one after the other in LIGHT_VECTORS float4.
 //   PART(name)
-#ifndef SUNDOG_SHARED_LIGHT_PARTS_H
-#define SUNDOG_SHARED_LIGHT_PARTS_H
+#pragma once
 
 #define LIGHT_PARTS(PART)     \
   PART(diffuse_direct)        \
@@ -17,5 +16,3 @@
   PART(sky)
 #define LIGHT_PART_COUNT 10u
 #define LIGHT_VECTORS 8u  // hold 3 * LIGHT_PART_COUNT floats
-
-#endif

@@ -14,8 +14,7 @@
 //   corners_NAME(light, p)            area lights of scene files: a square that holds what p sees of them
 //
 //   emit_NAME(light, c, e)            how photons leave it, by two numbers in [0, 1)
-#ifndef SUNDOG_SHARED_LIGHTS_H
-#define SUNDOG_SHARED_LIGHTS_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -120,4 +119,3 @@ SUNDOG_SHARED_SIZE(LightNode, 32)
 #define LIGHT_LEAF 0x80000000u
 
 SUNDOG_SHARED_END
-#endif

@@ -1,8 +1,7 @@
 // Layout of the table lobe_energy (host/compile/lobe_energy.h): offsets of the parts that depend on the index
 // of refraction, and its axes: rows by the square root of the width alpha, columns by LOBE_COLUMN. Losses of
 // narrow lobes depend on the cosine over alpha, so rows of small alpha concentrate columns at small cosines.
-#ifndef SUNDOG_SHARED_LOBE_ENERGY_H
-#define SUNDOG_SHARED_LOBE_ENERGY_H
+#pragma once
 #include "shared/scene.h"
 
 // Fraction of light that passes interfaces after multiple reflections: by 1 - 1 / eta and alpha.
@@ -15,5 +14,3 @@
 // The column position in 0 .. 1 of the cosine c to the normal, and the inverse.
 #define LOBE_COLUMN(c, alpha) ((c) * (1.0f + (alpha)) / ((c) + (alpha)))
 #define LOBE_COSINE(t, alpha) ((alpha) * (t) / (1.0f + (alpha) - (t)))
-
-#endif

@@ -8,6 +8,7 @@
 //   local_NAME(..., wo, wi, met, &light)     local lobes: adds what they return of a lamp, which a reflected
 //                                            ray also sees if `met`
 //   send_NAME(bsdf, lobes, wo, &part)        perfect lobes: the direction, and the part of light that it gets
+//   albedo_NAME(scene, bsdf, lobes)          about what it returns of white surroundings
 #pragma once
 
 #define PERFECT_LOBES(LOBE)   \
@@ -19,7 +20,11 @@
   LOCAL_LOBES(LOBE)
 
 // Those that Whitted's integrator has lamps light.
-#define LOCAL_LOBES(LOBE)     \
-  LOBE(HAS_LAYERS, layered)   \
-  LOBE(HAS_SURFACES, diffuse) \
+#define LOCAL_LOBES(LOBE) \
+  COLORED_LOBES(LOBE)     \
   LOBE(HAS_SURFACES, highlight)
+
+// Those whose albedo is the colour of a surface, for AOVs.
+#define COLORED_LOBES(LOBE) \
+  LOBE(HAS_LAYERS, layered) \
+  LOBE(HAS_SURFACES, diffuse)

@@ -7,8 +7,7 @@
 //                 weaker
 //   diffuse       b (1 - k - h (m + f (1 - m))), the rest, and a tenth of it ambient
 // Devices take metalness and roughness from textures, the host from numbers.
-#ifndef SUNDOG_SHARED_METAL_ROUGH_H
-#define SUNDOG_SHARED_METAL_ROUGH_H
+#pragma once
 #include "shared/types.h"
 
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
@@ -48,5 +47,4 @@ SUNDOG_METAL_INLINE SUNDOG_METAL_REAL metal_highlight(SUNDOG_METAL_REAL energy, 
 
 #if !defined(__OPENCL_VERSION__) && !defined(__OPENCL_C_VERSION__)
 }  // namespace sundog
-#endif
 #endif

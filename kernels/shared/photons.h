@@ -2,8 +2,7 @@
 // Photon Maps"; Hachisuka and Jensen 2009, "Stochastic Progressive Photon Mapping"). A pixel sample uses one
 // map, successive samples use many: each map has its own photons and a smaller radius than those before, and
 // is independent of them (Knaus and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach").
-#ifndef SUNDOG_SHARED_PHOTONS_H
-#define SUNDOG_SHARED_PHOTONS_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -57,4 +56,3 @@ typedef struct PhotonLaunch {
 SUNDOG_SHARED_SIZE(PhotonLaunch, 32)
 
 SUNDOG_SHARED_END
-#endif

@@ -1,8 +1,7 @@
 // Integer sample values, equal on host and device: an Owen-scrambled Sobol sequence of four dimensions,
 // shuffled anew for every further four (Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020). A
 // value depends only on pixel, sample and dimension.
-#ifndef SUNDOG_SHARED_SAMPLER_H
-#define SUNDOG_SHARED_SAMPLER_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -160,4 +159,3 @@ static inline u32 blue_noise_bits(u32 x, u32 y, u32 sample, u32 room, u32 dimens
 }
 
 SUNDOG_SHARED_END
-#endif

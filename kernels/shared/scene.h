@@ -1,6 +1,5 @@
 // Materials, media, the camera and the frame: tables for shading. Colours are linear RGB.
-#ifndef SUNDOG_SHARED_SCENE_H
-#define SUNDOG_SHARED_SCENE_H
+#pragma once
 #include "shared/lights.h"
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
@@ -162,4 +161,3 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNTER_ITEMS 32
 
 SUNDOG_SHARED_END
-#endif

@@ -4,8 +4,7 @@
 //   TABLE(element on the device, element on the host, name, name in messages)
 // Only `nodes` has two element types: Bvh8Nodes are uploaded unchanged, or as CompactNodes for devices with
 // one ray per lane.
-#ifndef SUNDOG_SHARED_SCENE_TABLES_H
-#define SUNDOG_SHARED_SCENE_TABLES_H
+#pragma once
 #include "shared/bvh.h"
 #include "shared/environment.h"
 #include "shared/layers.h"
@@ -57,5 +56,3 @@
   TABLE(float, float, extra_uvs, "further texture coordinates")          \
   TABLE(float, float, vertex_alphas, "alpha of vertices")                \
   TABLE(u32, u32, tangents, "tangents")
-
-#endif

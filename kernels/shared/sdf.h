@@ -1,7 +1,6 @@
 // A signed distance field as the marcher sees it: interval, safety and precision. Generated code defines the
 // field; its formulas' numbers are in one table of floats.
-#ifndef SUNDOG_SHARED_SDF_H
-#define SUNDOG_SHARED_SDF_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -41,4 +40,3 @@ typedef struct SdfField {
 SUNDOG_SHARED_SIZE(SdfField, 128)
 
 SUNDOG_SHARED_END
-#endif

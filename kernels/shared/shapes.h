@@ -3,8 +3,7 @@
 //   SOLID(constant after SHAPE_ and HAS_, description's struct before Shape, name)
 // Exact solids are unit shapes scaled by their transform; `parameters` holds what a transform cannot express
 // (in object space, y is the axis).
-#ifndef SUNDOG_SHARED_SHAPES_H
-#define SUNDOG_SHARED_SHAPES_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -33,4 +32,3 @@ typedef enum ShapeKind SUNDOG_ENUM_OF_U32 { SHAPE_MESH, SOLIDS(SHAPE_CONSTANT) S
 #define HAS_SOLID (SOLIDS(HAS_SOLID_OR) 0)
 
 SUNDOG_SHARED_END
-#endif

@@ -1,6 +1,5 @@
 // Tabulated spectra: their wavelengths, and the table `spectra` of a scene with a dispersive medium.
-#ifndef SUNDOG_SHARED_SPECTRA_H
-#define SUNDOG_SHARED_SPECTRA_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -27,4 +26,3 @@ SUNDOG_SHARED_BEGIN
 #define WAVELENGTH_HIGH 0.972496100271f
 
 SUNDOG_SHARED_END
-#endif

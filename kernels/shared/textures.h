@@ -2,8 +2,7 @@
 // in postfix order: each pops its operands from a stack and pushes its value; the node with TEXTURE_LAST
 // gives the result. Images are mip levels (Williams 1983, "Pyramidal Parametrics") in tiles of 4x4 texels, so
 // that a sample's four texels usually share a cache line.
-#ifndef SUNDOG_SHARED_TEXTURES_H
-#define SUNDOG_SHARED_TEXTURES_H
+#pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
@@ -149,4 +148,3 @@ SUNDOG_SHARED_SIZE(MaterialMaps, 160)
 #define SRGB_VALUES 256u  // linear values of bytes, at the start of texture_values
 
 SUNDOG_SHARED_END
-#endif

@@ -1,7 +1,6 @@
 // Scalar and vector types shared by host and kernels: only 4-byte scalars and 16-byte vectors, so that OpenCL
 // compilers lay out these structs like the host (a probe kernel checks it).
-#ifndef SUNDOG_SHARED_TYPES_H
-#define SUNDOG_SHARED_TYPES_H
+#pragma once
 
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 typedef uint u32;
@@ -26,6 +25,4 @@ struct alignas(16) float4 {
   friend bool operator==(const float4&, const float4&) = default;
 };
 }  // namespace sundog
-#endif
-
 #endif

@@ -1,14 +1,13 @@
 // The host's counterpart of lib/core/lanes.h: four lanes in compiler vectors. Include once, before
 // kernels/lib/halo, inside its namespace.
 #define SUNDOG_HOST_LANES
-#define SUNDOG_LIB_LANES_H
 #define LANES 4
 #define ALWAYS_INLINE [[gnu::always_inline]] inline
 #define NEVER_INLINE inline
 
 using REAL = float __attribute__((vector_size(16)));
 using MASK = int __attribute__((vector_size(16)));
-using WORDS = u32 __attribute__((vector_size(16)));
+using UINTS = u32 __attribute__((vector_size(16)));
 
 #define ALL_OF(x) (REAL{} + (x))
 #define NO_LANES (MASK{})
@@ -16,8 +15,7 @@ using WORDS = u32 __attribute__((vector_size(16)));
 #define MASK_OF(comparison) (comparison)
 #define AS_MASK(x) (reinterpret_cast<MASK>(x))
 #define AS_REAL(x) (reinterpret_cast<REAL>(x))
-#define AS_WORDS(x) (reinterpret_cast<WORDS>(x))
-#define AS_MASK_OF_WORDS(x) (reinterpret_cast<MASK>(x))
+#define AS_UINTS(x) (reinterpret_cast<UINTS>(x))
 #define TO_MASK(x) __builtin_convertvector(x, MASK)
 #define TO_REAL(x) __builtin_convertvector(x, REAL)
 #define MASK_LANE(variable, i) (variable)[i]

@@ -2,128 +2,95 @@
 // an int or a vector of ints whose lanes are 0 or -1 (all bits set), even for scalars, so that select(),
 // any() and bit operators work alike for LANES = 1, 4, 8 and 16. Comparisons go through MASK_OF(a < b). All
 // functions give the same bits for any number of lanes. LANES is defined once for the whole program.
-#ifndef SUNDOG_LIB_LANES_H
-#define SUNDOG_LIB_LANES_H
+#pragma once
 #include "lib/core/config.h"
 #include "lib/core/masks.cl"
 
 #ifndef LANES
-#define LANES BATCH
+#define LANES 16
 #endif
 
+// IN_LANES(name, end): the name with the number of lanes in it, without one for a single lane.
+#define IN_LANES(name, end) IN_LANES_OF(name, LANE_DIGITS, end)
+#define IN_LANES_OF(name, digits, end) IN_LANES_BY(name, digits, end)
+#define IN_LANES_BY(name, digits, end) name##digits##end
 #if LANES == 1
-typedef float REAL;
-typedef int MASK;
-typedef uint UINTS;
-#define MASK_OF(comparison) (-(int)(comparison))
-#define AS_MASK(x) as_int(x)
-#define AS_REAL(x) as_float(x)
-#define TO_MASK(x) convert_int_rtz(x)
-#define TO_REAL(x) convert_float(x)
-#define AS_UINTS(x) as_uint(x)
-#define UINTS_TO_MASK(x) as_int(x)
-#define REAL_TO_UINTS(x) convert_uint_rtz(x)
-#define LANE_BITS (MASK)(1)
-#define LANE_NUMBERS (MASK)(0)
-#elif LANES == 4
-typedef float4 REAL;
-typedef int4 MASK;
-typedef uint4 UINTS;
-#define MASK_OF(comparison) (comparison)
-#define AS_MASK(x) as_int4(x)
-#define AS_REAL(x) as_float4(x)
-#define TO_MASK(x) convert_int4_rtz(x)
-#define TO_REAL(x) convert_float4(x)
-#define AS_UINTS(x) as_uint4(x)
-#define UINTS_TO_MASK(x) as_int4(x)
-#define REAL_TO_UINTS(x) convert_uint4_rtz(x)
-#define LANE_BITS (MASK)(1, 2, 4, 8)
-#define LANE_NUMBERS (MASK)(0, 1, 2, 3)
-#elif LANES == 8
-typedef float8 REAL;
-typedef int8 MASK;
-typedef uint8 UINTS;
-#define MASK_OF(comparison) (comparison)
-#define AS_MASK(x) as_int8(x)
-#define AS_REAL(x) as_float8(x)
-#define TO_MASK(x) convert_int8_rtz(x)
-#define TO_REAL(x) convert_float8(x)
-#define AS_UINTS(x) as_uint8(x)
-#define UINTS_TO_MASK(x) as_int8(x)
-#define REAL_TO_UINTS(x) convert_uint8_rtz(x)
-#define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128)
-#define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7)
-#elif LANES == 16
-typedef float16 REAL;
-typedef int16 MASK;
-typedef uint16 UINTS;
-#define MASK_OF(comparison) (comparison)
-#define AS_MASK(x) as_int16(x)
-#define AS_REAL(x) as_float16(x)
-#define TO_MASK(x) convert_int16_rtz(x)
-#define TO_REAL(x) convert_float16(x)
-#define AS_UINTS(x) as_uint16(x)
-#define UINTS_TO_MASK(x) as_int16(x)
-#define REAL_TO_UINTS(x) convert_uint16_rtz(x)
-#define LANE_BITS (MASK)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
-#define LANE_NUMBERS (MASK)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#define LANE_DIGITS
+#define MASK_BY(type, comparison) (-(type)(comparison))
+#define LOAD_LANES(from) (*(from))
+#define STORE_LANES(v, to) (*(to) = (v))
+#elif LANES == 4 || LANES == 8 || LANES == 16
+#define LANE_DIGITS LANES
+#define MASK_BY(type, comparison) (comparison)
+#define LOAD_LANES(from) IN_LANES(vload, )(0, from)
+#define STORE_LANES(v, to) IN_LANES(vstore, )(v, 0, to)
 #else
 #error "LANES must be 1, 4, 8 or 16"
 #endif
+
+#define MASK_OF(comparison) MASK_BY(int, comparison)
+typedef IN_LANES(float, ) REAL;
+typedef IN_LANES(int, ) MASK;
+typedef IN_LANES(uint, ) UINTS;
+#define AS_REAL(x) IN_LANES(as_float, )(x)
+#define AS_MASK(x) IN_LANES(as_int, )(x)
+#define AS_UINTS(x) IN_LANES(as_uint, )(x)
+#define TO_REAL(x) IN_LANES(convert_float, )(x)
+#define TO_MASK(x) IN_LANES(convert_int, _rtz)(x)
+#define REAL_TO_UINTS(x) IN_LANES(convert_uint, _rtz)(x)
+#define FIRST_(sixteen) (sixteen).s0
+#define FIRST_4(sixteen) (sixteen).lo.lo
+#define FIRST_8(sixteen) (sixteen).lo
+#define FIRST_16(sixteen) (sixteen)
+#define LANE_NUMBERS IN_LANES(FIRST_, )((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define LANE_BITS ((MASK)(1) << LANE_NUMBERS)
 
 #define NO_LANES ((MASK)(0))
 #define ALL_LANES ((MASK)(-1))
 #define LANES_IF(condition) ((condition) ? ALL_LANES : NO_LANES)
 
 // Whether any lane of the mask is set: a single instruction if available, because OpenCL's any() is a chain
-// of branches in PoCL.
-static inline int any_lane(MASK m) {
-#if LANES == 1
-  return m;
-#elif LANES == 16 && defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
-  return __builtin_ia32_cvtd2mask512(m) != 0;
-#elif LANES == 8 && defined(__AVX__) && !defined(SUNDOG_PORTABLE)
-  return __builtin_ia32_movmskps256(as_float8(m)) != 0;
-#elif LANES == 4 && defined(__SSE__) && !defined(SUNDOG_PORTABLE)
+// of branches in PoCL. And its bits: bit i is set if lane i is.
+#define any_of(m) (m)
+static inline int any_of4(int4 m) {
+#if defined(__SSE__) && !defined(SUNDOG_PORTABLE)
   return __builtin_ia32_movmskps(as_float4(m)) != 0;
 #else
-#if LANES == 16
-  const int8 eight = m.lo | m.hi;
-#elif LANES == 8
-  const int8 eight = m;
-#endif
-#if LANES == 4
-  const int4 four = m;
-#else
-  const int4 four = eight.lo | eight.hi;
-#endif
-  const int2 two = four.lo | four.hi;
+  const int2 two = m.lo | m.hi;
   return two.x | two.y;
 #endif
 }
-
-// Converts between a mask and bits: bit i is set if lane i is.
-static inline u32 lane_bits(MASK m) {
-#if LANES == 1
-  return (u32)m & 1u;
-#elif LANES == 4
-  return lane_mask((int8)(m, m)) & 15u;
-#elif LANES == 8
-  return lane_mask(m);
-#elif defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
-  return (u32)(ushort)__builtin_ia32_cvtd2mask512(m);
+static inline int any_of8(int8 m) {
+#if defined(__AVX__) && !defined(SUNDOG_PORTABLE)
+  return __builtin_ia32_movmskps256(as_float8(m)) != 0;
 #else
-  return lane_mask(m.lo) | lane_mask(m.hi) << 8;
+  return any_of4(m.lo | m.hi);
 #endif
 }
-static inline MASK lanes_of(u32 bits) {
-#if LANES == 16 && defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
-  return __builtin_ia32_cvtmask2d512((ushort)bits);
+#define bits_of(m) ((u32)(m) & 1u)
+#define bits_of4(m) (lane_mask((int8)(m, m)) & 15u)
+#define bits_of8(m) lane_mask(m)
+#define mask_of_bits(bits) MASK_OF(((MASK)((int)(bits)) & LANE_BITS) != 0)
+#define mask_of_bits4(bits) mask_of_bits(bits)
+#define mask_of_bits8(bits) mask_of_bits(bits)
+#if defined(__AVX512DQ__) && !defined(SUNDOG_PORTABLE)
+#define any_of16(m) (__builtin_ia32_cvtd2mask512(m) != 0)
+#define bits_of16(m) (u32)(ushort) __builtin_ia32_cvtd2mask512(m)
+#define mask_of_bits16(bits) __builtin_ia32_cvtmask2d512((ushort)(bits))
 #else
-  return MASK_OF(((MASK)((int)bits) & LANE_BITS) != 0);
+#define any_of16(m) any_of8((m).lo | (m).hi)
+#define bits_of16(m) (lane_mask((m).lo) | lane_mask((m).hi) << 8)
+#define mask_of_bits16(bits) mask_of_bits(bits)
 #endif
-}
+static inline int any_lane(MASK m) { return IN_LANES(any_of, )(m); }
+static inline u32 lane_bits(MASK m) { return IN_LANES(bits_of, )(m); }
+static inline MASK lanes_of(u32 bits) { return IN_LANES(mask_of_bits, )(bits); }
 static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
+
+// A loop over the lanes of `lanes` by their numbers i, the lowest first.
+#define EACH_LANE(i, lanes)                                                              \
+  for (u32 i, i##_left = lane_bits(lanes); i##_left && (i = lowest_bit(i##_left), true); \
+       i##_left &= i##_left - 1u)
 
 // Lane i of a private REAL or MASK variable, as an lvalue.
 #define REAL_LANE(variable, i) (((float*)&(variable))[i])
@@ -147,44 +114,13 @@ static inline void write_packed(float* to, REAL v, MASK m) {
 #elif LANES == 8 && defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
   vstore8(__builtin_ia32_compresssf256_mask(v, v, (uchar)lane_bits(m)), 0, to);
 #else
-  for (u32 bits = lane_bits(m), k = 0; bits; bits &= bits - 1u) to[k++] = REAL_LANE(v, lowest_bit(bits));
+  u32 count = 0;
+  EACH_LANE(i, m) to[count++] = REAL_LANE(v, i);
 #endif
 }
-static inline REAL read_lanes(const float* from) {
-#if LANES == 1
-  return *from;
-#elif LANES == 4
-  return vload4(0, from);
-#elif LANES == 8
-  return vload8(0, from);
-#else
-  return vload16(0, from);
-#endif
-}
-
-static inline REAL load_lanes(__global const float* from) {
-#if LANES == 1
-  return *from;
-#elif LANES == 4
-  return vload4(0, from);
-#elif LANES == 8
-  return vload8(0, from);
-#else
-  return vload16(0, from);
-#endif
-}
-
-static inline void write_lanes(float* to, REAL v) {
-#if LANES == 1
-  *to = v;
-#elif LANES == 4
-  vstore4(v, 0, to);
-#elif LANES == 8
-  vstore8(v, 0, to);
-#else
-  vstore16(v, 0, to);
-#endif
-}
+static inline REAL read_lanes(const float* from) { return LOAD_LANES(from); }
+static inline REAL load_lanes(__global const float* from) { return LOAD_LANES(from); }
+static inline void write_lanes(float* to, REAL v) { STORE_LANES(v, to); }
 
 typedef struct REAL3 {
   REAL x, y, z;
@@ -249,39 +185,38 @@ static inline REAL real_clamp(REAL a, REAL low, REAL high) { return real_min(rea
 // 0 below 1e37. AVX-512 starts from 14-bit estimates, equal in registers of any width, in a quarter of the
 // time of exact roots and quotients, which other processors use.
 #if defined(__AVX512VL__) && !defined(SUNDOG_PORTABLE)
-#if LANES == 16
-#define ROUGHLY(what, x) __builtin_ia32_##what##14ps512_mask(x, x, (ushort)0xFFFFu)
-#elif LANES == 8
-#define ROUGHLY(what, x) __builtin_ia32_##what##14ps256_mask(x, x, (uchar)0xFFu)
-#elif LANES == 4
-#define ROUGHLY(what, x) __builtin_ia32_##what##14ps128_mask(x, x, (uchar)0xFFu)
-#else
-#define ROUGHLY(what, x) first_of(__builtin_ia32_##what##14ps128_mask((float4)(x), (float4)(x), (uchar)0xFFu))
+#define HAS_ESTIMATES 1
+#define ESTIMATE_16(name, x) __builtin_ia32_##name##512_mask(x, x, (ushort)0xFFFFu)
+#define ESTIMATE_8(name, x) __builtin_ia32_##name##256_mask(x, x, (uchar)0xFFu)
+#define ESTIMATE_4(name, x) __builtin_ia32_##name##128_mask(x, x, (uchar)0xFFu)
+#define ESTIMATE_(name, x) first_of(ESTIMATE_4(name, (float4)(x)))
+#define ROUGH_RSQRT(x) IN_LANES(ESTIMATE_, )(rsqrt14ps, x)
+#define ROUGH_INVERSE(x) IN_LANES(ESTIMATE_, )(rcp14ps, x)
 static inline float first_of(float4 four) { return four.x; }
+#else
+#define HAS_ESTIMATES 0
+#define ROUGH_RSQRT(x) (1.0f / sqrt(x))
+#define ROUGH_INVERSE(x) (1.0f / (x))
 #endif
-static inline REAL rough_rsqrt(REAL x) { return ROUGHLY(rsqrt, x); }
-static inline REAL rough_inverse(REAL x) { return ROUGHLY(rcp, x); }
+static inline REAL rough_rsqrt(REAL x) { return ROUGH_RSQRT(x); }
+static inline REAL rough_inverse(REAL x) { return ROUGH_INVERSE(x); }
 static inline REAL real_rsqrt(REAL x) {
+  if (!HAS_ESTIMATES) return 1.0f / sqrt(x);
   const REAL y = rough_rsqrt(x), half_x = 0.5f * x;
   return fma(y, fma(-half_x * y, y, (REAL)(0.5f)), y);
 }
 static inline REAL real_inverse(REAL x) {
+  if (!HAS_ESTIMATES) return 1.0f / x;
   const REAL y = rough_inverse(x);
   return fma(y, fma(-x, y, (REAL)(1.0f)), y);
 }
 // 1 / x as rounded by division, for the same x; 1 ulp off if all bits of the mantissa are set (Markstein
 // 1990, "Computation of Elementary Functions on the IBM RISC System/6000 Processor").
 static inline REAL rounded_inverse(REAL x) {
+  if (!HAS_ESTIMATES) return 1.0f / x;
   const REAL y = real_inverse(x);
   return fma(fma(-x, y, (REAL)(1.0f)), y, y);
 }
-#else
-static inline REAL rough_rsqrt(REAL x) { return 1.0f / sqrt(x); }
-static inline REAL rough_inverse(REAL x) { return 1.0f / x; }
-static inline REAL real_rsqrt(REAL x) { return 1.0f / sqrt(x); }
-static inline REAL real_inverse(REAL x) { return 1.0f / x; }
-static inline REAL rounded_inverse(REAL x) { return 1.0f / x; }
-#endif
 // x^(-n/2), n constant; n ulp. With the rough root y and e = 1 - x y^2 it is y^n (1 - e)^(-n/2).
 static inline REAL inverse_root_power(REAL x, int n) {
   const REAL y = rough_rsqrt(x);
@@ -385,15 +320,10 @@ static inline MASK gather_words(__global const u32* from, MASK index, MASK lanes
   return __builtin_ia32_gatherd_d(NO_LANES, (const void*)(size_t)from, index, lanes, 4);
 #else
   MASK words = NO_LANES;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    MASK_LANE(words, i) = (int)from[MASK_LANE(index, i)];
-  }
+  EACH_LANE(i, lanes) { MASK_LANE(words, i) = (int)from[MASK_LANE(index, i)]; }
   return words;
 #endif
 }
 static inline REAL gather_floats(__global const float* from, MASK index, MASK lanes) {
   return AS_REAL(gather_words((__global const u32*)from, index, lanes));
 }
-
-#endif

@@ -4,27 +4,13 @@
 #include "lib/core/lanes.h"
 #include "lib/core/sampler.cl"
 
-#if LANES == 1
-typedef u32 LANE_U32;
-#define AS_LANE_U32(x) as_uint(x)
-#elif LANES == 4
-typedef uint4 LANE_U32;
-#define AS_LANE_U32(x) as_uint4(x)
-#elif LANES == 8
-typedef uint8 LANE_U32;
-#define AS_LANE_U32(x) as_uint8(x)
-#else
-typedef uint16 LANE_U32;
-#define AS_LANE_U32(x) as_uint16(x)
-#endif
-
-static inline LANE_U32 hash_lanes(LANE_U32 x) {
-  const LANE_U32 state = x * 747796405u + 2891336453u;
-  const LANE_U32 word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+static inline UINTS hash_lanes(UINTS x) {
+  const UINTS state = x * 747796405u + 2891336453u;
+  const UINTS word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
   return (word >> 22) ^ word;
 }
 
-static inline LANE_U32 reversed_lanes(LANE_U32 r) {
+static inline UINTS reversed_lanes(UINTS r) {
   r = (r << 16) | (r >> 16);
   r = ((r & 0x00ff00ffu) << 8) | ((r & 0xff00ff00u) >> 8);
   r = ((r & 0x0f0f0f0fu) << 4) | ((r & 0xf0f0f0f0u) >> 4);
@@ -32,7 +18,7 @@ static inline LANE_U32 reversed_lanes(LANE_U32 r) {
   return ((r & 0x55555555u) << 1) | ((r & 0xaaaaaaaau) >> 1);
 }
 
-static inline LANE_U32 owen_lanes(LANE_U32 x, LANE_U32 seed) {
+static inline UINTS owen_lanes(UINTS x, UINTS seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
@@ -41,7 +27,7 @@ static inline LANE_U32 owen_lanes(LANE_U32 x, LANE_U32 seed) {
 }
 
 // unit_float() of bits: 24 of them are an int above 0.
-static inline REAL unit_lanes(LANE_U32 bits) { return TO_REAL(AS_MASK(bits >> 8)) * 0x1p-24f; }
+static inline REAL unit_lanes(UINTS bits) { return TO_REAL(AS_MASK(bits >> 8)) * 0x1p-24f; }
 
 // A sum of four columns, looked up among the sixteen if vectors allow.
 #if LANES == 16 && defined(__AVX512F__) && !defined(SUNDOG_PORTABLE)
@@ -49,17 +35,17 @@ static inline REAL unit_lanes(LANE_U32 bits) { return TO_REAL(AS_MASK(bits >> 8)
   (int16)(0, a, b, a ^ b, c, a ^ c, b ^ c, a ^ b ^ c, d, a ^ d, b ^ d, a ^ b ^ d, c ^ d, a ^ c ^ d, \
           b ^ c ^ d, a ^ b ^ c ^ d)
 #define LANE_COLUMNS(bit, a, b, c, d) \
-  AS_LANE_U32(__builtin_ia32_permvarsi512(SUMS_OF_FOUR(a, b, c, d), AS_MASK(order >> bit)))
+  AS_UINTS(__builtin_ia32_permvarsi512(SUMS_OF_FOUR(a, b, c, d), AS_MASK(order >> bit)))
 #else
 #define LANE_COLUMNS SOBOL_COLUMNS
 #endif
 
-static inline REAL scrambled_lanes(LANE_U32 reversed, LANE_U32 seed, u32 component) {
-  const LANE_U32 own = hash_lanes(seed + 0x9e3779b9u * (component + 1u));
+static inline REAL scrambled_lanes(UINTS reversed, UINTS seed, u32 component) {
+  const UINTS own = hash_lanes(seed + 0x9e3779b9u * (component + 1u));
   return unit_lanes(reversed_lanes(owen_lanes(reversed & 0xffffu, own)));
 }
 
-static inline LANE_U32 second_lanes(LANE_U32 order) {
+static inline UINTS second_lanes(UINTS order) {
   order ^= order << 16;
   order ^= (order & 0x00ff00ffu) << 8;
   order ^= (order & 0x0f0f0f0fu) << 4;
@@ -67,7 +53,7 @@ static inline LANE_U32 second_lanes(LANE_U32 order) {
   return order ^ (order & 0x55555555u) << 1;
 }
 
-static inline REAL blue_noise_lanes(LANE_U32 place, LANE_U32 dimension) {
+static inline REAL blue_noise_lanes(UINTS place, UINTS dimension) {
   return unit_lanes(reversed_lanes(owen_lanes(reversed_lanes(place), hash_lanes(dimension + 0x9e3779b9u))));
 }
 
@@ -85,11 +71,11 @@ static inline void join_samples(LaneSamples* at, const LaneSamples* other, MASK 
 
 // Two numbers in [0, 1) for each lane, of the dimensions from `own` on, an even number, by the samplers whose
 // dimensions have no more in common.
-static inline void unlinked_pair(const LaneSamples* at, LANE_U32 own, REAL* u, REAL* v) {
-  const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y), sample = AS_LANE_U32(at->sample);
+static inline void unlinked_pair(const LaneSamples* at, UINTS own, REAL* u, REAL* v) {
+  const UINTS x = AS_UINTS(at->x), y = AS_UINTS(at->y), sample = AS_UINTS(at->sample);
   if (SAMPLER == SAMPLER_BLUE_NOISE) {
-    const LANE_U32 index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
-    const LANE_U32 place = owen_lanes(index, hash_lanes(own >> 1));
+    const UINTS index = reversed_lanes(Z_ORDER(x, y) << SAMPLE_ROOM | sample);
+    const UINTS place = owen_lanes(index, hash_lanes(own >> 1));
     *u = blue_noise_lanes(place, own);
     *v = blue_noise_lanes(second_lanes(place), own + 1u);
   } else {
@@ -105,7 +91,7 @@ typedef struct FourNumbers {
 
 // The numbers selected by `first` (the first two) and `later` (the other two); one half elsewhere.
 static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bool first, bool later) {
-  const LANE_U32 own = AS_LANE_U32(dimension) + at->seed;
+  const UINTS own = AS_UINTS(dimension) + at->seed;
   const REAL half_way = (REAL)(0.5f);
   FourNumbers u = {half_way, half_way, half_way, half_way};
   if ((SAMPLER == SAMPLER_BLUE_NOISE) | (SAMPLER == SAMPLER_INDEPENDENT)) {
@@ -113,16 +99,15 @@ static inline FourNumbers chosen_lanes(const LaneSamples* at, MASK dimension, bo
     if (later) unlinked_pair(at, own + 2u, &u.z, &u.w);
     return u;
   }
-  const LANE_U32 seed =
-      hash_lanes(AS_LANE_U32(at->x) + hash_lanes(AS_LANE_U32(at->y) + hash_lanes(own >> 2)));
-  const LANE_U32 order = owen_lanes(reversed_lanes(AS_LANE_U32(at->sample)) >> 16, seed) & 0xffffu;
+  const UINTS seed = hash_lanes(AS_UINTS(at->x) + hash_lanes(AS_UINTS(at->y) + hash_lanes(own >> 2)));
+  const UINTS order = owen_lanes(reversed_lanes(AS_UINTS(at->sample)) >> 16, seed) & 0xffffu;
   if (first) {
-    const LANE_U32 pair = SOBOL_PAIR_01(LANE_COLUMNS);
+    const UINTS pair = SOBOL_PAIR_01(LANE_COLUMNS);
     u.x = scrambled_lanes(pair, seed, 0u);
     u.y = scrambled_lanes(pair >> 16, seed, 1u);
   }
   if (later) {
-    const LANE_U32 pair = SOBOL_PAIR_23(LANE_COLUMNS);
+    const UINTS pair = SOBOL_PAIR_23(LANE_COLUMNS);
     u.z = scrambled_lanes(pair, seed, 2u);
     u.w = scrambled_lanes(pair >> 16, seed, 3u);
   }
@@ -138,12 +123,12 @@ static inline void pair_lanes(const LaneSamples* at, MASK dimension, bool later,
 
 // The Hammersley set of `samples` points, shifted per pixel (Cranley and Patterson 1976).
 static inline void hammersley_lanes(const LaneSamples* at, u32 samples, REAL* u, REAL* v) {
-  const LANE_U32 x = AS_LANE_U32(at->x), y = AS_LANE_U32(at->y);
-  const LANE_U32 shift_u = hash_lanes(x + hash_lanes(y + hash_u32(at->seed))),
-                 shift_v = hash_lanes(x + hash_lanes(y + hash_u32(at->seed + 1u)));
+  const UINTS x = AS_UINTS(at->x), y = AS_UINTS(at->y);
+  const UINTS shift_u = hash_lanes(x + hash_lanes(y + hash_u32(at->seed))),
+              shift_v = hash_lanes(x + hash_lanes(y + hash_u32(at->seed + 1u)));
   const REAL a = (TO_REAL(at->sample) + 0.5f) / (float)samples + unit_lanes(shift_u);
   *u = real_min(a - floor(a), (REAL)(0x1.fffffep-1f));
-  *v = unit_lanes(reversed_lanes(AS_LANE_U32(at->sample)) + shift_v);
+  *v = unit_lanes(reversed_lanes(AS_UINTS(at->sample)) + shift_v);
 }
 
 // Positions of the camera samples of `lanes` in their pixels, in [0, 1)^2: the centre if `samples`, those of
@@ -154,8 +139,7 @@ static inline void places_in_pixels(const LaneSamples* at, MASK lanes, u32 sampl
   if (SAMPLER == SAMPLER_AUTO) {
     hammersley_lanes(at, samples, u, v);
   } else if ((SAMPLER == SAMPLER_REGULAR) | (SAMPLER == SAMPLER_STRATIFIED)) {
-    for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-      const u32 i = lowest_bit(bits);
+    EACH_LANE(i, lanes) {
       const uint2 pixel = (uint2)((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i));
       const float2 place = place_in_grid(pixel, (u32)MASK_LANE(at->sample, i), samples, at->seed);
       REAL_LANE(*u, i) = place.x;

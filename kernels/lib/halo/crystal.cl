@@ -1,6 +1,5 @@
 // Hexagonal ice prisms in sunlight: their orientation, and where a ray enters. One crystal per lane.
-#ifndef SUNDOG_LIB_HALO_CRYSTAL_CL
-#define SUNDOG_LIB_HALO_CRYSTAL_CL
+#pragma once
 #include "lib/halo/numbers.cl"
 
 // Light in a crystal. `at`, `d` (unit) and `sunlight` are in the crystal's coordinates: z is its axis; side
@@ -11,7 +10,7 @@ typedef struct HaloRays {
   REAL3 sunlight;  // its original direction
   REAL index;      // of refraction
   REAL weight;     // fraction of the light that is left
-  WORDS random;    // random state
+  UINTS random;    // random state
 } HaloRays;
 
 // Light leaving a crystal.
@@ -121,7 +120,7 @@ ALWAYS_INLINE MASK halo_pick_face(const HaloLaunch* launch, HaloRays* rays, REAL
 
 // A ray of sunlight hits a crystal: the reflected part leaves at once, the rest enters.
 ALWAYS_INLINE HaloExits halo_enter(const HaloLaunch* launch, MASK ray, HaloRays* rays) {
-  rays->random = halo_hash(AS_WORDS(ray) + launch->seed);
+  rays->random = halo_hash(AS_UINTS(ray) + launch->seed);
   rays->index = launch->index_low + (launch->index_high - launch->index_low) * halo_random(&rays->random);
   halo_orient(launch, rays);
   halo_shine(launch, rays);
@@ -139,5 +138,3 @@ ALWAYS_INLINE HaloExits halo_enter(const HaloLaunch* launch, MASK ray, HaloRays*
   rays->weight = rays->weight - exits.weight;
   return exits;
 }
-
-#endif

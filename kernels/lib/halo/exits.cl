@@ -1,6 +1,5 @@
 // Light inside a crystal hits its surface: a part leaves, the rest is reflected.
-#ifndef SUNDOG_LIB_HALO_EXITS_CL
-#define SUNDOG_LIB_HALO_EXITS_CL
+#pragma once
 #include "lib/halo/crystal.cl"
 
 // The next face, of the basal pair (-1) and the three pairs of sides: distances are quotients, compared by
@@ -42,5 +41,3 @@ ALWAYS_INLINE HaloExits halo_bounce(const HaloLaunch* launch, HaloRays* rays, MA
   rays->weight = kept;
   return exits;
 }
-
-#endif

@@ -1,30 +1,11 @@
 // Arithmetic of halos: only float additions, products, comparisons and conversions, which every device rounds
 // alike, and never fma(), so that a map has the same bits on all devices and on the host, which compiles
 // these files as C++ (host/compile/halo/host_lanes.h replaces lib/core/lanes.h there).
-#ifndef SUNDOG_LIB_HALO_NUMBERS_CL
-#define SUNDOG_LIB_HALO_NUMBERS_CL
-#include "lib/core/lanes.h"
+#pragma once
 #include "shared/halo.h"
-
 #ifndef SUNDOG_HOST_LANES
+#include "lib/core/lanes.h"
 #define ALL_OF(x) ((REAL)(x))
-#if LANES == 1
-typedef u32 WORDS;
-#define AS_MASK_OF_WORDS(x) as_int(x)
-#define AS_WORDS(x) as_uint(x)
-#elif LANES == 4
-typedef uint4 WORDS;
-#define AS_MASK_OF_WORDS(x) as_int4(x)
-#define AS_WORDS(x) as_uint4(x)
-#elif LANES == 8
-typedef uint8 WORDS;
-#define AS_MASK_OF_WORDS(x) as_int8(x)
-#define AS_WORDS(x) as_uint8(x)
-#else
-typedef uint16 WORDS;
-#define AS_MASK_OF_WORDS(x) as_int16(x)
-#define AS_WORDS(x) as_uint16(x)
-#endif
 #endif
 
 ALWAYS_INLINE REAL halo_dot(REAL3 a, REAL3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -75,16 +56,14 @@ ALWAYS_INLINE REAL halo_minus_log(REAL x) {
 }
 
 // Wellons' lowbias32, a permutation.
-ALWAYS_INLINE WORDS halo_hash(WORDS x) {
+ALWAYS_INLINE UINTS halo_hash(UINTS x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;
   return x ^ (x >> 16);
 }
 
 // The next of a ray's random numbers in [0, 1), with 24 bits.
-ALWAYS_INLINE REAL halo_random(WORDS* state) {
+ALWAYS_INLINE REAL halo_random(UINTS* state) {
   *state = *state + 0x9e3779b9u;
-  return TO_REAL(AS_MASK_OF_WORDS(halo_hash(*state) >> 8)) * 5.96046448e-8f;
+  return TO_REAL(AS_MASK(halo_hash(*state) >> 8)) * 5.96046448e-8f;
 }
-
-#endif

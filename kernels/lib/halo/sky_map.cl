@@ -1,7 +1,6 @@
 // The map of the sky: the sphere on a square with cells of equal area (Clarberg, "Fast Equal-Area Mapping of
 // the (Hemi)Sphere using SIMD", 2008); the upper half is the inner diamond.
-#ifndef SUNDOG_LIB_HALO_SKY_MAP_CL
-#define SUNDOG_LIB_HALO_SKY_MAP_CL
+#pragma once
 #include "lib/halo/crystal.cl"
 
 #ifndef SUNDOG_HOST_LANES
@@ -46,5 +45,3 @@ ALWAYS_INLINE void halo_count(const HaloLaunch* launch, HALO_MAP map, HaloRays* 
   for (u32 i = 0; i < LANES; ++i)
     if (MASK_LANE(added, i) > 0) HALO_ADD(map, MASK_LANE(cell, i), (u32)MASK_LANE(added, i));
 }
-
-#endif

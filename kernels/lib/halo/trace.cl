@@ -1,6 +1,5 @@
 // Traces sunlight through crystals of one kind to the map of the sky.
-#ifndef SUNDOG_LIB_HALO_TRACE_CL
-#define SUNDOG_LIB_HALO_TRACE_CL
+#pragma once
 #include "lib/halo/exits.cl"
 #include "lib/halo/sky_map.cl"
 
@@ -44,5 +43,3 @@ NEVER_INLINE void halo_item(const HaloLaunch* launch, HALO_MAP map, u32 item, Ha
     halo_tally(sums, HALO_KEPT, rays.weight, active);
   }
 }
-
-#endif

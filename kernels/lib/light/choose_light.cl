@@ -54,8 +54,7 @@ static inline float light_probability(const Scene* scene, u32 leaf, float3 p) {
 NEVER_INLINE MASK choose_lights(const Scene* scene, REAL3 p, REAL u, MASK lanes, REAL* probability) {
   MASK index = NO_LANES;
   *probability = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     float chance;
     MASK_LANE(index, i) = (int)choose_light(scene, get3(&p, i), REAL_LANE(u, i), &chance);
     REAL_LANE(*probability, i) = chance;
@@ -64,8 +63,7 @@ NEVER_INLINE MASK choose_lights(const Scene* scene, REAL3 p, REAL u, MASK lanes,
 }
 static inline REAL light_probabilities(const Scene* scene, u32 leaf, REAL3 p, MASK lanes) {
   REAL probability = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
-    REAL_LANE(probability, lowest_bit(bits)) = light_probability(scene, leaf, get3(&p, lowest_bit(bits)));
+  EACH_LANE(i, lanes) REAL_LANE(probability, i) = light_probability(scene, leaf, get3(&p, i));
   return probability;
 }
 #endif

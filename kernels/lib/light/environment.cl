@@ -24,8 +24,7 @@ NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes
   const MASK x1 = select((MASK)(0), x0 + 1, MASK_OF(x0 + 1 < width));
   const MASK y0 = max(row, (MASK)(0)) * width, y1 = min(row + 1, (MASK)(height - 1)) * width;
   REAL3 light = all3((float3)(0.0f));
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global const float4 *upper = scene->environment + MASK_LANE(y0, i),
                           *lower = scene->environment + MASK_LANE(y1, i);
     const int p = MASK_LANE(x0, i), q = MASK_LANE(x1, i);
@@ -93,9 +92,8 @@ static inline __global const float4* pixels_below(const Scene* scene, u32 row) {
 }
 
 static inline void find_corners(const Scene* scene, MASK lanes, ChosenCells* cells) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), row = (u32)MASK_LANE(cells->row, i),
-              right = (u32)MASK_LANE(cells->column, i),
+  EACH_LANE(i, lanes) {
+    const u32 row = (u32)MASK_LANE(cells->row, i), right = (u32)MASK_LANE(cells->column, i),
               left = (right ? right : scene->environments->width) - 1u;
     __global const float4 *above = pixels_above(scene, row), *below = pixels_below(scene, row);
     REAL_LANE(cells->corner[0], i) = above[left].w;
@@ -113,8 +111,7 @@ NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lane
   cells->column = cells->row = NO_LANES;
   cells->share = cells->across = cells->down = (REAL)(0.0f);
   for (u32 i = 0; i < 4u; ++i) cells->corner[i] = (REAL)(0.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     float share, down;
     const u32 row = choose_step(scene, rows, REAL_LANE(u_y, i), &share, &down);
     FETCH_ROW(word_of(scene, sums_of_cells(e, row), REAL_LANE(u_x, i)));
@@ -122,8 +119,8 @@ NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lane
     REAL_LANE(cells->share, i) = share;
     REAL_LANE(cells->down, i) = down;
   }
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), row = (u32)MASK_LANE(cells->row, i);
+  EACH_LANE(i, lanes) {
+    const u32 row = (u32)MASK_LANE(cells->row, i);
     float share, across;
     const u32 column = choose_step(scene, sums_of_cells(e, row), REAL_LANE(u_x, i), &share, &across);
     if (blended) {

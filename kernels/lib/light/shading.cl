@@ -33,8 +33,8 @@ static inline void shade_hits(const Scene* scene, const SceneRays* rays, const E
   at->s.offset = offset_beyond(met, at->s.offset);
   note_depth(met, &at->s);
   set_footprints(scene, rays, met->hit.t, &at->s);
-  add_parallax(scene, rays->d, lanes, &at->s);
-  add_relief(scene, rays->d, lanes, &at->s);
+  HAVING(HAS_PARALLAX, add_parallax(scene, rays->d, lanes, &at->s);)
+  HAVING(HAS_RELIEF, add_relief(scene, rays->d, lanes, &at->s);)
 #if SHADOWS_AS_PATHS && (HAS_LAYERS || HAS_ROUGH)
   bend_normals(rays->d, lanes, &at->s);
 #endif

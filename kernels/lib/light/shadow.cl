@@ -16,7 +16,6 @@
 #define SHADOWS_AS_PATHS 0
 #endif
 
-#if HAS_SHADOW_FILTERS
 // A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
 // bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
 // to a total reflection that the bent ray would not meet.
@@ -48,7 +47,8 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
 // What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
 // it would be without them. Paths alone ask for it: with whitted layers take nothing from what is
 // transmitted.
-#if HAS_LAYERS && HAS_LAYER_FILTERS && SHADOWS_AS_PATHS
+#define LAYERS_FILTER EITHER(HAS_LAYERS, EITHER(HAS_LAYER_FILTERS, SHADOWS_AS_PATHS, 0), 0)
+#if LAYERS_FILTER
 NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                    const Faces* faces, MASK lanes, REAL3 through) {
   SurfaceInteractions s;
@@ -63,9 +63,6 @@ static inline void pass_layers(const Scene* scene, const SceneRays* rays, const 
   const MASK layered = lanes & MASK_OF((faces->flags & (int)MATERIAL_LAYERED) != 0);
   if (any_lane(layered)) *passed = layered_filters(scene, rays, hits, faces, layered, *passed);
 }
-#else
-static inline void pass_layers(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                               const Faces* faces, MASK lanes, REAL3* passed) {}
 #endif
 
 // Multiplies `through` by the transmission of the surfaces that the lanes of `lanes` pass.
@@ -84,7 +81,7 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
   if (HAS_MAPS && any_lane(mapped)) {
     HAVING(HAS_MAPS, passed = mapped_filters(scene, rays, hits, faces, mapped, passed);)
   }
-  pass_layers(scene, rays, hits, faces, lanes, &passed);
+  HAVING(LAYERS_FILTER, pass_layers(scene, rays, hits, faces, lanes, &passed);)
   *through = select3(*through, multiply3(*through, passed), lanes);
   if (!any_lane(dielectric)) return;
   REAL kept = straight_transmittance(scene->media, here, there, faces->outward, rays->d, dielectric);
@@ -100,8 +97,7 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
 // media of `behind` those behind it.
 static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
                                  SceneRays* behind, MASK lanes) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     Seen seen;
     float apart;
     REAL_LANE(hits->t, i) = meet_touching(scene, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits,
@@ -119,8 +115,7 @@ static inline MASK change_media(const Scene* scene, SceneRays* rays, const Hits*
                                 const SceneRays* behind, MASK touching, MASK waiting, MASK passing, MASK here,
                                 MASK* there, REAL3* light) {
   const MASK interface = passing & MASK_OF((faces->flags & (int)MATERIAL_THIN) == 0);
-  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, interface) {
     MediaStack stack = get_media(rays, i);
     if (MASK_LANE(touching, i))
       stack = get_media(behind, i);
@@ -147,8 +142,8 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   Faces faces = hit_faces(scene, rays->d, hits, hit);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
   MASK passing = hit & MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
-  SceneRays behind = *rays;
-  const MASK touching = may_touch(scene->instances, hits, passing);
+  HAVING(HAS_MEDIA, SceneRays behind = *rays;)
+  HAVING(HAS_MEDIA, const MASK touching = may_touch(scene->instances, hits, passing);)
   HAVING(HAS_TOUCHING, pass_touching(scene, rays, hits, &faces, &behind, touching);)
   passing &= MASK_OF((faces.flags & kind) == (int)MATERIAL_TRANSMITS);
   *light = select3(*light, all3((float3)(0.0f)), hit & ~passing);
@@ -162,64 +157,62 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
 
+// Of `light`, what media leave on the ways of the lanes of `arriving` to the lights, where nothing stands.
+static inline REAL3 unblocked_light(const Scene* scene, const SceneRays* rays, REAL3 light, MASK arriving) {
+  if (!HAS_MEDIA) return light;
+  const MASK here = current_media(scene->media, rays, arriving);
+  return multiply3(light, absorb(scene->media, here, rays->t_max, arriving));
+}
+
+// The rays that have passed as many filters as they may.
+static inline MASK passed_most(const SceneRays* rays) {
+  return EITHER(HAS_CROSSINGS, MASK_OF(rays->crossings >= MAX_FILTERS), NO_LANES);
+}
+
 // The shadow rays of `lanes` at what they met: what reaches the lights is added to the pixels. Returns those
 // that continue.
 static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRays* paths, Hits* hits,
                                  MASK lanes, float4* radiance, u32* counts) {
+  if (!HAS_SHADOW_FILTERS) {
+    const MASK arriving = lanes & ~hit_anything(hits);
+    add_to_pixels(unblocked_light(scene, rays, paths->throughput, arriving), paths->pixel, arriving,
+                  radiance);
+    return NO_LANES;
+  }
   const MASK passing = pass_filters(scene, rays, hits, lanes, &paths->throughput);
-  const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+  const MASK too_many = passing & passed_most(rays);
   counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
   add_to_pixels(paths->throughput, paths->pixel, lanes & ~passing, radiance);
   return passing & ~too_many;
 }
 
-// What the shadow rays of `lanes` meet.
+// What the shadow rays of `lanes` meet; where nothing lets light pass, only whether they meet anything.
 static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
   Hits hits;
-  nearest_to_light(scene, rays, lanes, coherent, &hits, counts);
+  if (HAS_SHADOW_FILTERS) {
+    nearest_to_light(scene, rays, lanes, coherent, &hits, counts);
+  } else {
+    hits = no_hits(rays->t_max);
+    const MASK occluded = any_hits(scene, rays, lanes, coherent, counts);
+    hits.instance = select(hits.instance, NO_LANES, occluded);
+  }
   return hits;
 }
 
 // The part of `light` that arrives at the ends of the shadow rays of `lanes`, taken all the way there.
 static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
+  if (!HAS_SHADOW_FILTERS) {
+    const MASK arriving = lanes & ~any_hits(scene, rays, lanes, false, counts);
+    return select3(all3((float3)(0.0f)), unblocked_light(scene, rays, sent, arriving), arriving);
+  }
   REAL3 light = sent;
   while (any_lane(lanes)) {
     Hits hits = shadow_hits(scene, rays, lanes, false, counts);
     const MASK passing = pass_filters(scene, rays, &hits, lanes, &light);
-    const MASK too_many = passing & MASK_OF(rays->crossings >= MAX_FILTERS);
+    const MASK too_many = passing & passed_most(rays);
     counts[COUNT_SHADOW_LIMIT] += lane_count(too_many);
     light = select3(light, all3((float3)(0.0f)), too_many);
     lanes = passing & ~too_many;
   }
   return light;
 }
-#else
-static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRays* paths, Hits* hits,
-                                 MASK lanes, float4* radiance, u32* counts) {
-  const MASK arriving = lanes & ~hit_anything(hits);
-  REAL3 light = paths->throughput;
-  if (HAS_MEDIA) {
-    const MASK here = current_media(scene->media, rays, arriving);
-    light = multiply3(light, absorb(scene->media, here, rays->t_max, arriving));
-  }
-  add_to_pixels(light, paths->pixel, arriving, radiance);
-  return NO_LANES;
-}
-
-static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
-  Hits hits = no_hits(rays->t_max);
-  const MASK occluded = any_hits(scene, rays, lanes, coherent, counts);
-  hits.instance = select(hits.instance, NO_LANES, occluded);
-  return hits;
-}
-
-static inline REAL3 light_arriving(const Scene* scene, SceneRays* rays, REAL3 sent, MASK lanes, u32* counts) {
-  REAL3 light = sent;
-  const MASK arriving = lanes & ~any_hits(scene, rays, lanes, false, counts);
-  if (HAS_MEDIA) {
-    const MASK here = current_media(scene->media, rays, arriving);
-    light = multiply3(light, absorb(scene->media, here, rays->t_max, arriving));
-  }
-  return select3(all3((float3)(0.0f)), light, arriving);
-}
-#endif

@@ -40,11 +40,6 @@ NEVER_INLINE LightSamples choose_among(const Scene* scene, const LightRay* way, 
   light.radiance = scale3(light.radiance, light_weight(&light, lanes) / (float)way->rays);
   return light;
 }
-#else
-static inline LightSamples choose_among(const Scene* scene, const LightRay* way, const TileSamples* tile,
-                                        const WaitingRays* paths, REAL3 p, MASK lanes, MASK* met) {
-  return sample_light(scene, way->light, p, (REAL)(0.5f), (REAL)(0.5f), lanes);
-}
 #endif
 
 // The way of the shadow ray `index` from the surfaces of `lanes`, which have 1 a light, or those of the table
@@ -56,8 +51,8 @@ static inline LightSamples choose_way(const Scene* scene, u32 index, const TileS
   *met = NO_LANES;
   if (!HAS_AREA_LIGHTS) return sample_light(scene, index, p, middle, middle, lanes);
   const LightRay way = scene->light_rays[index];
-  if (HAS_LIGHT_TREE && way.light == LIGHT_CHOSEN)
-    return choose_among(scene, &way, tile, paths, p, lanes, met);
+  HAVING(HAS_LIGHT_TREE,
+         if (way.light == LIGHT_CHOSEN) return choose_among(scene, &way, tile, paths, p, lanes, met);)
   if (rays_meet(scene, way.light)) *met = lanes;
   REAL u_x = middle, u_y = middle;
   if (has_extent(scene->lights + way.light))

@@ -15,8 +15,7 @@ static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun
                                    MediaStack around, float* signs) {
   REAL u_x, u_y;
   places_in_pixels(&begun->at, begun->lanes, samples, &u_x, &u_y);
-  for (u32 bits = lane_bits(begun->lanes); bits; bits &= bits - 1u) {
-    const u32 lane = lowest_bit(bits);
+  EACH_LANE(lane, begun->lanes) {
     signs[lane] = filter_place(scene->filter, samples, &REAL_LANE(u_x, lane), &REAL_LANE(u_y, lane));
   }
   CameraSamples places;

@@ -41,8 +41,7 @@ static inline Faces hit_faces(const Scene* scene, REAL3 d, const Hits* hits, MAS
     else
       by_triangle |= mine;
   }
-  for (u32 bits = lane_bits(by_triangle); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, by_triangle) {
     MASK_LANE(faces.material, i) = (int)scene->triangles[MASK_LANE(hits->prim, i)].material;
   }
   for (u32 left = lane_bits(by_triangle); left;) {

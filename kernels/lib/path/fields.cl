@@ -199,11 +199,7 @@ NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active,
     shade_lanes(scene, index, &search, hits);
   HAVING(HAS_GLOW, if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, search.glow), active);)
 }
+#endif
 
 // Sets the march budget of a sample.
-static inline void start_marching(u32* counts) { counts[COUNT_MARCH_LEFT] = MARCH_WORK; }
-#else
-static inline void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
-                                u32* counts) {}
-static inline void start_marching(u32* counts) {}
-#endif
+static inline void start_marching(u32* counts) { HAVING(HAS_SDF, counts[COUNT_MARCH_LEFT] = MARCH_WORK;) }

@@ -29,11 +29,6 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
   enter_all(scene, met, &changes, entered);
   return touching.end;
 }
-#else
-static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                MediaStack* entered, MediaStack* holding) {
-  return REAL_LANE(hits->t, 0);
-}
 #endif
 
 // The media around the place p: a solid that the line leaves without having entered it contains p, and the
@@ -60,7 +55,8 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
     if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
     const Faces faces = hit_faces(scene, rays.d, &hits, lane);
     const MASK touching = may_touch(scene->instances, &hits, lane);
-    if (any_lane(touching)) REAL_LANE(hits.t, 0) = cross_faces(scene, &rays, &hits, &entered, &holding);
+    HAVING(HAS_TOUCHING, if (any_lane(touching)) REAL_LANE(hits.t, 0) =
+                             cross_faces(scene, &rays, &hits, &entered, &holding);)
     continue_behind(scene->info, &rays, &hits, faces.entering, lane);
     if (any_lane(touching)) continue;
     __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);

@@ -12,7 +12,7 @@ static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active
                                 u32* counts) {
   trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
               hits);
-  march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);
+  HAVING(HAS_SDF, march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);)
 }
 
 // nearest_hits() for shadow rays.
@@ -20,7 +20,7 @@ static inline void nearest_to_light(const Scene* scene, SceneRays* rays, MASK ac
                                     Hits* hits, u32* counts) {
   trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
               hits);
-  march_fields(scene, rays, active, MARCH_TO_LIGHT, hits, counts);
+  HAVING(HAS_SDF, march_fields(scene, rays, active, MARCH_TO_LIGHT, hits, counts);)
 }
 
 // The lanes of `active` that hit anything.
@@ -30,7 +30,7 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
   const MASK open = active & ~occluded;
   if (HAS_SDF && any_lane(open)) {
     Hits hits = no_hits(rays->t_max);
-    march_fields(scene, rays, open, MARCH_TO_BLOCK, &hits, counts);
+    HAVING(HAS_SDF, march_fields(scene, rays, open, MARCH_TO_BLOCK, &hits, counts);)
     occluded |= open & hit_anything(&hits);
   }
   return occluded;
@@ -45,8 +45,8 @@ static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, b
   find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active,
             any ? TRACE_ANY : TRACE_NEAREST, hits, 0, 0);
   finish_triangles(scene, false, hits);
-  const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;
+  HAVING(HAS_SDF, const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;)
   if (any) active &= ~hit_anything(hits);
-  if (HAS_SDF && any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);
+  HAVING(HAS_SDF, if (any_lane(active)) march_fields(scene, rays, active, purpose, hits, counts);)
 }
 #endif

@@ -20,7 +20,7 @@ static inline void start_branches(WaitingRays* paths) { HAVING(HAS_RANDOM, paths
 // Position in the ray tree of a child of `branch` (0: the camera ray) by its kind: an offset of dimensions
 // that distinguishes surfaces of equal depth.
 static inline MASK child_branch(MASK branch, u32 kind) {
-  return AS_MASK(hash_lanes(AS_LANE_U32(branch) + (kind + 1u)) & ~0xFFFu);
+  return AS_MASK(hash_lanes(AS_UINTS(branch) + (kind + 1u)) & ~0xFFFu);
 }
 
 static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {
@@ -40,8 +40,8 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
                                  MASK lanes, BounceNumbers* numbers) {
   numbers->at.x = numbers->at.y = NO_LANES;
   numbers->at.seed = tile->seed;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
+  EACH_LANE(i, lanes) {
+    const u32 pixel = (u32)MASK_LANE(paths->pixel, i);
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
@@ -57,15 +57,11 @@ static inline void next_numbers(const TileSamples* tile, u32 part, u32 parts, Bo
   pair_lanes(&numbers->at, numbers->first, numbers->later, u_x, u_y);
 }
 
+#endif
+
 NEVER_INLINE void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
                                  u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
-  BounceNumbers numbers;
-  begin_numbers(tile, paths, light, offset, lanes, &numbers);
-  next_numbers(tile, part, parts, &numbers, u_x, u_y);
-}
-#else
-static inline void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
-                                  u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   *u_x = *u_y = (REAL)(0.5f);
+  HAVING(HAS_RANDOM, BounceNumbers numbers; begin_numbers(tile, paths, light, offset, lanes, &numbers);
+         next_numbers(tile, part, parts, &numbers, u_x, u_y);)
 }
-#endif

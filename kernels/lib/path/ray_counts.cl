@@ -17,8 +17,8 @@ static inline void count_lanes(u32* counts, u32 which, MASK lanes) { counts[whic
 
 // Counts a ray for each lane of `lanes`, in the work-item's pixels `pixels`.
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
-  for (u32 bits = RAYS_BY_LANE ? lane_bits(lanes) : 0u; bits; bits &= bits - 1u)
-    counts[COUNTERS + MASK_LANE(pixels, lowest_bit(bits))] += 1u;
+  if (!RAYS_BY_LANE) return;
+  EACH_LANE(i, lanes) counts[COUNTERS + MASK_LANE(pixels, i)] += 1u;
 }
 // note_rays() if lane i is of pixel i.
 static inline void note_own_rays(MASK lanes, u32* counts) {

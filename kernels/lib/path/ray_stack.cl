@@ -107,8 +107,5 @@ static inline MASK pop_shadows(ShadowStack* stack, u32 most, SceneRays* rays, Wa
 
 // Adds light to the pixels of `lanes`, lane by lane, because several may share a pixel.
 static inline void add_to_pixels(REAL3 light, MASK pixel, MASK lanes, float4* radiance) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i);
-  }
+  EACH_LANE(i, lanes) { radiance[MASK_LANE(pixel, i)].xyz += get3(&light, i); }
 }

@@ -26,9 +26,6 @@ static inline void set_media(SceneRays* rays, u32 i, MediaStack stack) {
 static inline MASK current_media(__global const Medium* restrict media, const SceneRays* rays, MASK lanes) {
   MASK current = NO_LANES;
   const MASK somewhere = lanes & MASK_OF((rays->media_low | rays->media_high) != 0);
-  for (u32 bits = lane_bits(somewhere); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    MASK_LANE(current, i) = (int)current_medium(media, get_media(rays, i));
-  }
+  EACH_LANE(i, somewhere) { MASK_LANE(current, i) = (int)current_medium(media, get_media(rays, i)); }
   return current;
 }

@@ -80,8 +80,7 @@ static inline MediaStack media_behind(const SceneRays* rays, const Encounters* m
 static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounters* met, MASK lanes,
                                   u32* counts) {
   MASK unseen = NO_LANES;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     Seen seen;
     float apart;
     const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
@@ -113,8 +112,7 @@ static inline MASK cross_unseen(const Scene* scene, SceneRays* rays, Encounters*
   const MASK interface = hit & ~touching & MASK_OF((faces.flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
   MASK unseen = NO_LANES;
   HAVING(HAS_TOUCHING, unseen = cross_touching(scene, rays, met, touching, counts);)
-  for (u32 bits = lane_bits(interface); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, interface) {
     if (cross_if_unseen(scene->media, rays, met, i, media_behind(rays, met, i, counts)))
       MASK_LANE(unseen, i) = -1;
   }
@@ -218,25 +216,6 @@ static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active,
 }
 #endif
 
-// Moves the lanes of `active` to their next hits in (t_min, t_max]. `coherent`: the rays are coherent.
-static inline MASK next_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
-                                   Encounters* met, u32* counts) {
-  nearest_hits(scene, rays, active, coherent, &met->hit, counts);
-  return reach_interfaces(scene, rays, active, met, counts);
-}
-
-// Moves them to their next visible surfaces.
-static inline void next_surfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
-                                 Encounters* met, u32* counts) {
-  MASK waiting = next_interfaces(scene, rays, active, coherent, met, counts);
-  while (HAS_MEDIA && any_lane(waiting)) {
-    Hits hits;
-    nearest_hits(scene, rays, waiting, false, &hits, counts);
-    met->hit = select_hits(&met->hit, &hits, waiting);
-    waiting = cross_unseen(scene, rays, met, waiting, counts);
-  }
-}
-
 // offset_beyond(): the offset of secondary rays, considering the gap between touching faces. enter_behind():
 // the children of `lanes`, copies of `rays`, enter the media behind the hits; thin surfaces change none.
 static inline REAL offset_beyond(const Encounters* met, REAL offset) {
@@ -247,8 +226,7 @@ static inline void enter_behind(const Encounters* met, const SceneRays* rays, MA
   HAVING(HAS_TOUCHING, child->media_high = select(child->media_high, met->behind_high, lanes);)
   if (HAS_TOUCHING | !HAS_MEDIA) return;
   const MASK bends = lanes & MASK_OF((met->face.flags & (int)MATERIAL_THIN) == 0);
-  for (u32 bits = lane_bits(bends); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, bends) {
     MediaStack crossed = get_media(rays, i);
     cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), MASK_LANE(met->face.entering, i));
     set_media(child, i, crossed);

@@ -135,8 +135,7 @@ static inline void store_lanes(const Launch* launch, u32 item, MASK lanes, const
   for (u32 lane = 0; lane < BATCH; ++lane) zero += radiance[lane] * 0.0f;
   uint2 corner;
   if (HAS_FILTER || zero.x + zero.y + zero.z != 0.0f || !is_whole_tile(launch, item, &corner)) {
-    for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-      const u32 lane = lowest_bit(bits);
+    EACH_LANE(lane, lanes) {
       const uint2 at = lane_pixel(launch, item, lane);
       store_sample(at.y * launch->width + at.x, radiance[lane], signs[lane], film, weights, counts);
     }

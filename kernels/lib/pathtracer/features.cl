@@ -28,8 +28,7 @@ NEVER_INLINE Features mean_features(const Scene* scene, MediaStack around, MASK 
       going = going & step_feature(scene, &f, &rays, coherent, counts, going);
     }
     REAL sign = (REAL)(0.0f);
-    for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u)
-      REAL_LANE(sign, lowest_bit(bits)) = signs[lowest_bit(bits)];
+    EACH_LANE(i, lanes) REAL_LANE(sign, i) = signs[i];
     weights += sign;
     sum.albedo = along3(sum.albedo, sign, f.albedo);
     sum.normal = along3(sum.normal, sign, f.normal);

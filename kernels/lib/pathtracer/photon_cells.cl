@@ -1,19 +1,15 @@
 // The cubes that photons are found by.
 #pragma once
+#include "lib/core/config.h"
 #include "lib/core/sampler.cl"
 #include "shared/photons.h"
 
 // Where things move, light that is seen at one time has come at that time: photons lie in slices of the time
 // for which the shutter is open, each of which stands for the whole.
-#if HAS_OBJECT_MOTION
-#define PHOTON_SLICES 16u
+#define PHOTON_SLICES EITHER(HAS_OBJECT_MOTION, 16u, 1u)
 static inline u32 photon_slice(float time) {
   return min((u32)(time * (float)PHOTON_SLICES), PHOTON_SLICES - 1u);
 }
-#else
-#define PHOTON_SLICES 1u
-static inline u32 photon_slice(float time) { return 0u; }
-#endif
 
 static inline int3 photon_cube(float3 p, float inverse_edge) {
   return convert_int3_sat_rtn(p * inverse_edge);

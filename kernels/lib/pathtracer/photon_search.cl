@@ -94,8 +94,7 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
   PhotonSearches searches;
   const REAL time = time_of_rays(rays);
   searches.area = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     searches.of[i] = begin_search(scene, at, (u32)MASK_LANE(depth, i), REAL_LANE(time, i), s, i);
     const REAL size = moved_size(scene, (u32)MASK_LANE(s->instance, i), time);
     const float radius = searches.of[i].map.radius * REAL_LANE(size, i);
@@ -108,8 +107,7 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
 static inline MASK next_photon(const Scene* scene, PhotonSearches* searches, MASK lanes, REAL3* wi,
                                REAL3* flux) {
   MASK found = NO_LANES;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     float3 from, light;
     if (!find_photon(scene, searches->of + i, &from, &light)) continue;
     set3(wi, i, from);

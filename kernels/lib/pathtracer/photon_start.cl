@@ -178,8 +178,7 @@ static inline PhotonStart start_photon(const Scene* scene, u32 targets, const Ph
 // tables are empty.
 static inline MASK lanes_of_sky(const Scene* scene, REAL u, MASK lanes) {
   MASK of_sky = NO_LANES;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     float share;
     const u32 light = choose_photon_light(scene, REAL_LANE(u, i), &share);
     MASK_LANE(of_sky, i) = scene->lights[light].kind == LIGHT_ENVIRONMENT ? -1 : 0;
@@ -202,8 +201,7 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   LightSamples sky;
   const MASK of_sky = HAS_ENVIRONMENT ? lanes_of_sky(scene, u.w, lanes) : NO_LANES;
   if (any_lane(of_sky)) sky = sample_environment(scene, v.z, v.w, of_sky);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     const PhotonNumbers mine = {REAL_LANE(u.w, i), REAL_LANE(u.z, i), REAL_LANE(u.x, i),
                                 REAL_LANE(u.y, i), REAL_LANE(v.z, i), REAL_LANE(v.w, i)};
     const PhotonStart start = start_photon(scene, launch->targets, &mine, &sky, i);

@@ -9,39 +9,13 @@
 #ifdef cl_khr_fp64
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 
-#if LANES == 1
-typedef double DEEP_REAL;
-typedef long DEEP_MASK;
-#define DEEP_MASK_OF(comparison) (-(long)(comparison))
-#define DEEP_FROM(x) convert_double(x)
-#define DEEP_TO(x) convert_float(x)
-#define DEEP_FROM_MASK(x) convert_long(x)
-#define DEEP_TO_MASK(x) convert_int(x)
-#elif LANES == 4
-typedef double4 DEEP_REAL;
-typedef long4 DEEP_MASK;
-#define DEEP_MASK_OF(comparison) (comparison)
-#define DEEP_FROM(x) convert_double4(x)
-#define DEEP_TO(x) convert_float4(x)
-#define DEEP_FROM_MASK(x) convert_long4(x)
-#define DEEP_TO_MASK(x) convert_int4(x)
-#elif LANES == 8
-typedef double8 DEEP_REAL;
-typedef long8 DEEP_MASK;
-#define DEEP_MASK_OF(comparison) (comparison)
-#define DEEP_FROM(x) convert_double8(x)
-#define DEEP_TO(x) convert_float8(x)
-#define DEEP_FROM_MASK(x) convert_long8(x)
-#define DEEP_TO_MASK(x) convert_int8(x)
-#else
-typedef double16 DEEP_REAL;
-typedef long16 DEEP_MASK;
-#define DEEP_MASK_OF(comparison) (comparison)
-#define DEEP_FROM(x) convert_double16(x)
-#define DEEP_TO(x) convert_float16(x)
-#define DEEP_FROM_MASK(x) convert_long16(x)
-#define DEEP_TO_MASK(x) convert_int16(x)
-#endif
+typedef IN_LANES(double, ) DEEP_REAL;
+typedef IN_LANES(long, ) DEEP_MASK;
+#define DEEP_MASK_OF(comparison) MASK_BY(long, comparison)
+#define DEEP_FROM(x) IN_LANES(convert_double, )(x)
+#define DEEP_TO(x) IN_LANES(convert_float, )(x)
+#define DEEP_FROM_MASK(x) IN_LANES(convert_long, )(x)
+#define DEEP_TO_MASK(x) IN_LANES(convert_int, )(x)
 
 typedef struct DEEP_REAL3 {
   DEEP_REAL x, y, z;

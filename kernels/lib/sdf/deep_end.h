@@ -7,11 +7,7 @@
 #undef REAL3
 #undef MASK
 #undef MASK_OF
-#if LANES == 1
-#define MASK_OF(comparison) (-(int)(comparison))
-#else
-#define MASK_OF(comparison) (comparison)
-#endif
+#define MASK_OF(comparison) MASK_BY(int, comparison)
 #undef real3
 #undef negate3
 #undef scale3

@@ -9,16 +9,6 @@
 #include "lib/shade/maps.cl"
 #include "plain/shade/bsdf.cl"
 
-// The surfaces' albedo, for metals as for diffuse materials.
-static inline REAL3 albedo_of(const Bsdfs* bsdf) {
-#if HAS_LAYERS
-  const MASK layered = MASK_OF((bsdf->flags & (int)MATERIAL_LAYERED) != 0);
-  return select3(bsdf->diffuse, scale3(bsdf->base, bsdf->there), layered);
-#else
-  return bsdf->diffuse;
-#endif
-}
-
 // The surfaces of `lanes` whose materials have any of the flags.
 static inline MASK of_kind(const Bsdfs* bsdf, u32 flags, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)flags) != 0);

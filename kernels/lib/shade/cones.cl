@@ -10,8 +10,7 @@
 // three.
 static inline REAL triangle_curvatures(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL curvature = (REAL)(0.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global const TriangleShading* triangle = scene->triangles + MASK_LANE(s->prim, i);
     __global const TriangleBlock* block = scene->blocks + (triangle->place >> 3);
     float sum = 0.0f;

@@ -82,8 +82,7 @@ static inline REAL3 settle_on_sphere(const Scene* scene, u32 index, const Surfac
 NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hits, MASK lanes, REAL3* color,
                                    REAL* extent) {
   REAL3 normal = hits->ng;
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global const TriangleShading* triangle = scene->triangles + MASK_LANE(hits->prim, i);
     const Vertex a = scene->vertices[triangle->vertex[0]], b = scene->vertices[triangle->vertex[1]],
                  c = scene->vertices[triangle->vertex[2]];

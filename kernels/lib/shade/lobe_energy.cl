@@ -15,8 +15,7 @@ static inline float2 lobe_place(float c, float alpha) {
 // `lanes`.
 static inline REAL lobe_energy_at(const Scene* scene, u32 first, REAL c, REAL alpha, MASK lanes) {
   REAL energy = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     const float2 place = lobe_place(REAL_LANE(c, i), REAL_LANE(alpha, i)) * (LOBE_STEPS - 1u);
     const float x = place.x, y = place.y;
     const u32 x0 = min((u32)x, LOBE_STEPS - 2u), y0 = min((u32)y, LOBE_STEPS - 2u);
@@ -37,8 +36,7 @@ static inline float glass_cell(__global const float* at, float x, float y) {
 }
 static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha, MASK lanes) {
   REAL value = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     const float e = REAL_LANE(eta, i), less = 1.0f - fmin(e, 1.0f / e);
     const float z = sqrt(clamp(less / GLASS_REACH, 0.0f, 1.0f)) * (GLASS_INDICES - 1u);
     const float2 place = lobe_place(REAL_LANE(c, i), REAL_LANE(alpha, i)) * (GLASS_STEPS - 1u);
@@ -56,8 +54,7 @@ static inline REAL glass_value(const Scene* scene, REAL eta, REAL c, REAL alpha,
 // Looks up one of the tables by index and alpha that follow; `rows` per index.
 static inline REAL glass_row(const Scene* scene, u32 first, u32 rows, REAL thick, REAL alpha, MASK lanes) {
   REAL value = (REAL)(1.0f);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     const float less = 1.0f - 1.0f / REAL_LANE(thick, i);
     const float z = sqrt(clamp(less / GLASS_REACH, 0.0f, 1.0f)) * (GLASS_INDICES - 1u);
     const float y = lobe_place(1.0f, REAL_LANE(alpha, i)).y * (GLASS_STEPS - 1u);

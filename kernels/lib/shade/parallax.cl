@@ -144,6 +144,4 @@ NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceI
     s->sunk = select(s->sunk, t, mine);
   }
 }
-#else
-static inline void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
 #endif

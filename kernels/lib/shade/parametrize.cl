@@ -45,8 +45,7 @@ static inline SurfacePoints points_without_place(REAL3 n) {
 
 // For hits of `lanes` on mesh triangles.
 static inline void on_triangles(const Scene* scene, const Hits* hits, MASK lanes, SurfacePoints* at) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global const TriangleShading* triangle = scene->triangles + MASK_LANE(hits->prim, i);
     __global const TriangleBlock* block = scene->blocks + (triangle->place >> 3);
     const u32 lane = triangle->place & 7u;

@@ -18,8 +18,7 @@ static inline float4 unpack_tangent(u32 bits) {
 // Interpolated tangents of the triangle hits of `lanes`, in object space, and their frames' signs.
 static inline void mesh_tangents(const Scene* scene, const SurfaceInteractions* s, MASK lanes, REAL3* tangent,
                                  REAL* sign) {
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     __global const u32* packed = scene->tangents + 3u * (u32)MASK_LANE(s->prim, i);
     const float4 t0 = unpack_tangent(packed[0]), t1 = unpack_tangent(packed[1]),
                  t2 = unpack_tangent(packed[2]);
@@ -163,6 +162,4 @@ static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
   const REAL soft = 2.0f / (1.0f + real_sqrt(fma(alpha2, real_max(1.0f - g2, zero) / g2, one)));
   return select(one, select(zero, soft, MASK_OF(geometric > 0.0f)), s->bent);
 }
-#else
-static inline void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {}
 #endif

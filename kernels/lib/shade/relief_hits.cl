@@ -50,8 +50,7 @@ static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, con
   if (!HAS_MEDIA) return lanes;
   const MASK transmit = MASK_OF((faces->flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
   MASK seen = lanes & ~(transmit & may_touch(scene->instances, hits, lanes & transmit));
-  for (u32 bits = lane_bits(seen & transmit); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, seen & transmit) {
     MediaStack crossed = get_media(rays, i);
     const u32 before = current_medium(scene->media, crossed);
     cross_boundary(&crossed, (u32)MASK_LANE(faces->medium, i), true);
@@ -139,7 +138,7 @@ static inline REAL3 points_behind(const Scene* scene, const SurfaceInteractions*
   return HAS_PARALLAX ? along3(behind, ways_to_heights(scene, s, d, lanes), d) : behind;
 }
 
-// next_interfaces() including reliefs: moves the lanes of `active` to what they hit next.
+// Moves the lanes of `active` to what they hit next in (t_min, t_max]. `coherent`: the rays are coherent.
 static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                    Encounters* met, u32* counts) {
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
@@ -163,7 +162,7 @@ static inline void see_behind(const Scene* scene, SceneRays* rays, MASK waiting,
   }
 }
 
-// next_surfaces() including reliefs: moves the lanes of `active` to their next visible surfaces.
+// Moves the lanes of `active` to their next visible surfaces.
 static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
                                 Encounters* met, u32* counts) {
   MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);

@@ -9,7 +9,7 @@ static inline REAL4 mix4(REAL4 a, REAL4 b, REAL t) {
                fma(t, b.w - a.w, a.w));
 }
 
-#if TEXEL_FORMATS
+#if TEXTURE_KINDS
 #define HAS_FORMAT(format) (TEXEL_FORMATS >> (format) & 1u)
 #define HAS_WIDE_TEXELS (HAS_FORMAT(TEXEL_RGBA16) | HAS_FORMAT(TEXEL_RGBA_HALF))  // of 8 bytes
 

@@ -32,7 +32,6 @@ typedef struct MappedPoints {
 
 // Offset of lane i from a triangle's first corner in a further set with edges d1 and d2. If u and v of the
 // first set have moved along the surface, by a bump's step or by parallax, the others move with them.
-#if EXTRA_UVS && HAS_MESH
 static inline float2 moved_corners(const TexturePoints* at, __global const Vertex* v0,
                                    __global const Vertex* v1, __global const Vertex* v2, u32 i, float2 d1,
                                    float2 d2) {
@@ -49,16 +48,13 @@ static inline float2 moved_corners(const TexturePoints* at, __global const Verte
   }
   return b * d1 + c * d2;
 }
-#endif
 
 // u, v and their unit's length in the set `set` for triangles; solids have only the first set.
-#if EXTRA_UVS && HAS_MESH
 static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
   REAL3 coordinates = real3(at->u, at->v, at->uv_length);
-  if (set == 0u) return coordinates;
+  if (!EXTRA_UVS | !HAS_MESH | (set == 0u)) return coordinates;
   __global const float* uvs = scene->extra_uvs + 2u * (set - 1u);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     if (scene->instances[MASK_LANE(at->instance, i)].shape != SHAPE_MESH) continue;
     __global const u32* corner = scene->triangles[MASK_LANE(at->prim, i)].vertex;
     const float2 uv0 = vload2(corner[0] * EXTRA_UVS, uvs), d1 = vload2(corner[1] * EXTRA_UVS, uvs) - uv0,
@@ -75,11 +71,6 @@ static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* 
   }
   return coordinates;
 }
-#else
-static inline REAL3 coordinates_of_set(const Scene* scene, const TexturePoints* at, u32 set, MASK lanes) {
-  return real3(at->u, at->v, at->uv_length);
-}
-#endif
 
 static inline REAL row_times(float4 row, REAL3 p) {
   return fma((REAL)(row.x), p.x, fma((REAL)(row.y), p.y, fma((REAL)(row.z), p.z, (REAL)(row.w))));
@@ -121,7 +112,6 @@ static inline MappedPoints map_points(const Scene* scene, __global const Texture
   return mapped;
 }
 
-#if TEXEL_FORMATS
 static inline REAL4 mapped_image(const Scene* scene, __global const TextureNode* node,
                                  const TexturePoints* at, MappedPoints mapped, MASK lanes) {
   return sample_image(scene, node, mapped.q.x, mapped.q.y, at->footprint * mapped.density, lanes);
@@ -154,12 +144,6 @@ static inline REAL4 image_values(const Scene* scene, __global const TextureNode*
     return image_on_box(scene, node, at, lanes);
   return mapped_image(scene, node, at, map_points(scene, node, at, lanes), lanes);
 }
-#else
-static inline REAL4 image_values(const Scene* scene, __global const TextureNode* node,
-                                 const TexturePoints* at, MASK lanes) {
-  return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
-}
-#endif
 
 // The number of a pattern.
 static inline REAL pattern_value(__global const TextureNode* node, MappedPoints mapped, REAL w) {
@@ -177,12 +161,10 @@ static inline REAL pattern_value(__global const TextureNode* node, MappedPoints 
 }
 
 // Vertex colours of meshes.
-#if HAS_KIND(13) && HAS_MESH
 static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, MASK lanes) {
   const REAL one = (REAL)(1.0f);
   REAL4 colors = real4(one, one, one, one);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     if (scene->instances[MASK_LANE(at->instance, i)].shape != SHAPE_MESH) continue;
     __global const u32* corner = scene->triangles[MASK_LANE(at->prim, i)].vertex;
     const float b = REAL_LANE(at->b, i), c = REAL_LANE(at->c, i), share[3] = {1.0f - b - c, b, c};
@@ -198,11 +180,6 @@ static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, M
   }
   return colors;
 }
-#else
-static inline REAL4 vertex_colors(const Scene* scene, const TexturePoints* at, MASK lanes) {
-  return real4((REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f), (REAL)(1.0f));
-}
-#endif
 
 // The value of a node's kind at points.
 static inline REAL4 node_values(const Scene* scene, __global const TextureNode* node, const TexturePoints* at,
@@ -243,41 +220,29 @@ static inline REAL4 scale_value(REAL4 value, float4 factor, float4 offset) {
       fma(value.z, (REAL)(factor.z), (REAL)(offset.z)), fma(value.w, (REAL)(factor.w), (REAL)(offset.w)));
 }
 
-// The stack of operands, and a node's value combined with them.
-#if TEXTURE_STACK > 1
+// The operands that wait, and a node's value combined with them.
+#define HAS_OPERANDS (TEXTURE_STACK > 1)
 typedef struct ValueStack {
-  REAL4 value[TEXTURE_STACK];
+  REAL4 value[HAS_OPERANDS ? TEXTURE_STACK : 1];
   u32 count;
 } ValueStack;
-
-static inline void keep_value(ValueStack* stack, REAL4 value) { stack->value[stack->count++] = value; }
 
 static inline REAL4 combined_values(const Scene* scene, __global const TextureNode* node,
                                     const TexturePoints* at, MASK lanes, ValueStack* stack) {
   REAL4 value;
-  if (node->kind == TEXTURE_RAMP) {
+  if (HAS_OPERANDS && node->kind == TEXTURE_RAMP) {
     value = ramp_color(scene, node, stack->value[--stack->count].x);
-  } else if (node->kind == TEXTURE_PRODUCT) {
+  } else if (HAS_OPERANDS && node->kind == TEXTURE_PRODUCT) {
     stack->count -= 2u;
     const REAL4 a = stack->value[stack->count], b = stack->value[stack->count + 1u];
     value = real4(a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w);
   } else {
     value = node_values(scene, node, at, lanes);
   }
-  if (!(node->flags & TEXTURE_MIXES)) return scale_value(value, node->factor, node->offset);
+  if (!HAS_OPERANDS || !(node->flags & TEXTURE_MIXES)) return scale_value(value, node->factor, node->offset);
   stack->count -= 2u;
   return mix4(stack->value[stack->count], stack->value[stack->count + 1u], value.x);
 }
-#else
-typedef struct ValueStack {
-  u32 count;
-} ValueStack;
-static inline void keep_value(ValueStack* stack, REAL4 value) {}
-static inline REAL4 combined_values(const Scene* scene, __global const TextureNode* node,
-                                    const TexturePoints* at, MASK lanes, ValueStack* stack) {
-  return scale_value(node_values(scene, node, at, lanes), node->factor, node->offset);
-}
-#endif
 
 // A texture's values at the points of `lanes`; `first` is its first node.
 static REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
@@ -289,7 +254,7 @@ static REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints
     if (node->flags & TEXTURE_ONE_CHANNEL)
       value = one_channel(value, node->flags >> TEXTURE_CHANNEL_SHIFT & 3u);
     if (node->flags & TEXTURE_LAST) return value;
-    keep_value(&stack, value);
+    if (HAS_OPERANDS) stack.value[stack.count++] = value;
   }
 }
 #else

@@ -58,8 +58,7 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
 
 static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
-  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, active) {
     TorusHit hit;
     hit.t = REAL_LANE(hits->t, i);
     if (!closest_in_one_torus(parameters.x, get3(&o, i), get3(&d, i), REAL_LANE(t_min, i), &hit)) continue;

@@ -3,6 +3,10 @@
 // five times.
 #pragma once
 #include "lib/core/config.h"
+#include "lib/core/tables.h"
+#include "lib/trace/hits.cl"
+#include "lib/trace/triangles.cl"
+
 #define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && (HAS_SHADOW_FILTERS || HAS_MEDIA) && !HAS_SDF && BATCH > 1)
 
 // Of more hits, the nearest are kept.
@@ -16,10 +20,6 @@ typedef struct HitList {
   u32 place[MOST_LISTED], instance[MOST_LISTED];
 } HitList;
 
-#include "lib/core/tables.h"
-#include "lib/trace/hits.cl"
-#include "lib/trace/triangles.cl"
-
 // The lanes of `lanes` whose hits are opaque.
 static inline MASK opaque_hits(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   MASK found = NO_LANES;
@@ -31,7 +31,7 @@ static inline MASK opaque_hits(__global const Instance* restrict instances, cons
   return found;
 }
 
-#if LISTS_HITS
+#if WALKS_IN_TURN
 static inline void clear_list(HitList* list) {
   list->count = 0;
   list->full = false;

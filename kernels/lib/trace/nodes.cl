@@ -196,12 +196,10 @@ ALWAYS_INLINE u32 push_in_any_order(__global const BvhNode* node, const SlabRay*
 #endif
 }
 
-// Writes the keys of the children crossed in [t_min, t_max].
-ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
-                                 u32* keys) {
+// The children crossed in [t_min, t_max], a bit each.
+ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max) {
   int8 near, far;
   slab_distances(node, ray, t_min, t_max, &near, &far);
-  vstore8((as_uint8(near) & ~KEY_SLOT) | (uint8)(0, 1, 2, 3, 4, 5, 6, 7), 0, keys);
   return lane_mask(near <= far) & node->valid;
 }
 #else
@@ -216,8 +214,7 @@ static inline int grid_distance(__global const BvhNode* node, u32 plane, u32 slo
   return as_int(fma((float)(node->quantized[at >> 2] >> (at & 3u) * 8u & 0xFFu), step, from));
 }
 
-ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max,
-                                 u32* keys) {
+ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ray, float t_min, float t_max) {
   const float3 away = (float3)(node->origin[0], node->origin[1], node->origin[2]) - ray->o;
   const float3 step = grid_step(node->scale), step_near = step * ray->rcp_near,
                step_far = step * ray->rcp_far;
@@ -236,7 +233,6 @@ ALWAYS_INLINE u32 cross_children(__global const BvhNode* node, const SlabRay* ra
                             grid_distance(node, ray->far_y, i, step_far.y, far_from.y)),
                         min(grid_distance(node, ray->far_z, i, step_far.z, far_from.z), as_int(t_max)));
     if (near <= far) crossed |= 1u << i;
-    keys[i] = ((u32)near & ~KEY_SLOT) | i;
   }
   return crossed;
 }

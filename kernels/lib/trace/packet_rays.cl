@@ -192,13 +192,6 @@ NEVER_INLINE void packet_in_object(const Scene* scene, u32 index, const PacketRa
   }
 }
 
-static inline float3 packet_origin(const PacketRays* rays, u32 i) {
-  return (float3)(get_lane(rays->o, i), get_lane(rays->o + 1, i), get_lane(rays->o + 2, i));
-}
-static inline float3 packet_direction(const PacketRays* rays, u32 i) {
-  return (float3)(get_lane(rays->d, i), get_lane(rays->d + 1, i), get_lane(rays->d + 2, i));
-}
-
 // Switches off lanes with a hit.
 static inline void end_lanes(PacketHits* hits, MASK lanes) {
   hits->found->t = select(hits->found->t, (REAL)(-1.0f), lanes & hit_anything(hits->found));

@@ -81,10 +81,8 @@ static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
 // Pushes the children of a node that the interval crosses. Returns the new top.
 static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
                                    const Stretch* stretch, u32* stack, u32 top) {
-  u32 keys[8];
   __global const BvhNode* node = node_at(nodes, word);
-  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to, keys); bits;
-       bits &= bits - 1u)
+  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to); bits; bits &= bits - 1u)
     stack[top++] = child_word(node, lowest_bit(bits));
   return top;
 }

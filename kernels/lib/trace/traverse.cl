@@ -89,8 +89,7 @@ static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* 
 static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists,
                                const MASK* priorities) {
-  for (u32 bits = lane_bits(active); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, active) {
     Hit hit = get_hit(hits, i);
     const REAL time = time_of_hits(hits);
     trace_instances(scene, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), REAL_LANE(time, i), any, &hit);
@@ -198,8 +197,7 @@ NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const RE
                               const Hits* last, Hits* hits, MASK* listed) {
   *hits = *last;
   MASK taken = NO_LANES, ended = lanes & hit_anything(last) & MASK_OF(last->t <= *t_min);
-  for (u32 bits = lane_bits(lanes); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
+  EACH_LANE(i, lanes) {
     if (!lists[i].count) continue;
     Hit hit = get_hit(last, i);
     if (take_nearest(scene->blocks, lists + i, REAL_LANE(*t_min, i), &hit)) {

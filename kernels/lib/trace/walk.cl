@@ -104,7 +104,6 @@ static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
   walk->base = 0;
 }
 
-#if LISTS_HITS
 // Processes a block's hits: lists unseen ones; the nearest of the others ends the ray.
 static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
                                   const BlockTest* test) {
@@ -155,10 +154,6 @@ NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk
   REAL_LANE(rays->hits->t, ray) = end;
   drop_behind(walk, walk->base, end);
 }
-#else
-static inline void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
-                             const BlockTest* test) {}
-#endif
 
 // Processes the first block of a leaf; the others wait.
 ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* walk, u32 word) {
@@ -204,18 +199,12 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
   return enter_mesh(scene->instances, walk, index) ? LEAF_TURN : 0u;
 }
 
-#if LISTS_HITS
 // Ends the walks of `bits` that have hit something opaque, and returns them.
 static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
   const u32 ended = lane_bits(opaque_hits(instances, rays->hits, lanes_of(bits)));
   for (u32 left = ended; left; left &= left - 1u) clear_list(rays->lists + lowest_bit(left));
   return ended;
 }
-#else
-static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
-  return 0u;
-}
-#endif
 
 // Tests the walks of `bits`, which is not 0, against solids[ray]. Returns those that continue.
 NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,

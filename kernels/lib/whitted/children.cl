@@ -16,16 +16,13 @@ static inline void add_mattes(const Scene* scene, const TileSamples* tile, const
                               const SurfaceInteractions* s, MASK lanes, float times) {
   const REAL3 t = paths->throughput;
   const REAL passed = (t.x + t.y + t.z) * (times / 3.0f);
-  for (u32 bits = lane_bits(lanes & MASK_OF((paths->depth & TURNED) == 0)); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), pixel = (u32)MASK_LANE(paths->pixel, i);
+  EACH_LANE(i, lanes & MASK_OF((paths->depth & TURNED) == 0)) {
+    const u32 pixel = (u32)MASK_LANE(paths->pixel, i);
     add_matte(scene, tile->sums + (u32)MASK_LANE(tile->place, pixel) * SAMPLE_VECTORS,
               MASK_LANE(s->instance, i), MASK_LANE(s->material, i),
               REAL_LANE(tile->sign, pixel) * REAL_LANE(passed, i));
   }
 }
-#else
-static inline void add_mattes(const Scene* scene, const TileSamples* tile, const WaitingRays* paths,
-                              const SurfaceInteractions* s, MASK lanes, float times) {}
 #endif
 
 #if HAS_SECONDARY
@@ -53,11 +50,9 @@ NEVER_INLINE MASK spawn(__global const SceneInfo* restrict info, RayStack* stack
 }
 
 // The surfaces that cover what is behind them if they bend light.
-#if HAS_CLEAR_GLASS && HAS_ROUGH
-static inline MASK covers_behind(const MetFacets* facets) { return facets->rough; }
-#else
-static inline MASK covers_behind(const MetFacets* facets) { return HAS_CLEAR_GLASS ? NO_LANES : ALL_LANES; }
-#endif
+static inline MASK covers_behind(const MetFacets* facets) {
+  return HAS_CLEAR_GLASS ? EITHER(HAS_ROUGH, facets->rough, NO_LANES) : ALL_LANES;
+}
 
 // The children of the surfaces of `lanes`: kr I(reflected) + kt I(transmitted). Returns the surfaces that are
 // not there.
@@ -103,14 +98,9 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   const MASK bends = MASK_OF(split.eta != 1.0f) & covers_behind(&facets);
   cross_further(rays, &child, free);
   state.depth = select(paths->depth + 1, (paths->depth + 1) | TURNED, bends) + free;
-  const MASK gone = spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
-  add_mattes(scene, tile, &state, s, gone, -1.0f);
+  HAVING(HAS_MATTES, const MASK gone =)
+  spawn(scene->info, stack, &child, &state, split.transmits, COUNT_REFRACTION, counts);
+  HAVING(HAS_MATTES, add_mattes(scene, tile, &state, s, gone, -1.0f);)
   return nothing;
-}
-#else
-static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, const SurfaceInteractions* s,
-                                  const Bsdfs* surface, const Encounters* met, const SceneRays* rays,
-                                  const WaitingRays* paths, MASK lanes, RayStack* stack, u32* counts) {
-  return NO_LANES;
 }
 #endif

@@ -28,10 +28,7 @@ static inline MASK uncover(const WaitingRays* paths, MASK lanes, float4* radianc
   const MASK straight = lanes & MASK_OF((paths->depth & TURNED) == 0);
   const REAL3 t = paths->throughput;
   const REAL passed = (t.x + t.y + t.z) * (1.0f / 3.0f);
-  for (u32 bits = lane_bits(straight); bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits);
-    radiance[MASK_LANE(paths->pixel, i)].w -= REAL_LANE(passed, i);
-  }
+  EACH_LANE(i, straight) { radiance[MASK_LANE(paths->pixel, i)].w -= REAL_LANE(passed, i); }
   return straight;
 }
 
@@ -62,9 +59,7 @@ static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, c
     light = select3(light, all3(scene->materials[index].emission.xyz), mine);
   }
   light = multiply3(paths->throughput, light);
-#if HAS_MAPS
-  light = multiply3(light, bsdf->emission);
-#endif
+  HAVING(HAS_MAPS, light = multiply3(light, bsdf->emission);)
   return light;
 }
 
@@ -74,7 +69,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
                                  WaitingRays* paths, MASK lanes, MASK unseen, MASK fresh,
                                  const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
                                  float4* radiance, u32* counts) {
-  const WaitingRays arriving = *paths;
+  HAVING(HAS_MATTES, const WaitingRays arriving = *paths;)
   REAL3 seen = see_glow(rays, paths);
   paths->throughput = multiply3(paths->throughput, met->absorbed);
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);
@@ -83,11 +78,12 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
   seen = select3(seen, add3(seen, see_background(scene, rays, paths, ended & ~hit, radiance)), ended & ~hit);
   if (any_lane(hit)) {
     shade_hits(scene, rays, met, hit, at);
-    add_mattes(scene, tile, &arriving, &at->s, hit & fresh, 1.0f);
+    HAVING(HAS_MATTES, add_mattes(scene, tile, &arriving, &at->s, hit & fresh, 1.0f);)
     seen = select3(seen, add3(seen, see_ambient(scene, rays, paths, &met->hit, &at->bsdf, hit)), hit);
     if (HAS_EMISSION) seen = add3(seen, see_emission(scene, paths, &at->s, &at->bsdf, hit));
-    const MASK nothing =
-        spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths, hit & fresh, stack, counts);
+    MASK nothing = NO_LANES;
+    HAVING(HAS_SECONDARY, nothing = spawn_children(scene, tile, &at->s, &at->bsdf, met, rays, paths,
+                                                   hit & fresh, stack, counts);)
     counts[COUNT_PRIMARY_HIT] += lane_count(hit & fresh & ~nothing & MASK_OF(paths->depth == 1));
   }
   *light = seen;

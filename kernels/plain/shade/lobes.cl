@@ -29,6 +29,24 @@ static inline float scattered_share(const LobeSet* lobes) {
   return sum;
 }
 
+#define ADD_ALBEDO(feature, name) \
+  if (feature) sum += albedo_##name(scene, bsdf, lobes);
+// About what the scattering lobes return of white surroundings.
+ENTRY static inline float3 scattered_albedo(UNIFORM const Scene* scene, const Bsdf* bsdf,
+                                            const LobeSet* lobes) {
+  float3 sum = (float3)(0.0f);
+  SCATTERING_LOBES(ADD_ALBEDO)
+  return sum;
+}
+// The surface's colour, for AOVs.
+ENTRY static inline float3 surface_color(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo) {
+  const LobeSet made = make_lobes(scene, bsdf, wo);
+  const LobeSet* lobes = &made;
+  float3 sum = (float3)(0.0f);
+  COLORED_LOBES(ADD_ALBEDO)
+  return sum;
+}
+
 // pi times the BSDF times the cosine of all imperfect lobes, for directions wi on either side of the surface;
 // `pdf`: the density with which sample_lobes() chooses them.
 ENTRY static inline float3 bsdf_scatter(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,

@@ -79,6 +79,14 @@ TEST_CASE("features are of what stands behind smooth glass and in mirrors, of ei
   }
 }
 
+TEST_CASE("a rough mirror has its colour for the denoiser, and none in the albedo") {
+  const AovImages aovs =
+      aovs_of("", R"(, "rough": {"diffuse": 0, "reflection": 0.9, "roughness": 0.7})",
+              R"(, {"type": "box", "min": [0, -9, 0.5], "max": [9, 9, 0.6], "material": "rough"})");
+  CHECK(value(aovs, "albedo", 19, 1) == 0);
+  CHECK(value(aovs, "denoise_albedo", 19, 1) == Approx(0.9f).epsilon(1e-3));
+}
+
 TEST_CASE("the albedo of layered materials is their base's, and narrow lobes are as good as mirrors") {
   const AovImages aovs = aovs_of(
       "", R"(, "layered": {"type": "openpbr", "base_color": [0.2, 0.6, 0.4], "specular_roughness": 0.4},

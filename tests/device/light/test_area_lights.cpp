@@ -1,7 +1,9 @@
-// Lights with an extent: what they send to a point in closed form, the density of their samples, what is seen
-// of them, and their shadows.
+// Lights: what those of every row of kernels/shared/lights.h send to a point in closed form, by samples and
+// as photons start. Lights with an extent: the density of their samples, what is seen of them, and their
+// shadows.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <vector>
@@ -28,37 +30,47 @@ struct Lit {
   float4 p, n;
 };
 /// Over the samples: mean and standard deviation of the irradiance's estimate, the greatest difference
-/// between a sample's density and that of its direction; and mean and deviation of the estimate by places on
-/// the light, as photons start.
+/// between a sample's density and that of its direction (0 without a place and an extent); and mean and
+/// deviation of the estimate by how photons start.
 struct Estimate {
   float mean, deviation, density_error, by_place, place_deviation;
 };
 
 const char* const sample_kernel = R"(
-#include "lib/core/sampler.cl"
-#include "lib/light/light.cl"
+#include "lib/pathtracer/photon_start.cl"
+#include "plain/light/light.cl"
 typedef struct Lit { Light light; float4 p, n; } Lit;
 typedef struct Estimate { float mean, deviation, density_error, by_place, place_deviation; } Estimate;
-__kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
+// What a photon brings that starts like this, where `s` is a sample of the light.
+float sent_by(const Scene* scene, const Emission* from, const LightSamples* s, float3 p, float3 n) {
+  __global const Light* light = scene->lights;
+  if (!has_place(light)) return from->radiance.x * max(-dot(from->d, n), 0.0f);
+  const float3 way = from->p - p;
+  const float3 wi = way * rsqrt(dot(way, way));
+  const float sent = from->radiance.x * max(dot(wi, n), 0.0f) / dot(way, way);
+  return sent * (has_extent(light) ? from->area * max(-dot(wi, from->n), 0.0f) : M_PI_F * s->radiance.x * s->distance * s->distance);
+}
+__kernel void run(__global const Lit* in, __global const Environment* environments, __global const float4* pixels,
+                  __global const float* shares, __global const u32* cutpoints, __global Estimate* out, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
-  const Scene scene = {.lights = &in[i].light};
+  const Scene scene = {.lights = &in[i].light, .environments = environments, .environment = pixels,
+                       .environment_shares = shares, .environment_cutpoints = cutpoints};
   const REAL3 p = all3(in[i].p.xyz), n = all3(in[i].n.xyz);
   float sum = 0.0f, squares = 0.0f, error = 0.0f, place_sum = 0.0f, place_squares = 0.0f;
   for (u32 k = 0; k < SIDE * SIDE; ++k) {
     const float u_x = ((float)(k % SIDE) + unit_float(hash_u32(2u * k + 77u * i))) / SIDE;
     const float u_y = ((float)(k / SIDE) + unit_float(hash_u32(2u * k + 1u + 77u * i))) / SIDE;
     const LightSamples s = sample_light(&scene, 0, p, u_x, u_y, ALL_LANES);
-    const float value = s.radiance.x * max(dot3(s.wi, n), 0.0f) / s.pdf;
+    const float value = M_PI_F * s.radiance.x * max(dot3(s.wi, n), 0.0f) * light_weight(&s, ALL_LANES);
     sum += value;
     squares += value * value;
-    const Emission from = emit_light(&in[i].light, u_x, u_y);
-    const float3 way = from.p - in[i].p.xyz;
-    const float3 wi = way * rsqrt(dot(way, way));
-    const float sent = from.radiance.x * from.area * max(-dot(wi, from.n), 0.0f) * max(dot(wi, in[i].n.xyz), 0.0f) / dot(way, way);
+    const bool distant = in[i].light.kind == LIGHT_ENVIRONMENT;
+    const Emission from = distant ? emit_environment(&s, 0) : emit_light(&in[i].light, u_x, u_y);
+    const float sent = sent_by(&scene, &from, &s, in[i].p.xyz, in[i].n.xyz);
     place_sum += sent;
     place_squares += sent * sent;
-    if (s.radiance.x == 0.0f) continue;
+    if (s.radiance.x == 0.0f || !has_extent(&in[i].light) || !has_place(&in[i].light)) continue;
     const float density = area_light_pdf(&in[i].light, p, s.wi, s.distance, ALL_LANES);
     error = max(error, fabs(density / s.pdf - 1.0f));
   }
@@ -71,6 +83,17 @@ __kernel void run(__global const Lit* in, __global Estimate* out, u32 count) {
 }
 )";
 
+/// The radiance of the environment straight down and straight up; it changes evenly with the height.
+constexpr double below = 0.5, above = 2;
+
+Lights environment() {
+  EnvironmentDescription sky;
+  sky.type = EnvironmentType::gradient;
+  sky.bottom = dvec3(below);
+  sky.top = dvec3(above);
+  return compile_lights({.environment = &sky});
+}
+
 std::vector<Estimate> estimate(const DeviceInfo& info, const std::vector<Lit>& lit) {
   Device device(info);
   const KernelDefines one_lane{{"TILE_W", "1"},
@@ -78,7 +101,18 @@ std::vector<Estimate> estimate(const DeviceInfo& info, const std::vector<Lit>& l
                                {"LANES", "1"},
                                {"WIDE_VECTORS", "0"},
                                {"SIDE", std::to_string(side)}};
-  return run_text<Estimate>(device, sample_kernel, lit, one_lane);
+  auto kernel = build_text(device, sample_kernel, one_lane)
+                    .kernel<Buffer<Lit>, Buffer<Environment>, Buffer<float4>, Buffer<float>, Buffer<u32>,
+                            Buffer<Estimate>, u32>("run");
+  const Lights flat = environment();
+  const auto out = device.make<Estimate>(lit.size());
+  device.run(kernel, {.x = lit.size()}, device.upload<Lit>(lit),
+             device.upload<Environment>(flat.environments), device.upload<float4>(flat.environment),
+             device.upload<float>(flat.environment_shares), device.upload<u32>(flat.environment_cutpoints),
+             out, static_cast<u32>(lit.size()));
+  std::vector<Estimate> estimates(lit.size());
+  device.read(out, std::span<Estimate>(estimates));
+  return estimates;
 }
 
 /// The light as kernels see it.
@@ -147,6 +181,78 @@ LightDescription lamp(LightType type, const dvec3& direction) {
   return light;
 }
 
+/// A light, and the irradiance that it gives to a point p with a normal n that sees all of it.
+struct Row {
+  Light light{};
+  std::function<double(const dvec3& p, const dvec3& n)> irradiance;
+};
+
+Row row_of(const LightDescription& light) {
+  return {pack(light), [light](const dvec3& p, const dvec3& n) { return irradiance(light, p, n); }};
+}
+
+/// Light without an extent, by what is left of it at the distance and at the angle.
+Row row_of(LightDescription light, double part) {
+  light.falloff = {0.5, 0.25, 0.1};
+  light.range = 9;
+  light.intensity = 3;
+  const auto irradiance_at = [light, part](const dvec3& p, const dvec3& n) {
+    const dvec3 to = light.position - p;
+    const double d = glm::length(to), near = 1 - std::pow(d / light.range, 4);
+    return part * pi * light.intensity * near * glm::dot(to / d, n) /
+           (light.falloff.x + light.falloff.y * d + light.falloff.z * d * d);
+  };
+  return {pack(light), irradiance_at};
+}
+
+Row row_of_triangle() {
+  const std::vector<dvec3> corners{{-0.5, 2, -0.4}, {0.2, 2.2, 0.7}, {0.9, 1.9, -0.3}};
+  const dvec3 u = corners[1] - corners[0], v = corners[2] - corners[0], across = glm::cross(v, u);
+  Row row;
+  row.light.kind = LIGHT_TRIANGLE;
+  row.light.position = pack(corners[0]);
+  row.light.edge_u = pack(u), row.light.edge_u.w = float(glm::length(u));
+  row.light.edge_v = pack(v), row.light.edge_v.w = float(glm::length(v));
+  row.light.direction = pack(glm::normalize(across)), row.light.direction.w = float(glm::length(across) / 2);
+  row.light.color = {1, 1, 1, 0};
+  row.irradiance = [corners](const dvec3& p, const dvec3& n) { return polygon_irradiance(corners, p, n); };
+  return row;
+}
+
+/// One of each kind: the compiler asks for that of a new one.
+Row row_of(LightKind kind) {
+  const dvec3 down(0.1, -1, 0.05);
+  LightDescription parallel = lamp(LightType::directional, down);
+  const auto turned = [&](const dvec3&, const dvec3& n) { return -pi * glm::dot(glm::normalize(down), n); };
+  switch (kind) {
+    case LIGHT_DIRECTIONAL:
+      return {pack(parallel), turned};
+    case LIGHT_POINT:
+      return row_of(lamp(LightType::point, down), 1);
+    case LIGHT_SPOT: {
+      LightDescription spot = lamp(LightType::spot, down);
+      spot.inner_angle = 80, spot.outer_angle = 89;
+      return row_of(spot, 1);
+    }
+    case LIGHT_RECTANGLE:
+      return row_of(lamp(LightType::rectangle, down));
+    case LIGHT_DISK:
+      return row_of(lamp(LightType::disk, down));
+    case LIGHT_SPHERE:
+      return row_of(lamp(LightType::sphere, down));
+    case LIGHT_SUN:
+      parallel.angle = 20;
+      return {pack(parallel), turned};
+    case LIGHT_TRIANGLE:
+      return row_of_triangle();
+    case LIGHT_ENVIRONMENT:
+      return {environment().lights.at(0), [](const dvec3&, const dvec3& n) {
+                return pi * ((below + above) / 2 + (above - below) / 3 * n.y);
+              }};
+  }
+  throw std::logic_error("a light without a case");
+}
+
 /// A white floor seen at the origin, 256 times, under a lamp that cannot be seen.
 SceneDescription floor_under(LightDescription light) {
   SceneDescription scene = scenes::line_of_sight({1, 1, 0}, {0, 0, 0});
@@ -195,6 +301,31 @@ TEST_CASE("the irradiance of lights with an extent is that of their closed forms
       CHECK(std::abs(double(found[i].by_place) - expected[i]) < error(found[i].place_deviation));
       CHECK(expected[i] > 0);
       CHECK(found[i].density_error < 0.01);  // the distance, by which that of an area is found, ends short
+    }
+  });
+}
+
+TEST_CASE("the light of every row is that of its closed form, by samples and as photons start") {
+  std::vector<Lit> lit;
+  std::vector<double> expected;
+  for (u32 kind = 0; kind <= LIGHT_ENVIRONMENT; ++kind) {
+    const Row row = row_of(static_cast<LightKind>(kind));
+    REQUIRE(row.light.kind == kind);
+    for (const dvec3& p : {dvec3(0), dvec3(0.8, -1, 0.5)})
+      for (const dvec3& n : {dvec3(0, 1, 0), glm::normalize(dvec3(0.3, 0.8, -0.1))}) {
+        lit.push_back({row.light, pack(p), pack(n)});
+        expected.push_back(row.irradiance(p, n));
+      }
+  }
+  on_every_device([&](const DeviceInfo& info) {
+    const std::vector<Estimate> found = estimate(info, lit);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO("kind " << lit[i].light.kind << ": " << found[i].mean << " for " << expected[i]);
+      const auto error = [&](float deviation) { return 3 * double(deviation) / side + 5e-4 * expected[i]; };
+      CHECK(expected[i] > 0);
+      CHECK(std::abs(double(found[i].mean) - expected[i]) < error(found[i].deviation));
+      CHECK(std::abs(double(found[i].by_place) - expected[i]) < error(found[i].place_deviation));
+      CHECK(found[i].density_error < 0.01);
     }
   });
 }

@@ -10,6 +10,7 @@
 #include "path_testing.h"
 #include "scene/json/parse.h"
 #include "scene/read/scene_reader.h"
+#include "shared/lobes.h"
 
 using namespace sundog;
 using namespace sundog::paths;
@@ -27,18 +28,39 @@ constexpr const char* ball_lamp =
 constexpr const char* small_spot =
     R"({"type": "spot", "position": [0, 5, -5], "target": [0, 0.5, 0], "outer_angle": 30, "intensity": 2})";
 
-/// The light of a lamp behind a ball of glass on a floor.
-SceneDescription floor_behind_ball(const std::string& lamp, const std::string& floor) {
+constexpr const char *glass = R"({"type": "dielectric", "ior": 1.5})",
+                     *white = R"({"color": [0.7, 0.7, 0.7], "diffuse": 1, "ambient": 0})";
+
+/// The light of a lamp behind a ball on a floor.
+SceneDescription floor_behind_ball(const std::string& lamp, const std::string& floor,
+                                   const std::string& ball = glass) {
   return scene_of(fmt::format(
       R"({{"camera": {{"position": [0, 4, 5], "target": [0, 0, 1.1], "fov": 7}},
       "image": {{"width": 16, "height": 16}},
       "render": {{"integrator": "path", "caustics": true, "samples": 64, "max_depth": 8}},
       "lights": [{}],
-      "materials": {{"floor": {}, "glass": {{"type": "dielectric", "ior": 1.5}}}},
+      "materials": {{"floor": {}, "ball": {}}},
       "objects": [{{"type": "box", "min": [-5, -0.4, -5], "max": [5, 0, 5], "material": "floor"}},
-        {{"type": "sphere", "center": [0, 0.9, 0], "radius": 0.85, "material": "glass"}}]}})",
-      lamp, floor));
+        {{"type": "sphere", "center": [0, 0.9, 0], "radius": 0.85, "material": "ball"}}]}})",
+      lamp, floor, ball));
 }
+
+/// What sends photons on, and what they land on.
+struct BallOnFloor {
+  const char *ball = glass, *floor = white;
+};
+
+/// Of each row of kernels/shared/lobes.h a ball or a floor that has its light alone.
+constexpr BallOnFloor with_refraction{}, with_diffuse{};
+constexpr BallOnFloor with_mirror{.ball = R"({"color": [0, 0, 0], "reflection": 0.9})"};
+constexpr BallOnFloor with_ggx{.floor = R"({"color": [0, 0, 0], "reflection": 0.8, "roughness": 0.6})"};
+constexpr BallOnFloor with_layered{
+    .floor = R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "specular_roughness": 0.42})"};
+constexpr BallOnFloor with_highlight{
+    .floor = R"({"color": [0, 0, 0], "specular": {"color": [0.6, 0.6, 0.6], "exponent": 6}})"};
+#define WITH_LOBE(feature, name) with_##name,
+constexpr BallOnFloor with_every_lobe[] = {PERFECT_LOBES(WITH_LOBE) SCATTERING_LOBES(WITH_LOBE)};
+#undef WITH_LOBE
 
 double greatest_over_mean(const Image& image) {
   double most = 0, sum = 0;
@@ -107,9 +129,23 @@ struct Motion {
 
 }  // namespace
 
+TEST_CASE("photons that every perfect lobe sends on bring to every scattering one what paths find") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const BallOnFloor& with : with_every_lobe) {
+      SceneDescription scene = floor_behind_ball(ball_lamp, with.floor, with.ball);
+      const Mean brought = mean_on(device, scene);
+      scene.render.caustics = false;
+      scene.render.samples = 256;
+      const Mean met = mean_on(device, scene);
+      CAPTURE(with.floor, with.ball, brought.value.x, met.value.x);
+      CHECK(brought.value.x == Approx(met.value.x).epsilon(0.04));
+      CHECK(met.value.x > 0);
+    }
+  });
+}
+
 TEST_CASE("layered and glossy surfaces have from photons, and narrow lobes from paths, what paths find") {
   const char* floors[] = {
-      R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "specular_roughness": 0.42})",
       R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "coat_weight": 1, "coat_roughness": 0.2})",
       R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.3})",
       R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.5})",

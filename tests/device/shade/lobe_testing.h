@@ -24,6 +24,7 @@ inline constexpr u32 count = 1u << 12;
 
 inline const std::string lobe_kernel = surface_text + R"(
 #include "lib/core/sampler.cl"
+#include "shared/lobes.h"
 // The surface z = 0 of one material, seen from above, or from below where `below`, behind it the other of the media 0 and 1.
 Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4 tint) {
   const REAL3 n = real3(0.0f, 0.0f, below ? -1.0f : 1.0f), none = real3(0.0f, 0.0f, 0.0f);
@@ -51,7 +52,9 @@ Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4
 #endif
   return bsdf;
 }
-// Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular.
+#define SHARE_OF_LOBE(feature, name) +lobes.name
+// Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular,
+// and red of the lobes' albedo.
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,
                   __global const Layers* layers, __global const float* layer_rows, __global const float4* wis, __global float* out, float4 wo4, float4 base, float4 tint, u32 count) {
   const u32 i = get_global_id(0);
@@ -69,9 +72,10 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   REAL density = s.pdf;
   const REAL3 value = draws ? s.weight : bsdf_scatter(&scene, &bsdf, &lobes, wo, given, &density, ALL_LANES);
   const REAL3 wi = draws ? s.wi : given;
-  __global float* to = out + 8u * i;
+  __global float* to = out + 9u * i;
   to[0] = wi.x; to[1] = wi.y; to[2] = wi.z; to[3] = density;
   to[4] = value.x; to[5] = value.y; to[6] = value.z; to[7] = draws && s.specular ? 1.0f : 0.0f;
+  to[8] = scattered_albedo(&scene, &bsdf, &lobes, ALL_LANES).x PERFECT_LOBES(SHARE_OF_LOBE);
 }
 )";
 
@@ -84,6 +88,7 @@ struct Lobe {
   dvec3 wi, value;
   double density;
   bool specular;
+  double albedo;  // of all lobes, where the light that they return is white
 };
 
 class Tester {
@@ -143,17 +148,17 @@ class Tester {
     std::vector<float4> given;
     for (const dvec3& wi : wis) given.push_back({float(wi.x), float(wi.y), float(wi.z), 0});
     const auto size = static_cast<u32>(wis.size());
-    const auto out = device_.make<float>(8 * wis.size());
+    const auto out = device_.make<float>(9 * wis.size());
     device_.run(kernel_, {.x = wis.size()}, device_.upload<Material>(std::vector{material}),
                 device_.upload<Medium>(media), energy_, layers_, layer_rows_, device_.upload<float4>(given),
                 out, float4{float(wo.x), float(wo.y), float(wo.z), 0}, base_, tint_, size);
-    std::vector<float> values(8 * wis.size());
+    std::vector<float> values(9 * wis.size());
     device_.read(out, std::span<float>(values));
     device_.save_programs();  // for the next process: this one keeps its testers to the end
     std::vector<Lobe> lobes;
     for (std::size_t i = 0; i < wis.size(); ++i) {
-      const float* v = values.data() + 8 * i;
-      lobes.push_back({{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, v[3], v[7] != 0});
+      const float* v = values.data() + 9 * i;
+      lobes.push_back({{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, v[3], v[7] != 0, v[8]});
     }
     return lobes;
   }

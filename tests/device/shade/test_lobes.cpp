@@ -1,6 +1,11 @@
-// Rough lobes as integrators see them that follow one ray on: in a furnace they return what they should,
-// densities are those of the samples, and viewer and light may change places.
-#include "lobe_testing.h"
+// Lobes as integrators see them that follow one ray on: in a furnace they return what they should, densities
+// are those of the samples, and viewer and light may change places. First those of every row of
+// kernels/shared/lobes.h, then rough ones.
+#include <functional>
+#include <optional>
+
+#include "layer_testing.h"
+#include "shared/lobes.h"
 #include "single_albedo.h"
 
 using namespace sundog;
@@ -42,7 +47,113 @@ std::vector<Lobe> many_drawn(const DeviceInfo& info, const Drawn& from, u32 draw
   return {};
 }
 
+/// A material whose light is that of one lobe, or of the perfect ones together.
+struct LobeCase {
+  Material material{};
+  double index = 1;
+  std::optional<OpenPbr> layers = std::nullopt;
+  double apart = 1e-4;           // from its albedo, as a part of it, is what it returns
+  bool with_the_cosine = false;  // its value times the cosine stays if viewer and light change places
+};
+
+LobeCase case_of_mirror() { return {.material = rough_metal(0, 0.7f)}; }
+LobeCase case_of_refraction() { return {.material = rough_glass(0), .index = 1.5}; }
+LobeCase case_of_ggx() { return {.material = rough_metal(0.6, 0.9f), .apart = 0.06}; }
+LobeCase case_of_layered() {
+  const OpenPbr plastic{.base_color = dvec3(0.8), .specular_roughness = 0.5};
+  return {.material = layered(plastic).material, .layers = plastic, .apart = 0.06};
+}
+LobeCase case_of_diffuse() {
+  LobeCase matte;
+  matte.material.diffuse = {0.6f, 0.6f, 0.6f, 0};
+  return matte;
+}
+LobeCase case_of_highlight() {
+  LobeCase shiny{.apart = 0.05, .with_the_cosine = true};
+  shiny.material.specular = {0.5f, 0.5f, 0.5f, 20};
+  shiny.material.flags = MATERIAL_SHINES;
+  return shiny;
+}
+
+/// Calls body(tester, case) for each row of a list: one without a case does not compile.
+#define TEST_LOBE(feature, name)                              \
+  if (const LobeCase one = case_of_##name(); true) {          \
+    INFO(#name);                                              \
+    Tester& tester = tester_on(info, one.layers.has_value()); \
+    if (one.layers) tester.set_layers(*one.layers);           \
+    body(tester, one);                                        \
+  }
+using LobeTest = std::function<void(Tester&, const LobeCase&)>;
+void each_perfect_lobe(const DeviceInfo& info, const LobeTest& body) { PERFECT_LOBES(TEST_LOBE) }
+void each_scattering_lobe(const DeviceInfo& info, const LobeTest& body) { SCATTERING_LOBES(TEST_LOBE) }
+#undef TEST_LOBE
+
 }  // namespace
+
+TEST_CASE("every lobe returns its albedo of white surroundings, and no more light than arrives") {
+  on_picture_devices([](const DeviceInfo& info) {
+    const auto returns_albedo = [](Tester& tester, const LobeCase& one) {
+      for (const double cosine : {1.0, 0.8, 0.5}) {
+        INFO("at " << cosine);
+        const std::vector<Lobe> drawn = tester.draw(one.material, one.index, at_cosine(cosine), 4 * count);
+        CHECK(drawn[0].albedo > 0);
+        CHECK(mean_weight(drawn) == Approx(drawn[0].albedo).epsilon(one.apart));
+        CHECK(mean_weight(drawn) < 1.001);
+      }
+    };
+    each_perfect_lobe(info, returns_albedo);
+    each_scattering_lobe(info, returns_albedo);
+  });
+}
+
+TEST_CASE("every scattering lobe returns the same if viewer and light change places") {
+  on_picture_devices([](const DeviceInfo& info) {
+    each_scattering_lobe(info, [](Tester& tester, const LobeCase& one) {
+      const auto value = [&](const dvec3& wo, const dvec3& wi) {
+        const double whole = tester.look(one.material, one.index, wo, {wi})[0].value.x;
+        return one.with_the_cosine ? whole : whole / wi.z;
+      };
+      for (const dvec3& a : {at_cosine(0.9), at_cosine(0.4)})
+        for (const dvec3& b : {on_sphere(0.8, 0.05), on_sphere(0.5, 0.02)}) {
+          CHECK(value(a, b) > 0);
+          CHECK(value(a, b) == Approx(value(b, a)).epsilon(2e-3));
+        }
+    });
+  });
+}
+
+TEST_CASE("every perfect lobe sends light back along its way, the same part of it") {
+  on_picture_devices([](const DeviceInfo& info) {
+    each_perfect_lobe(info, [](Tester& tester, const LobeCase& one) {
+      const dvec3 wo = at_cosine(0.6);
+      for (const Lobe& there : tester.draw(one.material, one.index, wo, 64)) {
+        REQUIRE(there.specular);
+        const auto returns = [&](const Lobe& back) {
+          return glm::distance(back.wi, wo) < 1e-4 &&
+                 back.value.x * back.density == Approx(there.value.x * there.density).epsilon(1e-3);
+        };
+        CHECK(std::ranges::any_of(tester.draw(one.material, one.index, there.wi, 256), returns));
+      }
+    });
+  });
+}
+
+TEST_CASE("samples of every lobe lie as their density has it") {
+  on_picture_devices([](const DeviceInfo& info) {
+    each_scattering_lobe(info, [](Tester& tester, const LobeCase& one) {
+      CHECK(chi_squared(tester, one.material, one.index, at_cosine(0.7)) < 1.5);
+    });
+    each_perfect_lobe(info, [](Tester& tester, const LobeCase& one) {
+      const std::vector<Lobe> drawn = tester.draw(one.material, one.index, at_cosine(0.3));
+      for (const bool above : {true, false}) {
+        const auto is_there = [&](const Lobe& sample) { return (sample.wi.z > 0) == above; };
+        const auto found = std::ranges::count_if(drawn, is_there);
+        const auto first = std::ranges::find_if(drawn, is_there);
+        if (first != drawn.end()) CHECK(double(found) / count == Approx(first->density).margin(2e-3));
+      }
+    });
+  });
+}
 
 TEST_CASE("a white rough mirror returns all light and no more, a grey one no more than smooth") {
   on_every_device([](const DeviceInfo& info) {

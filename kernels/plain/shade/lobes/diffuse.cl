@@ -5,6 +5,10 @@ static inline float share_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   return greatest(bsdf->diffuse);
 }
 
+static inline float3 albedo_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+  return bsdf->diffuse;
+}
+
 static inline void scatter_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                    float3 wo, float3 wi, LobeSum* sum) {
   const float cosine = is_above(bsdf, wi) ? dot(bsdf->ns, wi) : 0.0f;

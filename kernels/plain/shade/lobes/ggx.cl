@@ -138,6 +138,12 @@ static inline float share_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, floa
   return lobes->rough.rough ? greatest(lobes->split.kr) + through : 0.0f;
 }
 
+// Light that scatters between facets comes back: a rough interface returns about what a smooth one does.
+static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+  const float3 none = (float3)(0.0f), through = lobes->rough.transmits ? lobes->split.kt : none;
+  return lobes->rough.rough ? lobes->split.kr + through : none;
+}
+
 // Behind an interface the pdf is over directions there; the BSDF has no factor for radiance in media of
 // different index.
 static inline void scatter_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes, float3 wo,

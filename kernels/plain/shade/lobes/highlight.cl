@@ -18,6 +18,15 @@ static inline float share_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf
   return share;
 }
 
+// Phong's for a viewer along the normal, in closed form.
+static inline float3 albedo_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+  float3 color = (float3)(0.0f);
+  if (HAS_MAPS) color = bsdf->specular;
+  if (!HAS_MAPS && has_highlight(bsdf))
+    EACH_ALIKE(int, index, bsdf->material) color = scene->materials[index].specular.xyz;
+  return color * (2.0f / (lobes->exponent + 1.0f));
+}
+
 // x^e for x in [0, 1]. Integer exponents, the common case, by squaring.
 static inline float highlight(float x, UNIFORM float e) {
   if (HAS_FRACTIONAL_EXPONENTS && (e != floor(e) || e > GREATEST_WHOLE_EXPONENT))

@@ -7,6 +7,11 @@ static inline float share_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   return lobes->layers.fuzz + lobes->layers.coat + (lobes->layers.shine + lobes->layers.matte);
 }
 
+// The base's colour: of white light, layers return about what they keep from it.
+static inline float3 albedo_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+  return is_layered(bsdf) ? bsdf->base * bsdf->there : (float3)(0.0f);
+}
+
 static inline void scatter_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                    float3 wo, float3 wi, LobeSum* sum) {
   if (!is_layered(bsdf)) return;
