@@ -168,8 +168,10 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
 void write_so_far(const RenderCommand& command, const ImageSettings& settings, const Film& film) {
   try {
     Image image = film.develop(image_channels(command.out, settings.transparent));
+    FileOptions file = file_options(command);
+    file.region = region_of(command, settings);
     write_image(shown_in(command.out, std::move(image), settings.tone_map, dithers(command)), command.out, {},
-                file_options(command));
+                file);
   } catch (const IoError&) {
     // The disk may have room again when the whole picture is there.
   }

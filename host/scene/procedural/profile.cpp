@@ -97,16 +97,17 @@ struct Cubic {
     const double s = 1 - t;
     return p * (s * s * (1 + 2 * t)) + u * (s * s * t) + q * (t * t * (1 + 2 * s)) - v * (t * t * s);
   }
-  dvec2 slope(double t) const {
+  /// To the right of its direction; at a cusp, which has none, of its chord's.
+  dvec2 normal(double t) const {
     const double s = 1 - t;
-    return (q - p) * (6 * t * s) + u * (s * (1 - 3 * t)) + v * (t * (3 * t - 2));
+    const dvec2 slope = (q - p) * (6 * t * s) + u * (s * (1 - 3 * t)) + v * (t * (3 * t - 2));
+    return right_of(length(slope) > 1e-9 * length(q - p) ? slope : q - p);
   }
 };
 
 void add_cubic(const Cubic& cubic, double from, double till, int depth, double cos_turn, Profile& to) {
   const double middle = (from + till) / 2;
-  const dvec2 a = right_of(cubic.slope(from)), b = right_of(cubic.slope(till)),
-              m = right_of(cubic.slope(middle));
+  const dvec2 a = cubic.normal(from), b = cubic.normal(till), m = cubic.normal(middle);
   if (depth > 0 && (depth >= 10 || std::min({dot(a, b), dot(a, m), dot(m, b)}) >= cos_turn)) {
     const dvec2 start = to.empty() || from > 0 ? cubic.at(from) : cubic.p;
     to.push_back({from > 0 ? to.back().b : start, till < 1 ? cubic.at(till) : cubic.q, a, b});
@@ -152,8 +153,8 @@ Profile follow_spline(std::span<const dvec2> points, double cos_turn) {
       before = last;
       after = second;
     }
-    if (i == 0 && first.x == 0 && !whole) before = mirrored(second);
-    if (i + 1 == runs.size() && end.x == 0 && !whole) after = mirrored(last);
+    if (i == 0 && first.x == 0 && second.x != 0 && !whole) before = mirrored(second);
+    if (i + 1 == runs.size() && end.x == 0 && last.x != 0 && !whole) after = mirrored(last);
     follow_run(run, before, after, cos_turn, to);
   }
   return to;

@@ -50,6 +50,35 @@ TEST_CASE("a cropped picture has the bits of the whole one's pixels") {
   }
 }
 
+TEST_CASE("a cropped EXR that --write-every writes says where it lies, too") {
+  // Killed as soon as there is a picture: only --write-every can have written it.
+  const CliFolder folder;
+  run_command({"sh",
+               "-c",
+               R"("$0" "$@" & until [ -s so_far.exr ]; do sleep 0.02; done; kill -KILL $!; wait $!)",
+               SUNDOG_BINARY,
+               "render",
+               folder.scene,
+               "-o",
+               folder.file("so_far.exr"),
+               "--quiet",
+               "--device",
+               "0:0",
+               "--samples",
+               "65536",
+               "--write-every",
+               "0.01",
+               "--float",
+               "--set",
+               "/render/progressive=true",
+               "--crop",
+               "9,6,14x11"},
+              {.folder = folder.path()});
+  const Image shown = read_image(folder / "so_far.exr");
+  CHECK(shown.width == 32);
+  CHECK(shown.height == 24);
+}
+
 TEST_CASE("a cropped EXR says where it lies in the picture, AOVs too") {
   const CliFolder folder;
   const Image whole = render(folder, "whole.exr", {"--float", "--aov", "depth"});

@@ -117,6 +117,15 @@ TEST_CASE("a spline goes through its points, smooth except at points given twice
   CHECK(closed(make_lathe(spline(points))));
 }
 
+TEST_CASE("every normal is one, where a spline runs along the axis or turns back, too") {
+  for (const auto& points : {std::vector<ProfilePoint>{{{0, 0}}, {{0, 0.5}}, {{1, 1}}, {{0, 2}}},
+                             std::vector<ProfilePoint>{{{0, 0}}, {{1, 1}}, {{2, 2}}, {{1, 1}}, {{0, 3}}}})
+    for (const auto& step : procedural::follow(points, ProfileCurve::spline, std::cos(0.05))) {
+      CHECK(glm::length(step.normal_a) == Approx(1));
+      CHECK(glm::length(step.normal_b) == Approx(1));
+    }
+}
+
 TEST_CASE("a liquid reaches half way into the wall and up to its level") {
   const Mesh liquid = make_lathe_liquid(beaker(), 1, 0);
   CHECK(closed(liquid));
