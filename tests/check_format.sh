@@ -16,7 +16,8 @@ find host include examples python kernels tests bench -name '*.cpp' -o -name '*.
   exit 1
 }
 # Names that one version of Catch2 alone has; support/catch.h has one for both.
-if grep -rn --include=*.cpp --include=*.h 'Catch::Contains\|Catch::Matchers::Contains\b' tests | grep -v '^tests/support/catch.h:'; then
-  echo "check_format: Catch2 3 has no Contains for texts: use ContainsSubstring" >&2
+if grep -rnE --include=*.cpp --include=*.h 'Catch::(Contains|StartsWith|EndsWith|Matches|Equals|Matchers::Contains)\b' tests |
+  grep -v '^tests/support/catch.h:'; then
+  echo "check_format: Catch2 3 has Catch::Matchers::StartsWith and the like, and ContainsSubstring for Contains" >&2
   exit 1
 fi

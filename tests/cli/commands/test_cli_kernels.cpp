@@ -10,7 +10,8 @@ TEST_CASE("kernels lists the plain files, and prints one in lanes or what varies
   CHECK_THAT(list.out, ContainsSubstring("plain/pathtracer/roulette.cl\n"));
   const CommandResult made = run_sundog({"kernels", "plain/pathtracer/bounce.cl", "--lanes", "16"});
   CHECK(made.status == 0);
-  CHECK_THAT(made.out, Catch::StartsWith("#define LANES 16\n") && ContainsSubstring("MASK survives("));
+  CHECK_THAT(made.out,
+             Catch::Matchers::StartsWith("#define LANES 16\n") && ContainsSubstring("MASK survives("));
   const CommandResult told = run_sundog({"kernels", "plain/pathtracer/bounce.cl", "--explain"});
   CHECK_THAT(told.out, ContainsSubstring("worth varies: line "));
 }

@@ -53,6 +53,7 @@ constexpr const char* try_choices = R"(
 /// Refusals in words that say what to do first.
 bool says_what_is_wanted(const std::string& refusal) {
   return refusal.find("needs an image") != std::string::npos ||
+         refusal.find("wanted the name of a mesh that a \\\"lathe\\\"") != std::string::npos ||
          refusal.find("wanted at least 8 \"samples\"") != std::string::npos;
 }
 

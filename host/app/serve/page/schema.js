@@ -78,12 +78,13 @@ export function changesFor(schema, at, kept = {}) {
   return [...(makes ? [{at: '/textures/' + newTexture, value: {type: 'checker'}}] : []), {at, value}];
 }
 
-/** A small value that the schema takes: its default, or the least of each part. An object has what is `kept`. */
+/** A small value that the schema takes: its default, its first example, or the least of each part. An object has what is `kept`. */
 export function sample(schema, depth = 0, kept = {}) {
   const s = resolve(schema);
   if ('default' in s) return s.default;
   if ('const' in s) return s.const;
   if (s.enum) return s.enum[0];
+  if (s.examples) return s.examples[0];
   const named = {color: [0.8, 0.8, 0.8], share_color: [0.8, 0.8, 0.8], vec3: [0, 0, 0], length: 1,
     interval: {min: [-1.5, -1.5, -1.5], max: [1.5, 1.5, 1.5]}, material_name: Object.keys(store.state.document?.materials ?? {})[0] ?? '',
     formula_name: 'mandelbulb'}[s.kind];

@@ -22,7 +22,7 @@ class Validator {
   void check(const json& schema, const json& value, const std::string& place) {
     for (const auto& [keyword, rule] : schema.items()) {
       if (keyword == "$schema" || keyword == "$defs" || keyword == "title" || keyword == "description" ||
-          keyword == "default" || keyword == "then" || keyword == "else")
+          keyword == "default" || keyword == "examples" || keyword == "then" || keyword == "else")
         continue;
       if (!follow(keyword, rule, schema, value, place) && !parts(keyword, rule, schema, value, place) &&
           !simple(keyword, rule, value, place))
