@@ -53,27 +53,14 @@ TEST_CASE("a cropped picture has the bits of the whole one's pixels") {
 TEST_CASE("a cropped EXR that --write-every writes says where it lies, too") {
   // Killed as soon as there is a picture: only --write-every can have written it.
   const CliFolder folder;
-  run_command({"sh",
-               "-c",
-               R"("$0" "$@" & until [ -s so_far.exr ]; do sleep 0.02; done; kill -KILL $!; wait $!)",
-               SUNDOG_BINARY,
-               "render",
-               folder.scene,
-               "-o",
-               folder.file("so_far.exr"),
-               "--quiet",
-               "--device",
-               "0:0",
-               "--samples",
-               "65536",
-               "--write-every",
-               "0.01",
-               "--float",
-               "--set",
-               "/render/progressive=true",
-               "--crop",
-               "9,6,14x11"},
-              {.folder = folder.path()});
+  CommandOptions here;
+  here.folder = folder.path();
+  const char* script =
+      "\"$0\" render \"$1\" -o so_far.exr --quiet --device 0:0 --set /render/progressive=true --samples "
+      "65536 "
+      "--write-every 0.01 --float --crop 9,6,14x11 &\n"
+      "until [ -s so_far.exr ]; do sleep 0.02; done; kill -KILL $!; wait $!";
+  run_command({"sh", "-c", script, SUNDOG_BINARY, folder.scene}, here);
   const Image shown = read_image(folder / "so_far.exr");
   CHECK(shown.width == 32);
   CHECK(shown.height == 24);
