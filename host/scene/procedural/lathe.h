@@ -22,6 +22,6 @@ Mesh make_lathe(const Lathe& lathe);
 /// The liquid in a vessel, up to y = `level` on the axis and higher by `meniscus` at the wall. It reaches
 /// half way into the wall where that is thinnest, so no surfaces coincide; the vessel needs the higher
 /// priority. Throws GenerateError like make_lathe, and if the profile is no vessel or the level is not in it.
-Mesh make_lathe_liquid(const Lathe& vessel, double level, double meniscus);
+Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus);
 
 }  // namespace sundog

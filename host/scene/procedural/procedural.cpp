@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
