@@ -1,6 +1,9 @@
 #include "devices.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <type_traits>
 
@@ -14,12 +17,12 @@ void prepare_opencl_environment(bool every_driver) {
   if (every_driver) setenv("RUSTICL_ENABLE", "llvmpipe", 0);
   // llvmpipe without LLVM's optimiser compiles a third faster, and draws the same bits.
   setenv("GALLIVM_PERF", "nopt", 0);
-  // Tests move XDG_CACHE_HOME about; Mesa's own cache stays where it is.
+  // Tests move XDG_CACHE_HOME about; Mesa's own cache stays where it is, for users who have such a folder.
   const char *xdg = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-  if (xdg && *xdg)
-    setenv("MESA_SHADER_CACHE_DIR", xdg, 0);
-  else if (home)
-    setenv("MESA_SHADER_CACHE_DIR", (std::string(home) + "/.cache").c_str(), 0);
+  const std::string cache = xdg && *xdg ? xdg : home ? std::string(home) + "/.cache" : "";
+  std::error_code error;
+  if (!cache.empty()) std::filesystem::create_directories(cache, error);
+  if (!cache.empty() && access(cache.c_str(), W_OK) == 0) setenv("MESA_SHADER_CACHE_DIR", cache.c_str(), 0);
 }
 
 const std::vector<sundog::DeviceInfo>& test_devices() {
