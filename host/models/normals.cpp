@@ -28,7 +28,7 @@ constexpr std::size_t most_faces_at_edge = 16;
 constexpr std::size_t most_triangles = std::size_t{1} << 30;  // corners are counted in 32 bits
 const glm::vec3 any_direction{0, 1, 0};
 
-bool normalize(dvec3 sum, glm::vec3& out) {
+bool normalize(glm::dvec3 sum, glm::vec3& out) {
   const double length = glm::length(sum);
   if (!(length > 0) || !std::isfinite(length)) return false;
   out = glm::vec3(sum / length);
@@ -55,7 +55,7 @@ Filled<glm::vec3> face_normals(const Mesh& mesh) {
   auto normals = std::make_unique_for_overwrite<glm::vec3[]>(mesh.triangles.size());
   in_parallel(mesh.triangles.size(), [&](std::size_t i) {
     const glm::uvec3 t = mesh.triangles[i];
-    const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
     if (!normalize(glm::cross(b - a, c - a), normals[i])) normals[i] = glm::vec3(0);
   });
   return normals;
@@ -86,13 +86,13 @@ struct Surroundings {
   }
   bool is_smooth(uint32_t face, uint32_t other) const {
     if (!groups.empty()) return groups[face] != 0 && groups[face] == groups[other];
-    return glm::dot(dvec3(face_normals[face]), dvec3(face_normals[other])) >= cosine - 1e-7;
+    return glm::dot(glm::dvec3(face_normals[face]), glm::dvec3(face_normals[other])) >= cosine - 1e-7;
   }
   bool has_area(uint32_t corner) const { return face_normals[corner / 3] != glm::vec3(0); }
   double angle(uint32_t corner) const {
-    const dvec3 at = mesh.positions[corner_vertex(mesh, corner)];
-    const dvec3 a = dvec3(mesh.positions[neighbour(corner, 1)]) - at;
-    const dvec3 b = dvec3(mesh.positions[neighbour(corner, 2)]) - at;
+    const glm::dvec3 at = mesh.positions[corner_vertex(mesh, corner)];
+    const glm::dvec3 a = glm::dvec3(mesh.positions[neighbour(corner, 1)]) - at;
+    const glm::dvec3 b = glm::dvec3(mesh.positions[neighbour(corner, 2)]) - at;
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
   }
 };
@@ -189,10 +189,10 @@ class PointFans {
   }
 
   void sum_fans(std::span<const uint32_t> corners) {
-    sums_.assign(corners.size(), dvec3(0));
+    sums_.assign(corners.size(), glm::dvec3(0));
     for (uint32_t i = 0; i < corners.size(); ++i)
       if (shared_.has_area(corners[i]))
-        sums_[root(i)] += shared_.angle(corners[i]) * dvec3(shared_.face_normals[corners[i] / 3]);
+        sums_[root(i)] += shared_.angle(corners[i]) * glm::dvec3(shared_.face_normals[corners[i] / 3]);
   }
 
   // The common case: one vertex and one fan.
@@ -243,7 +243,7 @@ class PointFans {
   std::vector<uint32_t> fan_;                                     // union-find over the current corners
   std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends_;  // the other points of few corners' edges
   std::vector<Spoke> spokes_;
-  std::vector<dvec3> sums_;
+  std::vector<glm::dvec3> sums_;
   std::vector<Claim> claims_;
 };
 

@@ -8,7 +8,7 @@ namespace sundog::models {
 Model load_obj(const Source& source, const ModelOptions& options);
 Model load_ply(const Source& source, const ModelOptions& options);
 Model load_stl(const Source& source, const ModelOptions& options);
-Model load_gltf(Source source, const ModelOptions& options);
+Model load_gltf(Source from, const ModelOptions& options);
 Model load_nff(const Source& source);
 
 /// Adds `mesh`, with positions relative to `origin`, and an object that places it, unless it is empty.

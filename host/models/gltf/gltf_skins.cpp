@@ -6,8 +6,9 @@ namespace sundog::models {
 namespace {
 
 /// The weighted mean of a vertex's joint matrices.
-std::optional<dmat4> blended(const std::vector<dmat4>& matrices, const JointWeights& of, std::size_t vertex) {
-  dmat4 sum(0);
+std::optional<glm::dmat4> blended(const std::vector<glm::dmat4>& matrices, const JointWeights& of,
+                                  std::size_t vertex) {
+  glm::dmat4 sum(0);
   double weights = 0;
   for (std::size_t i = 4 * vertex; i < 4 * vertex + 4; ++i) {
     const auto weight = static_cast<double>(of.weights[i]);
@@ -24,25 +25,25 @@ glm::dmat3 for_normals(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-glm::vec3 unit(const dvec3& v) {
+glm::vec3 unit(const glm::dvec3& v) {
   const double length = glm::length(v);
   return glm::vec3(length > 0 ? v / length : v);
 }
 
 }  // namespace
 
-void move_by_joints(const std::vector<dmat4>& matrices, const JointWeights& of,
+void move_by_joints(const std::vector<glm::dmat4>& matrices, const JointWeights& of,
                     const std::vector<std::uint32_t>& used, std::size_t first, Mesh& mesh) {
   for (std::size_t i = 0; i < used.size(); ++i) {
     const auto matrix = blended(matrices, of, used[i]);
     if (!matrix) continue;
     const std::size_t at = first + i;
     const glm::dmat3 turn(*matrix);
-    mesh.positions[at] = glm::vec3(*matrix * glm::dvec4(dvec3(mesh.positions[at]), 1));
-    mesh.normals[at] = unit(for_normals(turn) * dvec3(mesh.normals[at]));
+    mesh.positions[at] = glm::vec3(*matrix * glm::dvec4(glm::dvec3(mesh.positions[at]), 1));
+    mesh.normals[at] = unit(for_normals(turn) * glm::dvec3(mesh.normals[at]));
     if (at < mesh.tangents.size()) {
       const glm::vec4 tangent = mesh.tangents[at];
-      mesh.tangents[at] = glm::vec4(unit(turn * dvec3(glm::vec3(tangent))), tangent.w);
+      mesh.tangents[at] = glm::vec4(unit(turn * glm::dvec3(glm::vec3(tangent))), tangent.w);
     }
   }
 }

@@ -16,7 +16,7 @@ struct JointWeights {
 
 /// Skins the mesh's vertices from `first` on, which are the primitive's vertices `used`. A vertex without
 /// weights, or with an invalid joint, stays.
-void move_by_joints(const std::vector<dmat4>& matrices, const JointWeights& of,
+void move_by_joints(const std::vector<glm::dmat4>& matrices, const JointWeights& of,
                     const std::vector<std::uint32_t>& used, std::size_t first, Mesh& mesh);
 
 }  // namespace sundog::models
