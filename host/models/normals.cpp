@@ -357,7 +357,8 @@ void give_normals(Mesh& mesh, const CornersByPoint& around, double crease_degree
 }  // namespace
 
 void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_degrees,
-                      std::vector<std::uint32_t> point_of_vertex, std::vector<std::uint32_t> groups) {
+                      const std::vector<std::uint32_t>& point_of_vertex,
+                      const std::vector<std::uint32_t>& groups) {
   if (mesh.triangles.size() > most_triangles) throw std::length_error("more than 2^30 triangles");
   if (has_normal.empty()) has_normal.assign(mesh.positions.size(), !mesh.normals.empty());
   std::vector<glm::vec3>& normals = mesh.normals.values();

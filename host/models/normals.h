@@ -16,8 +16,8 @@ namespace sundog::models {
 /// Degenerate faces are ignored. A mesh without normals and with crease 0 stays flat. Throws
 /// std::length_error above 2^30 triangles.
 void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_degrees,
-                      std::vector<std::uint32_t> point_of_vertex = {},
-                      std::vector<std::uint32_t> groups = {});
+                      const std::vector<std::uint32_t>& point_of_vertex = {},
+                      const std::vector<std::uint32_t>& groups = {});
 
 /// For each vertex, the first vertex at the same position.
 std::vector<std::uint32_t> weld_positions(const Mesh& mesh);

@@ -67,8 +67,8 @@ class ObjReader {
     settle_materials();
     const bool by_groups = any_group_ && !crease_degrees;
     const bool flat = by_groups && std::ranges::count(groups_, 0u) == std::ssize(groups_);
-    complete_normals(mesh_, std::move(has_normal_), crease_degrees.value_or(flat ? 0 : 45),
-                     std::move(points_), by_groups ? std::move(groups_) : std::vector<std::uint32_t>());
+    complete_normals(mesh_, std::move(has_normal_), crease_degrees.value_or(flat ? 0 : 45), points_,
+                     by_groups ? groups_ : std::vector<std::uint32_t>());
     return std::move(mesh_);
   }
 

@@ -336,7 +336,7 @@ Model load_ply(const Source& source, const ModelOptions& options) {
   mesh.name = source.path.stem().string();
   std::vector<std::uint32_t> points;
   if (mesh.colors.empty() && !content.face_colors.empty()) points = paint_faces(mesh, content.face_colors);
-  complete_normals(mesh, {}, options.crease_angle.value_or(45), std::move(points));
+  complete_normals(mesh, {}, options.crease_angle.value_or(45), points);
   Model model;
   model.dropped_polygons = content.dropped;
   warn_of_no_numbers(source, content.normals_of_no_number, "normals", "made up", model);
