@@ -192,12 +192,8 @@ Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
   for (double depth = thickness / 2;; depth /= 2) {
     Profile body = moved_right(wall, depth, top);
     add_surface(wall.back().b.x, level, meniscus, body);
-    try {
-      procedural::check_crossings(body);
-      return LatheMesh(lathe.segments).turn(body);
-    } catch (const GenerateError&) {
-      if (depth < thickness / 64) throw;
-    }
+    if (depth < thickness / 64) procedural::check_crossings(body);
+    if (!procedural::crossing_of(body)) return LatheMesh(lathe.segments).turn(body);
   }
 }
 

@@ -89,9 +89,10 @@ Terrain read_terrain(JsonObject& object) {
 
 /// The recipe of the mesh that the key "vessel" names.
 JsonValue find_vessel(const JsonValue& name, const JsonValue& meshes) {
+  static const nlohmann::json::json_pointer place("/generate/type");
   const auto mesh = meshes.json().find(name.text());
-  const bool generated = mesh != meshes.json().end() && mesh->is_object() && mesh->contains("generate");
-  const std::string type = generated ? (*mesh)["generate"].value("type", "") : "";
+  const bool typed = mesh != meshes.json().end() && mesh->contains(place) && mesh->at(place).is_string();
+  const std::string type = typed ? mesh->at(place).get<std::string>() : "";
   if (type != "lathe" && type != "ice_block")
     name.fail(fmt::format(
         "\"{}\" is no vessel; wanted the name of a mesh that a \"lathe\" or an \"ice_block\" generates",

@@ -12,13 +12,12 @@ namespace sundog::procedural {
 
 namespace {
 
+using glm::dot;
 using glm::dvec2;
+using glm::length;
 
 double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-double dot(const dvec2& a, const dvec2& b) { return a.x * b.x + a.y * b.y; }
-double length(const dvec2& v) { return std::sqrt(dot(v, v)); }
-dvec2 unit(const dvec2& v) { return v / length(v); }
-dvec2 right_of(const dvec2& direction) { return unit({direction.y, -direction.x}); }
+dvec2 right_of(const dvec2& direction) { return glm::normalize(dvec2(direction.y, -direction.x)); }
 std::string shown(const dvec2& p) { return fmt::format("[{:.6g}, {:.6g}]", p.x, p.y); }
 
 void add_line(const dvec2& a, const dvec2& b, Profile& to) {
@@ -34,19 +33,18 @@ void add_arc(const dvec2& center, double radius, const dvec2& from, const dvec2&
     to.push_back({center + radius * from, center + radius * till, from, till});
     return;
   }
-  const dvec2 middle = unit(from + till);
+  const dvec2 middle = glm::normalize(from + till);
   add_arc(center, radius, from, middle, cos_turn, to);
   add_arc(center, radius, middle, till, cos_turn, to);
 }
 
 struct Corner {
-  dvec2 at;
   double cut = 0;     // of the lines on both sides
   double radius = 0;  // of the arc; 0: sharp
 };
 
 Corner corner_at(const ProfilePoint& point, const dvec2& before, const dvec2& after) {
-  Corner corner{.at = point.at};
+  Corner corner;
   const double turn = cross(before, after), half = std::abs(turn) / (1 + dot(before, after));
   if (point.rounding <= 0 || !(half > 1e-6)) return corner;
   corner.radius = point.rounding;
@@ -58,14 +56,13 @@ Profile follow_lines(std::span<const ProfilePoint> points, double cos_turn) {
   const bool closed = points.front().at == points.back().at;
   const std::size_t last = points.size() - 1;
   std::vector<dvec2> directions;
-  for (std::size_t i = 0; i < last; ++i) directions.push_back(unit(points[i + 1].at - points[i].at));
+  for (std::size_t i = 0; i < last; ++i)
+    directions.push_back(glm::normalize(points[i + 1].at - points[i].at));
   std::vector<Corner> corners(points.size());
   for (std::size_t i = 0; i <= last; ++i) {
     const bool end = i == 0 || i == last;
-    if (end && !closed)
-      corners[i].at = points[i].at;
-    else
-      corners[i] = corner_at(points[i], directions[end ? last - 1 : i - 1], directions[end ? 0 : i]);
+    if (end && !closed) continue;
+    corners[i] = corner_at(points[i], directions[end ? last - 1 : i - 1], directions[end ? 0 : i]);
   }
   Profile to;
   for (std::size_t i = 0; i < last; ++i) {
@@ -79,11 +76,11 @@ Profile follow_lines(std::span<const ProfilePoint> points, double cos_turn) {
     if (room - wanted > 1e-9 * room)
       add_line(points[i].at + d * corners[i].cut, points[i + 1].at - d * corners[i + 1].cut, to);
     const Corner& corner = corners[i + 1];
-    if (corner.radius == 0 || (i + 1 == last && !closed)) continue;
+    if (corner.radius == 0) continue;
     const dvec2 next = directions[i + 1 == last ? 0 : i + 1];
     const double radius = cross(d, next) > 0 ? corner.radius : -corner.radius;
     const dvec2 from = right_of(d);
-    add_arc(corner.at - d * corner.cut - radius * from, radius, from, right_of(next), cos_turn, to);
+    add_arc(points[i + 1].at - d * corner.cut - radius * from, radius, from, right_of(next), cos_turn, to);
   }
   for (std::size_t i = 1; i < to.size(); ++i) to[i].a = to[i - 1].b;
   to.back().b = closed ? to.front().a : points.back().at;
@@ -109,8 +106,7 @@ void add_cubic(const Cubic& cubic, double from, double till, int depth, double c
   const double middle = (from + till) / 2;
   const dvec2 a = cubic.normal(from), b = cubic.normal(till), m = cubic.normal(middle);
   if (depth > 0 && (depth >= 10 || std::min({dot(a, b), dot(a, m), dot(m, b)}) >= cos_turn)) {
-    const dvec2 start = to.empty() || from > 0 ? cubic.at(from) : cubic.p;
-    to.push_back({from > 0 ? to.back().b : start, till < 1 ? cubic.at(till) : cubic.q, a, b});
+    to.push_back({from > 0 ? to.back().b : cubic.p, till < 1 ? cubic.at(till) : cubic.q, a, b});
     return;
   }
   add_cubic(cubic, from, middle, depth + 1, cos_turn, to);
@@ -229,12 +225,17 @@ double area_of(const Profile& profile) {
   return sum;
 }
 
-void check_crossings(const Profile& profile) {
+std::optional<glm::dvec2> crossing_of(const Profile& profile) {
   const bool closed = profile.front().a == profile.back().b;
   for (std::size_t i = 0; i < profile.size(); ++i)
     for (std::size_t k = i + 2; k < profile.size(); ++k)
-      if (!(closed && i == 0 && k + 1 == profile.size()) && meet(profile[i], profile[k]))
-        throw GenerateError(fmt::format("the curve crosses itself near {}", shown(profile[k].a)));
+      if (!(closed && i == 0 && k + 1 == profile.size()) && meet(profile[i], profile[k])) return profile[k].a;
+  return std::nullopt;
+}
+
+void check_crossings(const Profile& profile) {
+  if (const auto place = crossing_of(profile))
+    throw GenerateError(fmt::format("the curve crosses itself near {}", shown(*place)));
 }
 
 }  // namespace sundog::procedural

@@ -2,6 +2,7 @@
 // extrusions.
 #pragma once
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,9 @@ Profile reversed(const Profile& profile);
 
 /// The area on the left of a curve, closed by a straight line: positive if it runs counterclockwise.
 double area_of(const Profile& profile);
+
+/// Where a curve crosses itself.
+std::optional<glm::dvec2> crossing_of(const Profile& profile);
 
 /// Throws GenerateError, with the place, if the curve crosses itself.
 void check_crossings(const Profile& profile);

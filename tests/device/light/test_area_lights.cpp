@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "catch.h"
+#include "closed_irradiance.h"
 #include "compile/parts/steps.h"
 #include "devices.h"
 #include "every_kind.h"
@@ -119,57 +120,6 @@ std::vector<Estimate> estimate(const DeviceInfo& info, const std::vector<Lit>& l
 Light pack(const LightDescription& light) { return compile_lights({.lights = {&light, 1}}).lights.at(0); }
 
 float4 pack(const dvec3& v) { return {float(v.x), float(v.y), float(v.z), 0}; }
-
-/// Lambert's irradiance at p of a polygon of radiance 1 that lies above the surface of normal n.
-double polygon_irradiance(const std::vector<dvec3>& corners, const dvec3& p, const dvec3& n) {
-  double sum = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const dvec3 a = glm::normalize(corners[i] - p), b = glm::normalize(corners[(i + 1) % corners.size()] - p);
-    const dvec3 across = glm::cross(a, b);
-    const double sine = glm::length(across);
-    if (sine > 0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(across / sine, n);
-  }
-  return std::abs(sum) / 2;
-}
-
-/// The rectangle's corners, or those of a polygon that is all but the disk.
-std::vector<dvec3> corners_of(const LightDescription& light) {
-  const LampAxes axes = lamp_axes(light);
-  std::vector<dvec3> corners;
-  if (light.type == LightType::rectangle) {
-    for (const auto& [a, b] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
-      corners.push_back(light.position + a * axes.u + b * axes.v);
-    return corners;
-  }
-  constexpr int count = 4096;
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2 * pi * i / count;
-    corners.push_back(light.position + std::cos(angle) * axes.u + std::sin(angle) * axes.v);
-  }
-  return corners;
-}
-
-double sphere_irradiance(const LightDescription& light, const dvec3& p, const dvec3& n) {
-  const dvec3 to = light.position - p;
-  const double d = glm::length(to);
-  return pi * light.radius * light.radius / (d * d) * glm::dot(n, to / d);
-}
-
-double irradiance(const LightDescription& light, const dvec3& p, const dvec3& n) {
-  switch (light.type) {
-    case LightType::rectangle:
-    case LightType::disk:
-      return polygon_irradiance(corners_of(light), p, n);
-    case LightType::sphere:
-      return sphere_irradiance(light, p, n);
-    case LightType::ambient:
-    case LightType::directional:
-    case LightType::point:
-    case LightType::spot:
-      break;
-  }
-  throw std::logic_error("a light without an extent");
-}
 
 LightDescription lamp(LightType type, const dvec3& direction) {
   LightDescription light;

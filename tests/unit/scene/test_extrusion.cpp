@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "catch.h"
+#include "mesh_volume.h"
 #include "scene/mesh_faults.h"
 #include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
@@ -10,19 +11,6 @@
 
 using namespace sundog;
 using glm::dvec3;
-
-namespace {
-
-double volume(const Mesh& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles)
-    sum += glm::dot(dvec3(mesh.positions[t.x]),
-                    glm::cross(dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z]))) /
-           6;
-  return sum;
-}
-
-}  // namespace
 
 TEST_CASE("an extrusion is closed and has its outline's area times its height, whichever way that runs") {
   // An L with a rounded outer corner.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "catch.h"
+#include "mesh_volume.h"
 #include "scene/mesh_faults.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
@@ -28,15 +29,6 @@ Lathe spline(std::vector<ProfilePoint> profile) {
 
 /// Walls and floor 0.2 thick, 2 high.
 Lathe beaker() { return lines({{{0, 0}}, {{1, 0}}, {{1, 2}}, {{0.8, 2}}, {{0.8, 0.2}}, {{0, 0.2}}}); }
-
-double volume(const Mesh& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles)
-    sum += glm::dot(dvec3(mesh.positions[t.x]),
-                    glm::cross(dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z]))) /
-           6;
-  return sum;
-}
 
 bool closed(const Mesh& mesh) {
   const MeshFaults faults = find_faults(mesh);

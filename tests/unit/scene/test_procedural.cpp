@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "catch.h"
+#include "mesh_volume.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/random.h"
 
@@ -51,15 +52,6 @@ std::size_t open_edges(const Mesh& mesh) {
     bad += n != 1 || back == count.end() || back->second != 1;
   }
   return bad;
-}
-
-double volume(const Mesh& mesh) {
-  double sum = 0;
-  for (const auto& t : mesh.triangles) {
-    const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-    sum += glm::dot(a, glm::cross(b, c)) / 6;
-  }
-  return sum;
 }
 
 // How often the surface winds around the point (Van Oosterom and Strackee 1983): 1 inside, 0 outside.

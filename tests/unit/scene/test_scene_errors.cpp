@@ -322,6 +322,10 @@ TEST_CASE("bad meshes and models are refused with their place") {
       {scene_with(R"("meshes": {"a": {}})"),
        "/meshes/a",
        {"wanted one of \"file\" or \"generate\"", "found none"}},
+      {scene_with(
+           R"("meshes": {"a": {"generate": {"type": "fill", "vessel": "b", "to": 1}}, "b": {"generate": {"type": 5}}})"),
+       "/meshes/a/generate/vessel",
+       {"\"b\" is no vessel"}},
       {scene_with(R"("meshes": {"a": {"flie": "tetra.ply"}})"), "/meshes/a/flie", {"did you mean \"file\"?"}},
       {scene_with(R"("meshes": {"a": {"file": "gone.obj"}})"), "/meshes/a/file", {"does not exist"}, false},
       {scene_with(R"("meshes": {"a": {"file": "tetra.ply", "crease_angle": 181}})"),
