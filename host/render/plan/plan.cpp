@@ -21,14 +21,16 @@ constexpr std::uint64_t probe = 4096;     // pixels of a first tile
 constexpr std::uint64_t tiny_probe = 64;  // of a device that is expected to be a burden
 // A device that takes so many times longer than expected, and so many seconds, is stuck.
 constexpr double stuck_factor = 4, stuck_seconds = 1;
+constexpr double dearer = 8;  // pixels of one place take so many times as long as another's
 // A repeated tile must be likely to win: speeds differ over the image.
 constexpr double clear_win = 0.8;
 
-/// Estimates do not count here: a device that boasts would leave crumbs to the others.
-double total_speed(std::span<const DeviceSpeed> devices) {
+/// The sum of the speeds of the others that work, or of all that have not failed. Estimates do not count: a
+/// device that boasts would leave crumbs to the others.
+double others_speed(std::span<const DeviceSpeed> devices, std::size_t device, bool working) {
   double total = 0;
-  for (const DeviceSpeed& device : devices)
-    if (device.working) total += device.measured;
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    if (i != device && (working ? devices[i].working : !devices[i].failed)) total += devices[i].measured;
   return total;
 }
 
@@ -81,14 +83,18 @@ std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t de
     return std::min(left, std::clamp<std::uint64_t>(share, cell, slowing ? tiny_probe : probe));
   }
   const bool alone = devices.size() == 1;
-  const double total = std::max(total_speed(devices), own), others = total - own;
   const auto waiting = static_cast<double>(left);
   if (!alone && !is_fastest(devices, device)) {
     if (slowing) return 0;
-    if (others > 0 && static_cast<double>(std::min(cell, left)) / own > waiting / others) return 0;
+    const double working = others_speed(devices, device, true);
+    if (working > 0 && static_cast<double>(std::min(cell, left)) / own > waiting / working) return 0;
   }
-  // Half its share where there are equals to even out with; all of it beside those that hardly count.
-  double pixels = waiting * own / total / (1 + std::min(1.0, others / own));
+  // A device measured in the frame before counts before it is ready: else the first ready takes all of a
+  // short frame.
+  const double others = others_speed(devices, device, false), total = own + others;
+  // Half its share where there are equals to even out with; all of it beside those that hardly count, however
+  // much dearer their pixels were.
+  double pixels = waiting * own / total / (1 + std::min(1.0, dearer * others / own));
   const double longest = devices[device].tile_seconds > 0 ? devices[device].tile_seconds : longest_tile;
   pixels = std::clamp(pixels, own * std::min(shortest_tile, longest), own * longest);
   if (devices[device].sample > 0) pixels = std::min(pixels, growth * devices[device].sample);

@@ -185,6 +185,21 @@ TEST_CASE("a frame of 30 ms has several tiles a device, and a second one never c
       }
 }
 
+TEST_CASE(
+    "two equal devices halve a short frame, though one is ready later and half of the picture is dear") {
+  constexpr int width = 640, height = 480;
+  for (const double seconds : {0.1, 0.5})
+    for (const double dear : {1.0, 4.0, 8.0})
+      for (const double ready : {0.0, 2e-4}) {
+        CAPTURE(seconds, dear, ready);
+        const double speed = width * height * 0.5 * (1 + dear) / seconds;
+        Simulated device{speed, 1}, late = device;
+        device.known = late.known = width * height / seconds;
+        late.ready = ready;
+        CHECK(Simulation(width, height, {device, late}, 1e-4, dear).run().seconds < seconds / 1.8);
+      }
+}
+
 TEST_CASE("devices share a frame by their speeds, whatever the estimates said") {
   const Simulated fast{300'000, 1}, slow{100'000, 50};
   const Outcome outcome = Simulation(1280, 960, {slow, fast}).run();
