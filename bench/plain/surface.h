@@ -7,7 +7,9 @@ namespace sundog::plain {
 struct Surface {
   glm::vec3 p{0};
   glm::vec3 ng{0}, ns{0};  // unit, against the ray
+  glm::vec3 side{0};       // likewise: what is above, by it, is before the surface
   float offset = 0;        // off the surface, for rays that start there
+  float lift = 0;          // how far the surface that smooth normals mean is before it
   const Material* material = nullptr;
   glm::vec3 ambient{0}, diffuse{0};  // with checker and vertex colour
 };

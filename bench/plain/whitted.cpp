@@ -144,7 +144,8 @@ vec3 direct_light(const World& world, const Path& path, const Surface& s) {
     if (!(greatest(possible) >= std::numeric_limits<float>::min())) continue;
     const float share = world.scene.info.cutoff * LEAST_OF_LIGHT * greatest(sample.radiance);
     if (greatest(path.throughput * possible) < share) continue;
-    sum += possible * visibility(world, {s.p + s.offset * s.ng, sample.wi, 0, sample.distance}, path.media);
+    sum += possible *
+           visibility(world, {s.p + (s.offset + s.lift) * s.ng, sample.wi, 0, sample.distance}, path.media);
   }
   return sum;
 }
@@ -163,7 +164,7 @@ vec3 follow(const World& world, const Path& parent, const vec3& factor, const ve
 
 vec3 reflected(const vec3& d, const Surface& s) {
   const vec3 direction = glm::reflect(d, s.ns);
-  return glm::normalize(glm::dot(direction, s.ng) > 0 ? direction : glm::reflect(d, s.ng));
+  return glm::normalize(glm::dot(direction, s.side) > 0 ? direction : glm::reflect(d, s.side));
 }
 
 vec3 bend(const vec3& d, const vec3& n, float eta) {
@@ -194,7 +195,8 @@ vec3 secondary_light(const World& world, const Path& path, const Encounter& e, c
     kt = vec3(0);
   }
   const vec3 off = s.offset * s.ng;
-  vec3 sum = follow(world, path, kr, s.p + off, reflected(path.ray.d, s), path.media, COUNT_REFLECTION);
+  const vec3 before = s.p + (s.offset + s.lift) * s.ng;
+  vec3 sum = follow(world, path, kr, before, reflected(path.ray.d, s), path.media, COUNT_REFLECTION);
   if (!transmits) return sum;
   MediaStack inside = path.media;
   if (interior) inside.cross(material.medium, e.entering);

@@ -31,14 +31,15 @@ Mesh random_triangles(std::size_t count, float size, unsigned seed) {
   return mesh;
 }
 
-Mesh bumpy_sphere(int rings) {
+Mesh bumpy_sphere(int rings, double bumps) {
   Mesh mesh;
   mesh.name = "bumpy";
   const int columns = 2 * rings;
   for (int i = 0; i <= rings; ++i)
     for (int j = 0; j < columns; ++j) {
       const double a = std::numbers::pi * i / rings, b = 2 * std::numbers::pi * j / columns;
-      const double r = 1 + 0.1 * std::sin(7 * a) * std::cos(5 * b) + 0.02 * std::sin(31 * a + 17 * b);
+      const double r =
+          1 + bumps * (0.1 * std::sin(7 * a) * std::cos(5 * b) + 0.02 * std::sin(31 * a + 17 * b));
       const glm::dvec3 n(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b));
       mesh.positions.emplace_back(r * n);
       mesh.normals.emplace_back(n);

@@ -9,8 +9,9 @@ namespace sundog {
 /// Unconnected random triangles of about `size` in the cube [-1, 1]^3; no normals.
 Mesh random_triangles(std::size_t count, float size, unsigned seed = 1);
 
-/// A closed bumpy sphere of 2 * rings * (rings - 1) * 2 triangles, with normals: like a scanned model.
-Mesh bumpy_sphere(int rings);
+/// A closed bumpy sphere of 2 * rings * (rings - 1) * 2 triangles, with a sphere's normals: like a scanned
+/// model, or a ball of radius 1 without `bumps`.
+Mesh bumpy_sphere(int rings, double bumps = 1);
 
 /// A scene that shows `mesh` with a camera on it.
 SceneDescription scene_of(Mesh mesh);

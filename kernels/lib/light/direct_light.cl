@@ -64,7 +64,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
   SphericalRectangles rectangle;
   const bool flat = is_rectangle(light);
   if (flat) rectangle = see_rectangle(light, s->p, lanes);
-  const REAL3 o = along3(s->p, s->offset, s->ng);
+  const REAL3 o = along3(s->p, s->offset + s->lift, s->ng);
   REAL3 sum = all3((float3)(0.0f));
   for (u32 ray = 0; ray < way->rays; ++ray) {
     REAL u_x, u_y;
@@ -97,7 +97,7 @@ NEVER_INLINE MASK direct_light(const Scene* scene, const LightRay* way, const Ti
   __global const Light* light = scene->lights + way->light;
   const SeenLights seen = see_light(light, s->p, lanes);
   Shafts shafts;
-  shafts.o = along3(s->p, s->offset, s->ng);
+  shafts.o = along3(s->p, s->offset + s->lift, s->ng);
   shafts.slack = s->offset;
   MASK facing = NO_LANES;
   for (u32 i = 0; i < 4u; ++i) {

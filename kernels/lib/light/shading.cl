@@ -12,17 +12,17 @@ typedef struct Shading {
   Bsdfs bsdf;
 } Shading;
 
-// A shading normal may mirror the viewer's direction below the face, where lobes about that are lost and the
-// surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
+// A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
+// the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
 // reflected_direction().
 #define GLOSSY (HAS_ROUGH ? MATERIAL_LAYERED | MATERIAL_REFLECTS : MATERIAL_LAYERED)
 static inline void bend_normals(REAL3 d, MASK lanes, SurfaceInteractions* s) {
   const REAL3 mirrored = reflect_direction(d, s->ns);
-  const REAL height = dot3(s->ng, mirrored), least = real_min(-0.9f * dot3(s->ng, d), (REAL)(0.01f));
+  const REAL height = dot3(s->side, mirrored), least = real_min(-0.9f * dot3(s->side, d), (REAL)(0.01f));
   const MASK low = lanes & MASK_OF((s->flags & (int)GLOSSY) != 0) & MASK_OF(height < least);
   if (!any_lane(low)) return;
-  const REAL3 flat = safe_unit3(along3(mirrored, -height, s->ng));
-  const REAL3 lifted = along3(scale3(flat, real_sqrt(1.0f - least * least)), least, s->ng);
+  const REAL3 flat = safe_unit3(along3(mirrored, -height, s->side));
+  const REAL3 lifted = along3(scale3(flat, real_sqrt(1.0f - least * least)), least, s->side);
   s->ns = select3(s->ns, safe_unit3(subtract3(lifted, d)), low);
 }
 

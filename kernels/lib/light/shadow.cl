@@ -34,7 +34,7 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
   SurfaceInteractions s;
   s.p = along3(rays->o, hits->t, rays->d);
   s.ng = safe_unit3(faces->outward);
-  s.ns = s.ng;
+  s.ns = s.side = s.ng;
   s.instance = hits->instance;
   s.material = faces->material;
   locate(scene, hits, lanes, &s);

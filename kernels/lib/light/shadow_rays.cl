@@ -89,7 +89,7 @@ static inline void cast_shadows(const Scene* scene, u32 index, const TileSamples
   SceneRays to_light = *rays;
   start_on_surfaces(scene->info, &to_light, hits, ~s->entering, lit);
   REAL way;
-  to_light.o = along3(leave_relief(s, light.wi, &way), s->offset, leaving_normal(s));
+  to_light.o = along3(leave_relief(s, light.wi, &way), s->offset + s->lift, leaving_normal(s));
   to_light.d = light.wi;
   to_light.t_min = (REAL)(0.0f);
   to_light.t_max = light.distance - way;

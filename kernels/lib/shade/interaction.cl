@@ -10,7 +10,9 @@
 typedef struct SurfaceInteractions {
   REAL3 p;                                      // world
   REAL3 ng, ns;                                 // unit, both against the ray
+  REAL3 side;                                   // likewise: what is above, by it, is before the surface
   REAL offset;                                  // distance off the surface at which secondary rays start
+  REAL lift;                                    // how far the surface that smooth normals mean is before it
   REAL3 color;                                  // vertex or field colour, a factor on ambient and diffuse
   MASK instance;                                // index
   MASK material, flags;                         // index; of the material
@@ -77,10 +79,26 @@ static inline REAL3 settle_on_sphere(const Scene* scene, u32 index, const Surfac
   return along3(s->p, -0.5f * (dot3(q, q) - 1.0f) / dot3(gradient, gradient), gradient);
 }
 
+// A corner's normal that turns further than this cosine from its triangle's means no smooth surface.
+#define SMOOTH_COSINE 0.5f
+
+// How far the surface that is smooth by the normals na, nb, nc at its corners is before the triangle p0, p0 +
+// e1, p0 + e2 at its point p0 + v e1 + w e2, seen from their side if that is 1, else -1: the mean height of
+// the planes through the corners, where they are before it (Hanika 2021, "Hacking the Shadow Terminator").
+// Negative if the normals mean no such surface.
+static inline float smooth_lift(float3 p0, float3 e1, float3 e2, float v, float w, float side, float3 na,
+                                float3 nb, float3 nc) {
+  const float3 face = cross(e1, e2), at = v * e1 + w * e2;
+  const float least = SMOOTH_COSINE * sqrt(dot(face, face));
+  if (!(fmin(dot(face, na), fmin(dot(face, nb), dot(face, nc))) > least)) return -1.0f;
+  return (1.0f - v - w) * fmax(-side * dot(at, na), 0.0f) + v * fmax(-side * dot(at - e1, nb), 0.0f) +
+         w * fmax(-side * dot(at - e2, nc), 0.0f);
+}
+
 // Interpolated corner normals and colours for the lanes of `lanes`, and the triangles' extents. World space,
-// unit.
-NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hits, MASK lanes, REAL3* color,
-                                   REAL* extent) {
+// unit. `lift`: smooth_lift() in the world.
+NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hits, MASK entering, MASK lanes,
+                                   REAL3* color, REAL* extent, REAL* lift) {
   REAL3 normal = hits->ng;
   EACH_LANE(i, lanes) {
     __global const TriangleShading* triangle = scene->triangles + MASK_LANE(hits->prim, i);
@@ -89,11 +107,20 @@ NEVER_INLINE REAL3 shading_normals(const Scene* scene, u32 index, const Hits* hi
     REAL_LANE(*extent, i) = triangle->extent;
     const float u = REAL_LANE(hits->u, i), v = REAL_LANE(hits->v, i), w = 1.0f - u - v;
     set3(color, i, w * (float3)(a.r, a.g, a.b) + u * (float3)(b.r, b.g, b.b) + v * (float3)(c.r, c.g, c.b));
-    set3(&normal, i,
-         w * (float3)(a.nx, a.ny, a.nz) + u * (float3)(b.nx, b.ny, b.nz) + v * (float3)(c.nx, c.ny, c.nz));
+    const float3 na = (float3)(a.nx, a.ny, a.nz), nb = (float3)(b.nx, b.ny, b.nz),
+                 nc = (float3)(c.nx, c.ny, c.nz);
+    const float3 n = w * na + u * nb + v * nc;
+    set3(&normal, i, n);
+    __global const TriangleBlock* block = scene->blocks + (triangle->place >> 3);
+    const u32 lane = triangle->place & 7u;
+    const float3 p0 = corner_of(block, 0u, lane);
+    REAL_LANE(*lift, i) =
+        sqrt(dot(n, n)) * smooth_lift(p0, corner_of(block, 1u, lane) - p0, corner_of(block, 2u, lane) - p0, u,
+                                      v, MASK_LANE(entering, i) ? 1.0f : -1.0f, na, nb, nc);
   }
-  normal = world_normals(scene->instances + index, normal);
-  return safe_unit3(moved_normals(scene, index, normal, time_of_hits(hits)));
+  normal = moved_normals(scene, index, world_normals(scene->instances + index, normal), time_of_hits(hits));
+  *lift /= nonzero(length3(normal));
+  return safe_unit3(normal);
 }
 
 // Turns a mesh's shading normals `ns` against the rays; the geometric normals if unusable. A normal facing
@@ -132,7 +159,8 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
                             MASK lanes, SurfaceInteractions* s) {
   const REAL3 outward = safe_unit3(faces->outward), white = all3((float3)(1.0f));
   s->ng = select3(negate3(outward), outward, faces->entering);
-  s->ns = s->ng;
+  s->ns = s->side = s->ng;
+  s->lift = (REAL)(0.0f);
   s->p = along3(o, hits->t, d);
   s->instance = hits->instance;
   s->material = faces->material;
@@ -153,8 +181,13 @@ static inline void interact(const Scene* scene, REAL3 o, REAL3 d, const Hits* hi
     if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
       s->p = select3(s->p, settle_on_sphere(scene, index, s), mine);
     if (HAS_MESH && instance->shape == SHAPE_MESH) {
-      const REAL3 ns = shading_normals(scene, index, hits, mine, &color, &extent);
+      REAL lift = s->lift;
+      const REAL3 ns = shading_normals(scene, index, hits, faces->entering, mine, &color, &extent, &lift);
       s->ns = select3(s->ns, facing_normals(ns, s->ng, faces->entering, d), mine);
+      const MASK smooth =
+          mine & MASK_OF(lift >= 0.0f) & MASK_OF((faces->flags & (int)MATERIAL_TRANSMITS) == 0);
+      s->side = select3(s->side, s->ns, smooth);
+      s->lift = select(s->lift, lift, smooth);
     }
 #if HAS_SDF
     if (instance->shape == SHAPE_SDF) {

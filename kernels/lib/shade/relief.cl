@@ -156,7 +156,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
 // docs/measurements/textures.md).
 static inline REAL terminator(const SurfaceInteractions* s, REAL3 wi) {
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f), least = (REAL)(1e-6f);
-  const REAL geometric = dot3(s->ng, wi), between = dot3(s->ng, s->ns);
+  const REAL geometric = dot3(s->side, wi), between = dot3(s->side, s->ns);
   const REAL g2 = real_max(geometric * geometric, least), b2 = real_max(between * between, least);
   const REAL alpha2 = real_min(0.125f * real_max(1.0f - b2, zero) / b2, one);
   const REAL soft = 2.0f / (1.0f + real_sqrt(fma(alpha2, real_max(1.0f - g2, zero) / g2, one)));

@@ -76,7 +76,7 @@ static inline MASK spawn_children(const Scene* scene, const TileSamples* tile, c
   HAVING(HAS_CONES, spread_reflected(curvature, &child);)
   child.d = reflected_by(&facets, wo, split.branches);
   REAL way;
-  child.o = along3(leave_relief(s, child.d, &way), s->offset, leaving_normal(s));
+  child.o = along3(leave_relief(s, child.d, &way), s->offset + s->lift, leaving_normal(s));
   state.throughput = multiply3(paths->throughput, split.kr);
   const MASK simple = MASK_OF(split.kt.x + split.kt.y + split.kt.z == 0.0f) | ~split.transmits;
   state.throughput = multiply3(state.throughput, facet_weight(&facets, surface, child.d, 1.0f, split.kr,

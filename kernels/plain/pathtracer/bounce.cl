@@ -20,7 +20,7 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path
   const float over = light.delta ? 1.0f / light.pdf : 1.0f / (M_PI_F * light.pdf);
   SampledSpectrum possible = spectrum_of(&path->wavelengths, scattering);
   possible = possible * spectrum_of(&path->wavelengths, light.radiance) * (weight * over);
-  const bool below = dot(at->s.ng, light.wi) < 0.0f;
+  const bool below = dot(at->s.side, light.wi) < 0.0f;
   if (HAS_RELIEF && !below) possible *= terminator(&at->s, light.wi);
   if (HAS_PARALLAX) {
     possible *= relief_visibility(scene, &at->s, light.wi);
@@ -63,7 +63,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
   const float3 wo = -ray->d;
   const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
-  const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.ng, sample.wi) < 0.0f;
+  const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.side, sample.wi) < 0.0f;
   path->throughput *= spectrum_of(&path->wavelengths, sample.weight);
   if (HAS_DISPERSION && some) part_wavelengths(scene, at, &lobes->split, path, sample.specular && !below);
   if (HAS_RELIEF && !below && !sample.specular) path->throughput *= terminator(&at->s, sample.wi);

@@ -58,6 +58,6 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   f->tint = at_most_one(f->tint * sample.weight);
   const bool free = cut_away(&at.bsdf, &lobes.split) && may_cross(ray);
   if (!free) ++f->path.depth;
-  leave_surface(scene, &met, &at, &sample, dot(at.s.ng, sample.wi) < 0.0f, free, ray);
+  leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, free, ray);
   return true;
 }

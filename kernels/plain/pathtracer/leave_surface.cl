@@ -10,7 +10,7 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
   start_on_surfaces(scene->info, &child, &met->hit, !s->entering);
   child.d = d;
   child.t_min = 0.0f;
-  child.o = along(leave_relief(s, d, way), s->offset, leaving_normal(s));
+  child.o = along(leave_relief(s, d, way), s->offset + s->lift, leaving_normal(s));
   if (below) {
     child.o = points_behind(scene, s, ray->d);
     start_on_hits(scene->info, &child, &met->hit, s->entering);

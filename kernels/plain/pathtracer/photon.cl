@@ -40,21 +40,21 @@ static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photo
 
 // What shading normals change of a flux that is sent from wo to wi (Veach 1997, section 5.3.2). 1 where they
 // are those of the geometry.
-static inline float flux_by_normals(const Bsdf* bsdf, float3 wo, float3 wi) {
-  const float shading = fabs(dot(bsdf->ns, wo)) * fabs(dot(bsdf->ng, wi));
-  const float faces = fabs(dot(bsdf->ng, wo)) * fabs(dot(bsdf->ns, wi));
+static inline float flux_by_normals(const SurfaceInteraction* s, float3 wo, float3 wi) {
+  const float shading = fabs(dot(s->ns, wo)) * fabs(dot(s->ng, wi));
+  const float faces = fabs(dot(s->ng, wo)) * fabs(dot(s->ns, wi));
   return real_min(real_max(shading, 0.01f) / real_max(faces, 0.01f), 8.0f);
 }
 
 // The photon is sent on in the direction of `sample`. Returns whether it continues.
 static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                            const LobeSet* lobes, const BsdfSample* sample, Photon* photon, SceneRay* ray) {
-  const bool below = dot(at->s.ng, sample->wi) < 0.0f;
+  const bool below = dot(at->s.side, sample->wi) < 0.0f;
   const bool turns = !below || (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0;
   float change = 1.0f;
   if (turns) {
     dim_with_distance(scene, at->s.p, photon);
-    change = flux_by_normals(&at->bsdf, -ray->d, sample->wi);
+    change = flux_by_normals(&at->s, -ray->d, sample->wi);
     photon->bent = true;
   }
   photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sample->weight * change);

@@ -51,7 +51,7 @@ static inline void add_layers(UNIFORM const Scene* scene, const SurfaceInteracti
 ENTRY static inline Bsdf make_bsdfs(UNIFORM const Scene* scene, const SurfaceInteraction* s, int before,
                                     int after) {
   Bsdf bsdf;
-  bsdf.ng = s->ng;
+  bsdf.side = s->side;
   bsdf.ns = s->ns;
   bsdf.material = s->material;
   bsdf.flags = s->flags;

@@ -2,7 +2,7 @@
 #include "plain/shade/interface.h"
 
 typedef struct Bsdf {
-  float3 ng, ns;                     // unit, both on the viewer's side
+  float3 side, ns;                   // unit, both on the viewer's side: SurfaceInteractions
   float3 ambient, diffuse;           // ka and kd, with pattern and colour
   int material, flags;               // index; of the material
   int before, after;                 // media on the viewer's side and behind

@@ -94,7 +94,7 @@ ENTRY static inline float3 facet_weight(const MetFacet* facet, const Bsdf* surfa
   if (HAS_ROUGH && facet->rough) {
     const float c = side * dot(surface->ns, wi);
     const float seen = (1.0f + facet->lambda_o) / (1.0f + facet->lambda_o + smith_lambda(c, facet->alpha));
-    const float kept = c > 0.0f && side * dot(surface->ng, wi) > 0.0f ? seen : 0.0f;
+    const float kept = c > 0.0f && side * dot(surface->side, wi) > 0.0f ? seen : 0.0f;
     const float more = mends || facet->glass ? 1.0f / facet->energy - 1.0f : 0.0f;
     const float3 own = facet->glass ? color * (1.0f / real_max(share, 1e-6f)) : color;
     weight =

@@ -9,8 +9,8 @@ typedef struct LANES(Coordinates) {
   float3 dpdu;
 } SurfaceCoordinates;
 typedef struct LANES(SurfaceInteractions) {
-  float3 p, ng, ns, color;
-  float offset;
+  float3 p, ng, ns, side, color;
+  float offset, lift;
   int instance, material, flags;
   bool entering;
   SurfaceCoordinates at;   // HAS_UV

@@ -33,5 +33,5 @@ typedef struct LobeNumbers {
 } LobeNumbers;
 
 static inline bool is_above(const Bsdf* bsdf, float3 wi) {
-  return dot(bsdf->ns, wi) > 0.0f && dot(bsdf->ng, wi) > 0.0f;
+  return dot(bsdf->ns, wi) > 0.0f && dot(bsdf->side, wi) > 0.0f;
 }

@@ -96,16 +96,16 @@ ENTRY static inline bool cut_away(const Bsdf* bsdf, const SpecularSplit* split) 
 // Direction of perfect reflection; a shading normal must not send it inside.
 ENTRY static inline float3 reflected_direction(const Bsdf* bsdf, float3 wo) {
   const float3 by_shading = reflect_direction(-wo, bsdf->ns);
-  return dot(by_shading, bsdf->ng) > 0.0f ? by_shading : reflect_direction(-wo, bsdf->ng);
+  return dot(by_shading, bsdf->side) > 0.0f ? by_shading : reflect_direction(-wo, bsdf->side);
 }
 
 // Direction of transmission; a shading normal must not send it outside again.
 ENTRY static inline float3 transmitted_direction(const Bsdf* bsdf, const SpecularSplit* split, float3 wo) {
   const float3 d = -wo;
   const float3 by_shading = refract_direction(d, bsdf->ns, split->cos_i, split->cos_t, split->eta);
-  const float cos_g = real_clamp(dot(bsdf->ng, wo), 0.0f, 1.0f);
+  const float cos_g = real_clamp(dot(bsdf->side, wo), 0.0f, 1.0f);
   const float3 by_face =
-      refract_direction(d, bsdf->ng, cos_g, refracted_cosine(cos_g, split->eta), split->eta);
-  const float3 bent = dot(by_shading, bsdf->ng) < 0.0f ? by_shading : by_face;
+      refract_direction(d, bsdf->side, cos_g, refracted_cosine(cos_g, split->eta), split->eta);
+  const float3 bent = dot(by_shading, bsdf->side) < 0.0f ? by_shading : by_face;
   return split->eta == 1.0f ? d : bent;
 }

@@ -97,7 +97,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   Bsdfs bsdf = {n, n, n, n, 0, (int)materials[0].flags, 0, 1, in[i].y};
   SpecularSplits split = bsdf_specular(&scene, &bsdf, negate3(d), ALL_LANES);
   const REAL3 inside = transmitted_direction(&bsdf, &split, negate3(d), ALL_LANES);
-  bsdf.ng = real3(-0.5f, 0.8660254f, 0.0f);
+  bsdf.side = real3(-0.5f, 0.8660254f, 0.0f);
   bsdf.ns = bsdf.ng;
   bsdf.before = 1;
   bsdf.after = 0;

@@ -60,7 +60,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   const REAL zero = (REAL)(0.0f);
   s.entering = MASK_OF(dot3(n, d) < 0.0f);
   s.ng = select3(negate3(n), n, s.entering);
-  s.ns = s.ng;
+  s.ns = s.side = s.ng;
   s.offset = zero;
   s.color = all3((float3)(1.0f));
   s.instance = NO_LANES;

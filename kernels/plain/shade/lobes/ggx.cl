@@ -151,7 +151,7 @@ static inline void scatter_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, con
   const Microfacet* facets = &lobes->rough;
   const float eta = lobes->split.eta, cos_i = dot(bsdf->ns, wi);
   const bool above = facets->rough && is_above(bsdf, wi);
-  const bool below = facets->transmits && cos_i < 0.0f && dot(bsdf->ng, wi) < 0.0f;
+  const bool below = facets->transmits && cos_i < 0.0f && dot(bsdf->side, wi) < 0.0f;
   if (!(above || below)) return;
   const bool mirrored = below && is_frosted(facets), bent = below && !mirrored;
   const float3 from = mirrored ? reflect_direction(wi, bsdf->ns) : wi;

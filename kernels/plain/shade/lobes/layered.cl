@@ -16,7 +16,7 @@ static inline void scatter_layered(UNIFORM const Scene* scene, const Bsdf* bsdf,
                                    float3 wo, float3 wi, LobeSum* sum) {
   if (!is_layered(bsdf)) return;
   const float3 o = into_frame(bsdf, wo), i = into_frame(bsdf, wi);
-  const bool under = greatest(sum->value) > 0.0f, above = i.z > 0.0f && dot(bsdf->ng, wi) > 0.0f;
+  const bool under = greatest(sum->value) > 0.0f, above = i.z > 0.0f && dot(bsdf->side, wi) > 0.0f;
   EACH_ALIKE(int, index, bsdf->material) {
     __global const Layers* m = scene->layers + index;
     if (under) sum->value *= left_by_layers(scene, m, bsdf, o.z, i.z);
@@ -58,7 +58,7 @@ static inline float3 sample_layered(UNIFORM const Scene* scene, const Bsdf* bsdf
 // itself.
 static inline void local_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float3 wi, bool met,
                                  float3* light) {
-  if (!(is_layered(bsdf) && dot(bsdf->ng, wi) > 0.0f)) return;
+  if (!(is_layered(bsdf) && dot(bsdf->side, wi) > 0.0f)) return;
   const LayerShare none = no_shares();
   EACH_ALIKE(int, index, bsdf->material) {
     float pdf;
