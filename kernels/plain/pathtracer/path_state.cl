@@ -86,10 +86,16 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   return path;
 }
 
+// The part of the background that the path shows, straight on: what is left of it, not what a camera in a
+// medium sees it brighter.
+static inline float clear_part(const PathState* path) {
+  return spectrum_mean(path->throughput) * path->spread;
+}
+
 // The surface covers what does not go further straight on. `going`: the path continues.
 static inline void note_matte(PathState* path, const SurfaceInteraction* s, bool going) {
   if (HAS_MATTES) {
-    const float clear = going && path->straight ? spectrum_mean(path->throughput) : 0.0f;
+    const float clear = going && path->straight ? clear_part(path) : 0.0f;
     path->matte = path->clear - clear;
     path->clear = clear;
     path->instance = s->instance;
@@ -99,7 +105,7 @@ static inline void note_matte(PathState* path, const SurfaceInteraction* s, bool
 
 // The alpha of the path's sample: 1, or the part of the background that it has lost on a straight way there.
 ENTRY static inline float coverage_of(const PathState* path) {
-  return path->covered ? 1.0f : 1.0f - spectrum_mean(path->throughput);
+  return path->covered ? 1.0f : 1.0f - clear_part(path);
 }
 
 // The path leaves a surface, perhaps one that has gathered photons. `narrow`: the part of its weight by

@@ -170,3 +170,23 @@ TEST_CASE("by option, smooth glass covers only what it holds back of the backgro
     CHECK(cut.pixel(7, 4)[3] < 0.2f);
   }
 }
+
+TEST_CASE("a camera inside glass sees alpha as one outside does") {
+  const AlphaFolder folder;
+  const char* inside = R"({
+    "camera": {"position": [0, 0, 0], "target": [0, 0, 1], "fov": 20},
+    "image": {"width": 16, "height": 16, "background": [0.5, 0.5, 0.5], "transparent_glass": true},
+    "render": {"samples": 64}, "materials": {"glass": {"type": "dielectric", "ior": 1.5}},
+    "objects": [{"type": "sphere", "radius": 1, "material": "glass"}]})";
+  for (const char* integrator : {"whitted", "path"}) {
+    CAPTURE(integrator);
+    const Image image =
+        folder.render(inside, "i.exr", {"--float", "--transparent", "--integrator", integrator});
+    double mean = 0;
+    for (std::size_t i = 3; i < image.data.size(); i += 4) {
+      CHECK(image.data[i] >= -1e-5f);
+      mean += double(image.data[i]) / (16 * 16);
+    }
+    CHECK(mean == Approx(0.04).margin(0.02));
+  }
+}
