@@ -38,6 +38,8 @@ std::string next_text(const NextShot& next) {
     text += fmt::format(" {}:", object);
     add(matrix);
   }
+  for (const auto& [object, faces] : next.faces)
+    text += fmt::format(" {}:{:x}", object, hash_bytes(faces.data(), faces.size() * sizeof(MovingFace)));
   return text;
 }
 

@@ -1,16 +1,24 @@
 // Shot: the camera of a picture and its place in a film, as OpenEXR's standard attributes hold them.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
+#include <vector>
 
 namespace sundog {
 
-/// The camera of the next frame, and the transforms of world points of objects (by their index) that move
-/// until then.
+/// A triangle's corners in the world, now and in the next frame.
+struct MovingFace {
+  std::array<glm::vec3, 3> now, next;
+};
+
+/// The camera of the next frame, and what moves until then, by the objects' indices: the transforms of
+/// objects' points, and the faces of meshes that change their shape.
 struct NextShot {
   glm::dmat4 world_to_ndc{1};
   std::map<int, glm::dmat4> moves;
+  std::map<int, std::vector<MovingFace>> faces;
 };
 
 struct Shot {

@@ -85,13 +85,32 @@ json next_json(const std::optional<NextShot>& next) {
   if (!next) return {};
   json moves = json::array();
   for (const auto& [object, matrix] : next->moves) moves.push_back({object, matrix_json(matrix)});
-  return {{"ndc", matrix_json(next->world_to_ndc)}, {"moves", moves}};
+  json faces = json::array();  // an object's index, and 18 numbers a face
+  for (const auto& [object, moving] : next->faces) {
+    json numbers = json::array();
+    for (const MovingFace& face : moving)
+      for (const auto* corners : {&face.now, &face.next})
+        for (const glm::vec3& p : *corners)
+          for (int c = 0; c < 3; ++c) numbers.push_back(p[c]);
+    faces.push_back({object, std::move(numbers)});
+  }
+  return {{"ndc", matrix_json(next->world_to_ndc)}, {"moves", moves}, {"faces", faces}};
 }
 
 std::optional<NextShot> read_next(const json& value) {
   if (value.is_null()) return std::nullopt;
-  NextShot next{read_matrix(value.at("ndc")), {}};
+  NextShot next{read_matrix(value.at("ndc")), {}, {}};
   for (const json& move : value.at("moves")) next.moves[move.at(0).get<int>()] = read_matrix(move.at(1));
+  for (const json& object : value.at("faces")) {
+    const json& numbers = object.at(1);
+    std::vector<MovingFace>& faces = next.faces[object.at(0).get<int>()];
+    faces.resize(numbers.size() / 18);
+    std::size_t at = 0;
+    for (MovingFace& face : faces)
+      for (auto* corners : {&face.now, &face.next})
+        for (glm::vec3& p : *corners)
+          for (int c = 0; c < 3; ++c) p[c] = numbers.at(at++).get<float>();
+  }
   return next;
 }
 

@@ -114,3 +114,32 @@ TEST_CASE("motion in a still is that of its own open shutter, and merged parts h
               .status == 0);
   CHECK(read_file(folder / "n.exr") == read_file(folder / "m.exr"));
 }
+
+TEST_CASE("motion follows a mesh that changes its shape, in merged parts too") {
+  MotionFolder folder;
+  const char* faces = "f 1 2 3\nf 1 3 4\n";
+  folder.write("a.obj", std::string("v -3 -2 0\nv 3 -2 0\nv 3 2 0\nv -3 2 0\n") + faces);
+  folder.write("b.obj", std::string("v -3 -2 0\nv 4 -2 0\nv 4 2 0\nv -3 2 0\n") + faces);
+  folder.scene["meshes"] = {{"sheet", {{"file", "a.obj"}}}};
+  folder.scene["objects"] = {{{"type", "mesh"}, {"mesh", "sheet"}, {"material", "m"}}};
+  folder.scene["animate"] = {
+      {{"value", "/meshes/sheet/file"},
+       {"type", "step"},
+       {"keys", {{{"frame", 0}, {"value", "a.obj"}}, {{"frame", 1}, {"value", "b.obj"}}}}}};
+  const Image motion = folder.render("m_0000.exr", {"--frames", "0"});
+  for (int x = 5; x < width - 5; ++x) {
+    const double place = (x + 0.5 - width / 2.0) / focal * 10, inside = std::abs(place) < 3;
+    // Stretched by 7 / 6 from its left edge.
+    CHECK(motion.pixel(x, 10)[0] == Approx(inside * (place + 3) / 6 * focal / 10).margin(1e-3));
+    CHECK(motion.pixel(x, 10)[1] == Approx(0).margin(1e-3));
+  }
+  for (const char* which : {"1", "2"})
+    REQUIRE(run_sundog({"render", folder.scene_file(), "-o", folder.file(std::string(which) + ".part"),
+                        "--frames", "0", "--tiles", std::string(which) + "/2", "--aov", "motion", "--quiet",
+                        "--device", "0:0"})
+                .status == 0);
+  REQUIRE(run_sundog(
+              {"merge", folder.file("1_0000.part"), folder.file("2_0000.part"), "-o", folder.file("n.exr")})
+              .status == 0);
+  CHECK(read_aovs(folder / "n.exr").at("motion").data == motion.data);
+}
