@@ -19,5 +19,11 @@ left_out() { echo "sundog: no $1 here: the tests $2 are left out" >&2; }
 command -v chromedriver >/dev/null || left_out "chromedriver (chromium-driver)" "of the viewer in a browser"
 [[ -e build/release/axe-core/package/axe.min.js ]] || left_out "axe-core (cmake/FetchAxe.cmake fetches it where there is a network)" "of its rules"
 command -v oclgrind >/dev/null || left_out "Oclgrind" "of memory accesses"
+# Tests ask for kernels that are kept: in the build, for users without a folder of their own.
+cache=${XDG_CACHE_HOME:-${HOME:-}/.cache}
+if ! mkdir -p "$cache" 2>/dev/null || [[ ! -w $cache ]]; then
+  export XDG_CACHE_HOME=$root/build/release/cache
+  mkdir -p -m 700 "$XDG_CACHE_HOME"
+fi
 # One test more at once than there are processors: some wait for processes and timers.
 exec ctest --preset release --parallel "$(($(nproc) + 1))" "$@"
