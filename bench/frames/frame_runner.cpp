@@ -81,7 +81,7 @@ double FrameRunner::kernel_seconds() const {
 }
 
 double FrameRunner::rays() const {
-  auto rays = static_cast<double>(last_.surfaces_seen);
+  auto rays = static_cast<double>(last_.film.surfaces_seen);
   for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
     rays += static_cast<double>(last_.counts[static_cast<std::size_t>(kind)]);
   return rays;

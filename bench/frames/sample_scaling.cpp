@@ -20,7 +20,8 @@ SampleFigures figures_of(const FrameRunner& frames, const Image& reference, unsi
   SampleFigures figures;
   figures.rays = frames.rays();
   figures.error = compare_images(frames.image(), reference, visible_error);
-  figures.samples = last.taken.empty() ? samples : sampling_figures(last.taken, last.film.done, 0, 1).mean;
+  figures.samples =
+      last.film.taken.empty() ? samples : sampling_figures(last.film.taken, last.film.done, 0, 1).mean;
   return figures;
 }
 

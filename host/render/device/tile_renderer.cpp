@@ -22,6 +22,9 @@ struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// First samples look for the surfaces.
+bool looks(const TileRequest& request) { return request.surfaces && request.first_sample == 0; }
+
 /// The counters of a tile's launches, in blocks.
 using LaunchCounts = std::array<u32, std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK>;
 
@@ -81,10 +84,8 @@ std::optional<LaunchFailure> failure_of(const DeviceError& error) {
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
                            RenderTimes& times, LaunchWatch& watch, KernelBuilder* builder)
     : device_(device),
-      options_(&options),
       builder_(builder),
       marches_(!scene.sdf_fields.empty()),
-      samples_(scene.info.samples),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
       kernels_(wanted_by(options, builder, {})),
@@ -99,12 +100,10 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
                                 RenderTimes& times) {
   const Tuning tuning = tuning_of(options, device_.info());
   const bool same_tuning = tuning == tuning_, same_group = options.work_group == asked_;
-  options_ = &options;
   layout_ = aov_layout(options.aovs);
   marches_ = !scene.sdf_fields.empty();
   tuning_ = tuning;
   asked_ = options.work_group;
-  samples_ = scene.info.samples;
   photons_ = PhotonMaps(scene);
   kernels_ = wanted_by(options, builder_, std::move(kernels_));
   update_ =
@@ -134,7 +133,7 @@ void TileRenderer::prepare_surfaces() {
 // further maps are made.
 unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   u32 first = request.first_sample;
-  const u32 end = first + samples_of(request);
+  const u32 end = first + request.sample_count;
   while (first < end && !flags.set()) {
     if (!photons_.prepare({device_, kernels_, watch_}, flags, first, end)) return 0;
     const u32 last = photons_.end_of_maps(first, end);
@@ -205,7 +204,7 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
     pixels -= static_cast<std::uint64_t>(
         std::count(first, first + static_cast<std::ptrdiff_t>(pixels), static_cast<u32>(NO_PIXEL)));
   }
-  const auto wanted = static_cast<u32>(pixels * samples_of(asked));
+  const auto wanted = static_cast<u32>(pixels * asked.sample_count);
   const auto aovs = looks(asked) ? static_cast<u32>(pixels) : 0u;
   if (fault(value_of(device_.info().environment).faults, "cut",
             fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
@@ -245,7 +244,7 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (weights_.count < pixels) weights_ = device_.make<float>(pixels);
-  const std::size_t sums = wants_aovs(request) ? layout_.sums() : 0;
+  const std::size_t sums = request.surfaces ? layout_.sums() : 0;
   if (film_.count < (1 + sums) * pixels) film_ = device_.make<float4>((1 + sums) * pixels);
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
@@ -281,7 +280,7 @@ void TileRenderer::read_aovs(const TileRequest& request, TileResult& result) {
   result.aovs = request.aovs;
   result.aovs.resize(layout_.vectors() * pixels);
   if (looks(request)) look_at_surfaces(request, result);
-  if (layout_.sums() == 0 || samples_of(request) == 0 || pixels == 0) return;
+  if (layout_.sums() == 0 || request.sample_count == 0 || pixels == 0) return;
   std::vector<float4> sums(layout_.sums() * pixels);
   device_.read(film_, std::span<float4>(sums), whole);
   put_vectors(sums, layout_.sums(), layout_.surfaces, layout_.vectors(), result.aovs);
@@ -308,10 +307,9 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
   result.tile = request.tile;
   const SettledAtEnd settled(device_);
   write_start(request, result);
-  const unsigned samples = samples_of(request);
-  if (samples > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
-  if (wants_aovs(request)) read_aovs(request, result);
-  read_result(samples, result);
+  if (request.sample_count > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
+  if (request.surfaces) read_aovs(request, result);
+  read_result(request.sample_count, result);
   return result;
 }
 

@@ -21,8 +21,8 @@ class TileRenderer {
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
                LaunchWatch& watch, KernelBuilder* builder = nullptr);
 
-  /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. `options`
-  /// must outlive this. Unusable after an exception. Throws like the constructor.
+  /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. Unusable
+  /// after an exception. Throws like the constructor.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
 
   /// Caches the driver's compiled programs for the next start.
@@ -39,12 +39,6 @@ class TileRenderer {
   /// samples, finally in work-groups of one; if a work-group is too large, with half the group size. Throws
   /// DeviceError.
   TileResult render(const TileRequest& request, const StopFlags& flags);
-  /// Renders a plain frame's tile.
-  TileResult render(const Tile& tile, const StopFlags& flags) {
-    TileRequest request;
-    request.tile = tile;
-    return render(request, flags);
-  }
 
   /// Statistics of the constructor or the last change_scene().
   const KernelUpdate& update() const { return update_; }
@@ -69,20 +63,10 @@ class TileRenderer {
   void read_aovs(const TileRequest& request, TileResult& result);
   void look_at_surfaces(const TileRequest& request, TileResult& result);
   void check_finished(const TileRequest& asked, const TileResult& made);
-  unsigned samples_of(const TileRequest& request) const {
-    return request.in_pass ? request.sample_count : samples_;
-  }
-  bool wants_aovs(const TileRequest& request) const {
-    return request.in_pass ? request.surfaces : show_surfaces(options_->aovs);
-  }
-  /// First samples look for the surfaces.
-  bool looks(const TileRequest& request) const { return wants_aovs(request) && request.first_sample == 0; }
 
   Device& device_;
-  const RenderOptions* options_;
   KernelBuilder* builder_;
   bool marches_;  // the scene has fields
-  unsigned samples_;
   Tuning tuning_;
   WorkGroup asked_;
   FrameKernels kernels_;

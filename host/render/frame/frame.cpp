@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
+#include "render/film/checkpoint.h"
 
 namespace sundog {
 namespace {
@@ -34,8 +35,7 @@ void set_phase(Frame& frame, std::size_t i, Phase phase) {
 void report_progress(Frame& frame) {
   if (!frame.options.on_progress) return;
   frame.since_progress = Stopwatch();
-  frame.options.on_progress(
-      {frame.pixels_done, static_cast<std::uint64_t>(frame.film.done.size()), frame.clock.seconds()});
+  frame.options.on_progress({frame.pixels_done, frame.pass_pixels, frame.clock.seconds()});
 }
 
 /// The pixels of a tile, one each.
@@ -48,67 +48,52 @@ void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   }
 }
 
-/// What a server is asked for.
-TileRequest request_of(Frame& frame, const Tile& tile) {
+/// What a server is asked for; nothing when the frame is over.
+std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   TileRequest request;
   request.tile = tile;
   const std::lock_guard lock(frame.mutex);
-  if (!frame.passes) return request;
-  const Pass& pass = frame.passes->pass;
-  const GrowingFilm& film = frame.passes->film;
-  request.in_pass = true;
+  if (frame.over) return std::nullopt;
+  const Pass& pass = frame.pass;
+  const Film& film = frame.film;
   request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
   request.surfaces = pass.surfaces, request.costs = pass.costs;
   const std::size_t pixels = pixel_count(tile);
   if (!pass.pixels.empty()) {
     request.pixels.resize(pixels);
-    for_each_pixel(frame.film, tile,
+    for_each_pixel(frame.made, tile,
                    [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
   }
   if (pass.first_sample == 0) return request;
   request.sums.resize(pixels);
   request.weights.resize(pixels);
-  request.rays.resize(film.film.rays.empty() ? 0 : pixels);
-  const std::size_t vectors = pass.surfaces ? film.film.layout.vectors() : 0;
+  request.rays.resize(film.rays.empty() ? 0 : pixels);
+  const std::size_t vectors = pass.surfaces ? film.layout.vectors() : 0;
   request.aovs.resize(vectors * pixels);
-  for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) {
+  for_each_pixel(frame.made, tile, [&](std::size_t at, std::size_t i) {
     prefetch_sums(film, pass, i + pixels_ahead);
     const std::int64_t found = image_index(film, pass, i);
     if (found < 0) return;
     const auto p = static_cast<std::size_t>(found);
-    request.sums[at] = film.film.sums[p];
-    request.weights[at] = film.film.weights[p];
-    if (!request.rays.empty()) request.rays[at] = film.film.rays[p];
-    std::copy_n(film.film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
+    request.sums[at] = film.sums[p];
+    request.weights[at] = film.weights[p];
+    if (!request.rays.empty()) request.rays[at] = film.rays[p];
+    std::copy_n(film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
                 request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * at));
   });
   return request;
 }
 
-void write_state(const std::filesystem::path& path, const Film& film,
-                 const std::optional<FramePasses>& passes, std::uint64_t key,
-                 const std::shared_ptr<Faults>& faults) {
-  if (passes)
-    write_growing_checkpoint(path, passes->film, passes->pass, film, key, faults);
-  else
-    write_checkpoint(path, film, key, faults);
-}
-
-/// Whether there is a pixel of the frame. The caller holds its mutex.
-bool has_pixels(const Frame& frame) {
-  return frame.pixels_done > 0 || (frame.passes && frame.passes->film.stage > 0);
-}
-
 /// Shows the picture so far, every so often.
 void show_picture(Frame& frame) {
   if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
-  GrowingFilm film;
+  Film film;
   {
     const std::lock_guard lock(frame.mutex);
     if (!has_pixels(frame)) return;
     film = film_so_far(frame);
   }
-  frame.options.on_picture(frame.options.region ? film.film.cut(frame.inner) : film.film);
+  frame.options.on_picture(frame.options.region ? film.cut(frame.inner) : film);
   frame.since_picture = Stopwatch();
 }
 
@@ -118,12 +103,12 @@ void show_progress(Frame& frame) {
   if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
-/// Whether the frame may end at its time limit. In passes it first makes a whole one to show, and gets
-/// further than a checkpoint that it began with: else it would not if its kernels are compiled for longer.
-/// The caller holds its mutex.
+/// Whether the frame may end at its time limit. In several passes it first makes a whole one to show, and
+/// gets further than a checkpoint that it began with: else it would not if its kernels are compiled for
+/// longer. The caller holds its mutex.
 bool may_end(const Frame& frame) {
-  if (!frame.passes) return true;
-  return frame.passes->film.stage > 0 && std::ranges::any_of(frame.servers, [](const Frame::Server& server) {
+  if (!in_passes(frame.plan.settings)) return true;
+  return frame.film.stage > 0 && std::ranges::any_of(frame.servers, [](const Frame::Server& server) {
            return server.report.pixels > 0;
          });
 }
@@ -144,17 +129,18 @@ void keep_checkpoint(Frame& frame) {
   if (checkpoint_path(options).empty()) return;
   if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
   frame.since_checkpoint = Stopwatch();
-  Film film;
-  std::optional<FramePasses> passes;
+  Film film, made;
+  Pass pass;
   {
     const std::lock_guard lock(frame.mutex);
     if (frame.pixels_done == frame.pixels_kept) return;
     frame.pixels_kept = frame.pixels_done;
     film = frame.film;
-    passes = frame.passes;
+    pass = frame.pass;
+    made = frame.made;
   }
   try {
-    write_state(checkpoint_path(options), film, passes, frame.key, options.faults);
+    write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
   } catch (const IoError&) {
     // What keeps it from being written is reported at the end, if the frame does not come to its end.
   }
@@ -172,14 +158,13 @@ void take_figures(Frame& frame, std::size_t i) {
   frame.readback = std::max(frame.readback, figures.readback_seconds);
 }
 
-/// Puts a tile, or the finished rows of one, into the film.
+/// Puts a tile, or the finished rows of one, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
-  const std::lock_guard lock(frame.mutex);
   if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
+  frame.pixels_done += frame.made.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
   frame.servers[i].report.pixels += pixel_count(made.tile);
-  if (!frame.stop) plan_next_pass(frame);
+  if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
   report_progress(frame);
   look_for_stop(frame);
   look_at_clock(frame);
@@ -223,12 +208,15 @@ TileResult render_in_picture(const Frame& frame, TileServer& server, TileRequest
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
   const Stopwatch busy;
-  const TileResult made =
-      render_in_picture(frame, *frame.servers[i].server, request_of(frame, job.tile), flags);
+  std::optional<TileRequest> request = request_of(frame, job.tile);
+  if (!request) return;
+  const TileResult made = render_in_picture(frame, *frame.servers[i].server, std::move(*request), flags);
+  const double seconds = busy.seconds();
   const bool whole = made.tile == job.tile;
-  const bool first = whole ? frame.queue.finished(i, job, busy.seconds()) : frame.queue.given_up(i, job);
-  if (first) keep_tile(frame, i, made);
+  // The queue has all tiles when the film has them.
   const std::lock_guard lock(frame.mutex);
+  const bool first = whole ? frame.queue.finished(i, job, seconds) : frame.queue.given_up(i, job);
+  if (first) keep_tile(frame, i, made);
   (first ? frame.servers[i].report.tiles : frame.servers[i].report.outrun) += whole || !first;
 }
 
@@ -344,7 +332,7 @@ void look_for_stop(Frame& frame) {
 }
 
 void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
-  write_state(path, frame.film, frame.passes, frame.key, frame.options.faults);
+  write_checkpoint(path, frame.film, frame.pass, frame.made, frame.key, frame.options.faults);
 }
 
 void leave_frame(Frame& frame, std::size_t i, bool closes) {

@@ -22,16 +22,13 @@ struct RenderResult {
   std::vector<DeviceReport> devices;
   double efficiency = 1;  // work done over what the devices could have done (plan.h)
   RenderTimes times;
-  Film film;                        // what the image was developed from
-  std::vector<u32> taken;           // of a frame in passes: samples of each pixel, 0 where it is interpolated
-  std::uint64_t surfaces_seen = 0;  // of such a frame: rays that only looked which surface a pixel shows
-  unsigned passes = 0;              // of such a frame: that are complete
-  bool time_limited = false;        // it ended at the time limit
-  std::uint64_t key = 0;            // of the scene, for write_checkpoint; 0 without a checkpoint
-  std::exception_ptr failure;       // every device failed: what the last one threw (options.keep_failed)
-  bool checkpoint_kept = false;     // an interrupted frame is in the checkpoint
-  std::string checkpoint_left;      // why the frame did not continue from one (options.renews_checkpoint)
-  std::string checkpoint_error;     // why it could not be written there
+  Film film;                     // what the image was developed from
+  bool time_limited = false;     // it ended at the time limit
+  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without a checkpoint
+  std::exception_ptr failure;    // every device failed: what the last one threw (options.keep_failed)
+  bool checkpoint_kept = false;  // an interrupted frame is in the checkpoint
+  std::string checkpoint_left;   // why the frame did not continue from one (options.renews_checkpoint)
+  std::string checkpoint_error;  // why it could not be written there
 };
 
 class TileServer;

@@ -13,11 +13,9 @@
 
 namespace sundog {
 
-/// The work of one tile: in a plain frame all samples and AOVs; in a pass the pixels of the pass.
+/// The work of one tile of a pass.
 struct TileRequest {
   Tile tile;
-  bool in_pass = false;
-  // Of a pass:
   std::vector<u32> pixels;                 // each pixel's of the image (Pass::pixels); empty: its own
   u32 first_sample = 0, sample_count = 0;  // samples to add to what follows
   bool surfaces = false;                   // AOVs

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "render/film/checkpoint_file.h"
+#include "render/film/checkpoint.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 
@@ -63,58 +63,27 @@ Tile area_of(const CompiledScene& scene, const RenderOptions& options) {
   return frame_area(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
 }
 
-/// The passes of a frame that has some, with what a checkpoint has of them; the frame's film is the pass's.
-FramePasses begin_passes(const Scene& scene, const std::vector<ServerPlan>& devices,
-                         const RenderOptions& options, std::uint64_t key, Film& film) {
-  FramePasses passes;
-  const auto [x, y, width, height] = area_of(*scene, options);
-  passes.plan = {scene->sampling,
-                 scene->info.samples,
-                 options.noise,
-                 show_surfaces(options.aovs),
-                 aov_layout(options.aovs).sums() > 0,
-                 clear_materials(*scene)};
-  const bool with_earlier = options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
-                            !checkpoint_path(options).empty();
-  passes.film = GrowingFilm(width, height, show_surfaces(options.aovs) || needs_surfaces(scene->sampling),
-                            aov_layout(options.aovs), with_earlier);
-  if (counts_rays(options.aovs)) passes.film.film.rays.resize(passes.film.taken.size());
-  passes.tiles = [options, shares = estimates(devices)](const Film& of_pass) {
-    return plan_tiles(options, of_pass, shares);
-  };
-  if (!options.resume.empty() && is_there(options.resume)) {
-    read_growing_checkpoint(options.resume, passes.film, passes.pass, film, key);
-    if (!may_be_of(passes.plan, passes.pass)) throw damaged_checkpoint(options.resume);
-    return passes;
-  }
-  passes.pass = *next_pass(passes.film, passes.plan);
-  film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
-  return passes;
+SamplingPlan plan_of(const CompiledScene& scene, const RenderOptions& options) {
+  return {scene.sampling,
+          scene.info.samples,
+          options.noise,
+          show_surfaces(options.aovs),
+          aov_layout(options.aovs).sums() > 0,
+          clear_materials(scene)};
 }
 
-/// A film that holds what a checkpoint has of the frame.
-Film begin_film(const CompiledScene& scene, const RenderOptions& options, std::uint64_t key) {
-  const Tile area = area_of(scene, options);
-  Film film = Film::with_aovs(area.width, area.height, options.aovs);
-  if (!options.resume.empty() && is_there(options.resume)) read_checkpoint(options.resume, film, key);
-  return film;
+FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
+  FilmNeeds needs = film_needs(options.aovs);
+  needs.shows_surfaces |= needs_surfaces(scene.sampling);
+  needs.grows = in_passes(scene.sampling);
+  needs.keeps_earlier =
+      needs.grows && (options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
+                      !checkpoint_path(options).empty());
+  return needs;
 }
 
-std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
-                                   const RenderOptions& options, std::uint64_t key) {
-  const bool has_passes = in_passes(scene->sampling);
-  if (has_passes && options.part.count > 1)
-    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
-  Film film;
-  std::optional<FramePasses> passes;
-  if (has_passes)
-    passes = begin_passes(scene, devices, options, key, film);
-  else
-    film = begin_film(*scene, options, key);
+std::vector<DeviceSpeed> speeds_of(const std::vector<ServerPlan>& devices, const RenderOptions& options) {
   std::vector<DeviceSpeed> speeds(devices.size());
-  TilePlan plan = plan_tiles(options, film, estimates(devices));
-  const auto done = static_cast<std::uint64_t>(
-      std::count_if(film.done.begin(), film.done.end(), [](auto d) { return d != 0; }));
   for (std::size_t i = 0; i < devices.size(); ++i) {
     speeds[i].estimate = devices[i].info.estimate;
     speeds[i].processor = devices[i].processor;
@@ -122,23 +91,48 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
     speeds[i].sample = devices[i].measured_pixels;
     if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
   }
-  auto frame = std::make_shared<Frame>(options, std::move(film), std::move(plan), std::move(speeds));
+  return speeds;
+}
+
+/// Begins the first pass, or what a checkpoint leaves of one.
+void begin_passes(Frame& frame) {
+  const std::filesystem::path& file = frame.options.resume;
+  if (!file.empty() && is_there(file)) {
+    read_checkpoint(file, frame.film, frame.pass, frame.made, frame.key);
+    if (frame.pass.is_none() && frame.film.grows) return begin_pass(frame, std::nullopt);
+    if (frame.pass.is_none()) {  // it may be of another part of the frame
+      frame.made = std::exchange(frame.film, Film(frame.film.width, frame.film.height, frame.film));
+      frame.pass = *next_pass(frame.film, frame.plan);
+    }
+    if (!may_be_of(frame.plan, frame.pass)) throw damaged_checkpoint(file);
+    continue_pass(frame);
+  } else {
+    begin_pass(frame, next_pass(frame.film, frame.plan));
+  }
+  frame.pixels_kept = frame.pixels_done;
+  plan_next_pass(frame);
+}
+
+std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
+                                   const RenderOptions& options, std::uint64_t key) {
+  const Tile area = area_of(*scene, options);
+  auto frame = std::make_shared<Frame>(options, plan_of(*scene, options),
+                                       Film(area.width, area.height, needs_of(*scene, options)),
+                                       speeds_of(devices, options));
+  frame->tiles = [options, shares = estimates(devices)](const Film& made) {
+    return plan_tiles(options, made, shares);
+  };
   for (const ServerPlan& device : devices) {
     Frame::Server server;
     server.server = device.make(frame->options);
     server.report.info = device.info;
     frame->servers.push_back(std::move(server));
   }
-  frame->area = area_of(*scene, options);
-  frame->inner = options.region.value_or(frame->area);
-  frame->inner.x -= frame->area.x, frame->inner.y -= frame->area.y;
-  frame->pixels_done = frame->pixels_kept = done;
+  frame->area = area;
+  frame->inner = options.region.value_or(area);
+  frame->inner.x -= area.x, frame->inner.y -= area.y;
   frame->key = key;
-  if (passes) {
-    frame->passes = std::move(passes);
-    frame->queue.expect_more();
-    plan_next_pass(*frame);
-  }
+  begin_passes(*frame);
   return frame;
 }
 
@@ -159,15 +153,13 @@ std::shared_ptr<Frame> begin_or_renew(const Scene& scene, const std::vector<Serv
 
 std::vector<DeviceReport> reports(Frame& frame) {
   std::vector<DeviceReport> result;
-  double pixels = static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()));
-  if (frame.passes) {
-    pixels = 1;
-    for (const Frame::Server& server : frame.servers) pixels += static_cast<double>(server.report.pixels);
-  }
+  std::uint64_t pixels = 0;
+  for (const Frame::Server& server : frame.servers) pixels += server.report.pixels;
   for (std::size_t i = 0; i < frame.servers.size(); ++i) {
     DeviceReport report = frame.servers[i].report;
     report.busy_seconds = frame.queue.work(i).busy_seconds;
-    report.share = static_cast<double>(report.pixels) / pixels;
+    report.share =
+        static_cast<double>(report.pixels) / static_cast<double>(std::max<std::uint64_t>(1, pixels));
     result.push_back(std::move(report));
   }
   return result;
@@ -190,23 +182,24 @@ void keep_checkpoint(const Frame& frame, RenderResult& result) {
   }
 }
 
-/// Of a frame in passes. One that its time limit has ended shows its whole passes: with what there is of
-/// another, parts of the picture would have twice the samples of others.
-GrowingFilm shown_film(Frame& frame, const RenderResult& result) {
-  if (result.time_limited && frame.passes->film.stage > 0) frame.film = Film();
-  return result.complete ? std::move(frame.passes->film) : film_so_far(frame);
+/// Makes image and AOVs of the film.
+void develop(const Frame& frame, RenderResult& result) {
+  const RenderOptions& options = frame.options;
+  if (options.channels == 0) return;
+  result.image = result.film.develop(options.channels);
+  for (const std::string& name : options.aovs) result.aovs[name] = result.film.develop_aov(name);
 }
 
 /// Leaves the region alone of what the frame has made.
 void cut_to_region(const Frame& frame, RenderResult& result) {
   if (!frame.options.region) return;
-  const int width = result.film.width;
-  result.film = result.film.cut(frame.inner);
-  result.taken = cut_pixels(result.taken, width, frame.inner);
-  for (auto& [name, image] : result.aovs) {
-    image.data = cut_pixels(image.data, width, frame.inner, static_cast<std::size_t>(image.channels));
+  const auto cut = [&](Image& image) {
+    image.data = cut_pixels(image.data, image.width, frame.inner, static_cast<std::size_t>(image.channels));
     image.width = frame.inner.width, image.height = frame.inner.height;
-  }
+  };
+  result.film = result.film.cut(frame.inner);
+  cut(result.image);
+  for (auto& [name, image] : result.aovs) cut(image);
 }
 
 /// Gathers the film, complete or not.
@@ -218,28 +211,13 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.complete = frame.queue.complete();
   result.time_limited = frame.limited && !result.complete;
   keep_checkpoint(frame, result);
-  if (frame.passes) {
-    GrowingFilm film = shown_film(frame, result);
-    if (std::ranges::count(frame.options.aovs, "variance") > 0)
-      result.aovs["variance"] = develop_variance(film);
-    result.film = std::move(film.film);
-    result.taken = std::move(film.taken);
-    result.surfaces_seen = film.surfaces_seen;
-    result.passes = film.stage;
-  } else {
-    result.film = std::move(frame.film);
-  }
+  // With what there is of another pass, parts of the picture would have twice the samples of others.
+  if (result.time_limited && frame.film.stage > 0) frame.made = Film();
+  result.film = take_film(frame);
+  develop(frame, result);
   cut_to_region(frame, result);
   result.efficiency = frame_efficiency(frame);
   result.counts = frame.counts;
-  if (frame.options.channels > 0) {
-    result.image = result.film.develop(frame.options.channels);
-    for (const std::string& name : frame.options.aovs)
-      if (name == "samples")
-        result.aovs[name] = develop_samples(result.film, result.taken);
-      else if (name != "variance")
-        result.aovs[name] = result.film.develop_aov(name);
-  }
   result.times = frame.times;
   if (frame.timed)
     result.times.build_kernels += first_launch_seconds(frame.servers[*frame.timed].report.kernels);
@@ -270,8 +248,7 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
   RenderResult result = finish_frame(*frame, key);
   result.checkpoint_left = std::move(left);
   if (!result.complete && !stopped) result.failure = frame->last_error;
-  if (result.failure && !(options.keep_failed && frame->pixels_done > 0))
-    std::rethrow_exception(result.failure);
+  if (result.failure && !(options.keep_failed && has_pixels(*frame))) std::rethrow_exception(result.failure);
   return result;
 }
 

@@ -28,7 +28,7 @@ Picked picked_from(const TileResult& made) {
 Picked pick_on(SceneServer& server, int x, int y) {
   TileRequest request;
   request.tile = {x, y, 1, 1};
-  request.in_pass = request.surfaces = true;
+  request.surfaces = true;
   server.prepare_surfaces();
   return picked_from(server.render(request, {}));
 }
@@ -259,7 +259,7 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& wor
   const bool draft = !mine->final && worker.of_scenes->draws_draft();
   if (!mine->final) {
     const std::lock_guard frame_lock(frame.mutex);
-    if (!draft) speed = frame.passes->pixel_seconds;
+    if (!draft) speed = frame.coarse.pixel_seconds;
     if (progress_of(frame).settled) note_progress(mine);
   }
   lock.lock();
@@ -331,8 +331,7 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
 /// Developed once for all callers, who hold the frame's mutex.
 std::shared_ptr<const Image> RenderSession::State::picture_so_far(const Frame& frame) const {
   const std::lock_guard lock(picture_mutex);
-  const FramePasses& passes = *frame.passes;
-  const std::uint64_t count = passes.coarse_passes + std::uint64_t{passes.film.stage};
+  const std::uint64_t count = frame.coarse.count + std::uint64_t{frame.film.stage};
   const bool same = picture && picture_frame.lock().get() == &frame && picture_passes == count &&
                     picture_pixels == frame.pixels_done;
   if (same) return picture;

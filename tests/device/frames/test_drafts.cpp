@@ -72,6 +72,7 @@ TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the 
     REQUIRE(renderer.draws_draft());
     TileRequest request;
     request.tile = whole(scene);
+    request.sample_count = scene.info.samples;
     const TileResult draft = renderer.render(request, {});
     own.change_scene(scene, own_options, times);
     CHECK(share_of_others(draft.sums, own.render(request, {}).sums) < 0.01);

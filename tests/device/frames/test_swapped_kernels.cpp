@@ -35,11 +35,13 @@ TEST_CASE("a formula's own kernel takes over from the interpreter between tiles,
   renderer.change_scene(other, options, times);
   CHECK(renderer.update().built == 0);
   CHECK(interprets(renderer.config()));
-  const Tile tile{0, 0, 24, 18};
+  TileRequest request;
+  request.tile = {0, 0, 24, 18};
+  request.sample_count = other.info.samples;
   const StopFlags flags;
-  const TileResult early = renderer.render(tile, flags);
+  const TileResult early = renderer.render(request, flags);
   wait_for(builder);
-  const TileResult late = renderer.render(tile, flags);
+  const TileResult late = renderer.render(request, flags);
   CHECK_FALSE(interprets(renderer.config()));
   CHECK(early.sums == late.sums);
   CHECK(std::ranges::any_of(late.sums, [](const float4& sum) { return sum.x > 0; }));

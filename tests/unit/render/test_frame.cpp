@@ -7,6 +7,7 @@
 #include "base/driver_threads.h"
 #include "base/error.h"
 #include "catch.h"
+#include "render/film/checkpoint.h"
 #include "render/render.h"
 #include "temporary_folder.h"
 
@@ -41,7 +42,7 @@ struct MadeUpServer : TileServer {
     for (int y = 0; y < made.tile.height; ++y)
       for (int x = 0; x < tile.width; ++x) {
         made.sums.push_back({value_of(tile.x + x, tile.y + y), 0, 0, 1});
-        made.weights.push_back(1);
+        made.weights.push_back(static_cast<float>(request.sample_count));
       }
     made.counts[COUNT_PRIMARY] = made.sums.size();
     return made;
@@ -58,14 +59,18 @@ Servers servers(int count) {
 
 /// A frame in tiles of 8x8 pixels, all for anybody.
 std::shared_ptr<Frame> frame_of(const Servers& servers, RenderOptions options = {}) {
-  TilePlan plan;
-  plan.whole = true;
-  plan.lists.emplace_back(cut_tiles(width, height, 8));
   DeviceSpeed speed;
   speed.estimate = 1;
-  auto frame = std::make_shared<Frame>(std::move(options), Film(width, height, false), std::move(plan),
+  auto frame = std::make_shared<Frame>(std::move(options), SamplingPlan{}, Film(width, height, FilmNeeds{}),
                                        std::vector(servers.size(), speed));
   for (const auto& server : servers) frame->servers.push_back({server, {}});
+  frame->tiles = [](const Film&) {
+    TilePlan plan;
+    plan.whole = true;
+    plan.lists.emplace_back(cut_tiles(width, height, 8));
+    return plan;
+  };
+  begin_pass(*frame, next_pass(frame->film, frame->plan));
   return frame;
 }
 
@@ -165,10 +170,11 @@ TEST_CASE("a frame that is stopped keeps what was made, and its checkpoints hold
   run_frame(frame, true);
   CHECK(frame->pixels_done >= width * height / 2);
   CHECK(frame->counts[COUNT_PRIMARY] == frame->pixels_done);
-  CHECK(std::ranges::count(frame->film.done, 1) == static_cast<std::ptrdiff_t>(frame->pixels_done));
+  CHECK(std::ranges::count(film_so_far(*frame).done, 1) == static_cast<std::ptrdiff_t>(frame->pixels_done));
   if (std::filesystem::exists(options.checkpoint)) {
-    Film kept(width, height, false);
-    read_checkpoint(options.checkpoint, kept, frame->key);
+    Film film(width, height, FilmNeeds{}), kept;
+    Pass pass;
+    read_checkpoint(options.checkpoint, film, pass, kept, frame->key);
     CHECK(std::ranges::count(kept.done, 1) % 64 == 0);
   }
 }
