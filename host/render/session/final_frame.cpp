@@ -238,6 +238,8 @@ RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& dev
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
   check_region(options.region, static_cast<int>(scene->info.width), static_cast<int>(scene->info.height));
+  if (in_passes(scene->sampling) && options.part.count > 1)
+    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
   if (options.region && options.part.count > 1)
     throw UsageError("a region is made whole: leave the part out");
   const std::uint64_t key = checkpoint_path(options).empty() ? 0 : frame_key(*scene, options);
