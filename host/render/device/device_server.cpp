@@ -28,15 +28,15 @@ void add(ServerFigures& sum, const ServerFigures& more) {
 
 DeviceServer::DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene,
                            const RenderOptions& options)
-    : info_(std::move(info)), scene_(std::move(scene)), options_(&options), builder_(info_) {}
+    : info_(std::move(info)), scene_(std::move(scene)), options_(&options), store_(info_) {}
 
 void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) {
   scene_ = std::move(scene);
   options_ = &options;
   other_scene_ = true;
   draws_draft_ = false;
-  builder_.may_wait();
-  builder_.forget_later();  // until the next rest
+  store_.builder().may_wait();
+  store_.builder().forget_later();  // until the next rest
   closed_ = {};
   readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
   if (device_) device_->forget_times();
@@ -60,7 +60,7 @@ RenderTimes DeviceServer::open() {
     close();
     readback_before_ = 0;
     device_ = std::make_unique<Device>(info_);
-    renderer_.emplace(*device_, *scene_, *options_, times, watch_, &builder_);
+    renderer_.emplace(*device_, *scene_, *options_, times, watch_, &store_);
   }
   works_ = true;
   draws_draft_ = renderer_->draws_draft();
@@ -77,8 +77,6 @@ TileResult DeviceServer::render(const TileRequest& request, const StopFlags& fla
   works_ = true;
   return result;
 }
-
-bool DeviceServer::may_end_draft() const { return draws_draft_ && renderer_ && renderer_->may_end_draft(); }
 
 void DeviceServer::rest() {
   if (works_) renderer_->rest();

@@ -59,8 +59,8 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 }
 
 /// Applies a frame's options to the kernels.
-FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
-  kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
+FrameKernels wanted_by(const RenderOptions& options, KernelStore* store, FrameKernels kernels) {
+  kernels.store = options.kernels == KernelChoice::own_when_built ? store : nullptr;
   kernels.only_general = options.kernels == KernelChoice::general;
   const AovLayout layout = aov_layout(options.aovs);
   kernels.wanted_aovs = {layout.surfaces == all_aov_vectors, shows_features(options.aovs)};
@@ -82,13 +82,13 @@ std::optional<LaunchFailure> failure_of(const DeviceError& error) {
 }  // namespace
 
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
-                           RenderTimes& times, LaunchWatch& watch, KernelBuilder* builder)
+                           RenderTimes& times, LaunchWatch& watch, KernelStore* store)
     : device_(device),
-      builder_(builder),
+      store_(store),
       marches_(!scene.sdf_fields.empty()),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
-      kernels_(wanted_by(options, builder, {})),
+      kernels_(wanted_by(options, store, {})),
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       photons_(scene),
@@ -105,7 +105,7 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
   tuning_ = tuning;
   asked_ = options.work_group;
   photons_ = PhotonMaps(scene);
-  kernels_ = wanted_by(options, builder_, std::move(kernels_));
+  kernels_ = wanted_by(options, store_, std::move(kernels_));
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
   const bool same_scene = update_.uploads.bytes == 0 && !update_.uploads.numbers;
@@ -121,7 +121,8 @@ void TileRenderer::keep_programs() { device_.save_programs(); }
 
 void TileRenderer::rest() {
   device_.save_programs();
-  build_general_kernels(device_, kernels_);
+  if (kernels_.store)
+    kernels_.store->build_general(device_, {kernels_.entry, kernels_.integrator.name, kernels_.config});
 }
 
 void TileRenderer::prepare_surfaces() {

@@ -16,10 +16,10 @@ namespace sundog {
 class TileRenderer {
  public:
   /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. If the options
-  /// allow it, `builder` builds kernels in the background while others stand in. Throws DeviceError,
+  /// allow it, `store` builds kernels in the background while others stand in. Throws DeviceError,
   /// BuildError.
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
-               LaunchWatch& watch, KernelBuilder* builder = nullptr);
+               LaunchWatch& watch, KernelStore* store = nullptr);
 
   /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. Unusable
   /// after an exception. Throws like the constructor.
@@ -44,9 +44,8 @@ class TileRenderer {
   const KernelUpdate& update() const { return update_; }
   /// The specialisation of its kernels; changes before a tile when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
-  /// Whether the picture must be drawn again by other kernels, and whether those are built.
-  bool draws_draft() const { return kernels_.fit == Fit::draft; }
-  bool may_end_draft() const { return sundog::may_end_draft(kernels_); }
+  /// Whether the picture must be drawn again by other kernels.
+  bool draws_draft() const { return kernels_.store && kernels_.store->draws_draft(); }
   /// Maximum work-group size of its kernels; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
@@ -65,7 +64,7 @@ class TileRenderer {
   void check_finished(const TileRequest& asked, const TileResult& made);
 
   Device& device_;
-  KernelBuilder* builder_;
+  KernelStore* store_;
   bool marches_;  // the scene has fields
   Tuning tuning_;
   WorkGroup asked_;
