@@ -7,7 +7,7 @@
 #include "render/device/launch_watch.h"
 #include "render/device/photon_maps.h"
 #include "render/film/film.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
 

@@ -1,4 +1,4 @@
-// A frame at work: a session's threads, one a server, take tiles from the queue, while another watches for
+// A frame at work: a session's threads, one a worker, take tiles from the queue, while another watches for
 // the end, for an interrupt and for drivers that hang. Internal to the render layer.
 #pragma once
 #include <condition_variable>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/plan/coarse.h"
 #include "render/plan/passes.h"
 #include "render/plan/tile_queue.h"
@@ -39,8 +39,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   }
 
   enum class Phase { opening, working, closing, gone };
-  struct Server {
-    std::shared_ptr<TileServer> server;
+  struct Worker {
+    std::shared_ptr<DeviceWorker> device;
     DeviceReport report;
     Phase phase = Phase::opening;
     bool failed = false;  // for good
@@ -50,8 +50,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   const SamplingPlan plan;
   std::function<TilePlan(const Film&)> tiles;  // of a pass
   Tile area, inner;  // of the picture, that the film holds; of the film, that are the region
-  std::vector<Server> servers;
-  std::mutex mutex;  // for everything below, and the servers' reports and phases
+  std::vector<Worker> workers;
+  std::mutex mutex;  // for everything below, and the workers' reports and phases
   std::condition_variable changed;
   Film film;  // of the passes that are complete
   Pass pass;  // the one in hand; none where the film is complete
@@ -59,8 +59,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   CoarsePasses coarse;
   TileQueue queue;
   RayCounts counts{};
-  RenderTimes times;                 // of the first server to be ready
-  std::optional<std::size_t> timed;  // that server
+  RenderTimes times;                 // of the first worker to be ready
+  std::optional<std::size_t> timed;  // that worker
   double readback = 0;
   std::exception_ptr last_error;
   // Of the pass: its pixels, those that are done, those in the checkpoint.
@@ -68,8 +68,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::uint64_t key = 0;  // the checkpoint's
   Stopwatch clock, since_checkpoint, since_picture, since_pass;
   Stopwatch since_progress;                        // was reported; guarded by the mutex
-  std::function<void(std::size_t)> between_tiles;  // called by each server's thread, with its index
-  bool live = false;                               // the servers' figures are kept up to date
+  std::function<void(std::size_t)> between_tiles;  // called by each worker's thread, with its index
+  bool live = false;                               // the workers' figures are kept up to date
   bool over = false;                               // the result is being gathered: nothing more goes in
   bool limited = false;                            // the time limit ended it
   std::atomic<bool> stop{false};
@@ -93,12 +93,12 @@ void continue_pass(Frame& frame);
 /// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
 void begin_coarse(Frame& frame, int block);
 
-/// Takes part with server i until the frame is over: opens it, makes tiles, notes what it did. A server that
+/// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
 /// fails too often is retired. What it throws is kept in the frame.
-void serve_frame(Frame& frame, std::size_t i);
+void work_on_frame(Frame& frame, std::size_t i);
 
-/// Takes a server out of the frame: what it holds goes to others; without any other, the frame ends.
-void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
+/// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
+void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
 /// What there is of the picture, with what is done of the pass in hand.
 Film film_so_far(const Frame& frame);
@@ -115,11 +115,11 @@ void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& pat
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);
 
-/// Called by a server's thread after serve_frame(), for a frame that watch_frame() watches. Closes the server
-/// if `closes`; otherwise writes its compiled kernels to the cache.
+/// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
+/// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
-/// Waits for the frame's end: finished, stopped (options.stop), or out of servers. With `wait`, every server
+/// Waits for the frame's end: finished, stopped (options.stop), or out of workers. With `wait`, every worker
 /// has left it on return; else those in a driver are abandoned, but for moments of grace.
 void watch_frame(Frame& frame, bool wait);
 

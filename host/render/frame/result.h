@@ -31,13 +31,13 @@ struct RenderResult {
   std::string checkpoint_error;  // why it could not be written there
 };
 
-class TileServer;
+class DeviceWorker;
 
 /// What makes tiles, and what is known of it before it is opened.
-struct ServerPlan {
+struct WorkerPlan {
   DeviceInfo info;
   int processor = -1;  // devices with the same number run on the same cores (plan.h)
-  std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
+  std::function<std::shared_ptr<DeviceWorker>(const RenderOptions&)> make;
   // Measured in the previous frame, if that frame is comparable:
   double pixels_a_second = 0, measured_pixels = 0;
 };

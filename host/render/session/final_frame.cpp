@@ -43,19 +43,19 @@ std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options
   return options.region ? hash_bytes(&*options.region, sizeof *options.region, key) : key;
 }
 
-void check_shares(const Split& split, const std::vector<ServerPlan>& devices) {
+void check_shares(const Split& split, const std::vector<WorkerPlan>& devices) {
   if (split.shares.empty() || split.shares.size() == devices.size()) return;
   std::vector<std::string> labels;
-  for (const ServerPlan& device : devices) labels.push_back(device.info.label());
+  for (const WorkerPlan& device : devices) labels.push_back(device.info.label());
   throw UsageError(fmt::format("the fixed split {}: {} share{} for {} device{} ({}): give one share a device",
                                fmt::join(split.shares, ","), split.shares.size(),
                                split.shares.size() == 1 ? "" : "s", devices.size(),
                                devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
 }
 
-std::vector<double> estimates(const std::vector<ServerPlan>& devices) {
+std::vector<double> estimates(const std::vector<WorkerPlan>& devices) {
   std::vector<double> result;
-  for (const ServerPlan& device : devices) result.push_back(device.info.estimate);
+  for (const WorkerPlan& device : devices) result.push_back(device.info.estimate);
   return result;
 }
 
@@ -82,7 +82,7 @@ FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
   return needs;
 }
 
-std::vector<DeviceSpeed> speeds_of(const std::vector<ServerPlan>& devices, const RenderOptions& options) {
+std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const RenderOptions& options) {
   std::vector<DeviceSpeed> speeds(devices.size());
   for (std::size_t i = 0; i < devices.size(); ++i) {
     speeds[i].estimate = devices[i].info.estimate;
@@ -113,7 +113,7 @@ void begin_passes(Frame& frame) {
   plan_next_pass(frame);
 }
 
-std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
+std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<WorkerPlan>& devices,
                                    const RenderOptions& options, std::uint64_t key) {
   const Tile area = area_of(*scene, options);
   auto frame = std::make_shared<Frame>(options, plan_of(*scene, options),
@@ -122,11 +122,11 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
   frame->tiles = [options, shares = estimates(devices)](const Film& made) {
     return plan_tiles(options, made, shares);
   };
-  for (const ServerPlan& device : devices) {
-    Frame::Server server;
-    server.server = device.make(frame->options);
-    server.report.info = device.info;
-    frame->servers.push_back(std::move(server));
+  for (const WorkerPlan& device : devices) {
+    Frame::Worker worker;
+    worker.device = device.make(frame->options);
+    worker.report.info = device.info;
+    frame->workers.push_back(std::move(worker));
   }
   frame->area = area;
   frame->inner = options.region.value_or(area);
@@ -137,7 +137,7 @@ std::shared_ptr<Frame> begin_frame(const Scene& scene, const std::vector<ServerP
 }
 
 /// The same without a checkpoint that does not fit, if the options want that; `left` says why it does not.
-std::shared_ptr<Frame> begin_or_renew(const Scene& scene, const std::vector<ServerPlan>& devices,
+std::shared_ptr<Frame> begin_or_renew(const Scene& scene, const std::vector<WorkerPlan>& devices,
                                       const RenderOptions& options, std::uint64_t key, std::string& left) {
   try {
     return begin_frame(scene, devices, options, key);
@@ -154,9 +154,9 @@ std::shared_ptr<Frame> begin_or_renew(const Scene& scene, const std::vector<Serv
 std::vector<DeviceReport> reports(Frame& frame) {
   std::vector<DeviceReport> result;
   std::uint64_t pixels = 0;
-  for (const Frame::Server& server : frame.servers) pixels += server.report.pixels;
-  for (std::size_t i = 0; i < frame.servers.size(); ++i) {
-    DeviceReport report = frame.servers[i].report;
+  for (const Frame::Worker& worker : frame.workers) pixels += worker.report.pixels;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+    DeviceReport report = frame.workers[i].report;
     report.busy_seconds = frame.queue.work(i).busy_seconds;
     report.share =
         static_cast<double>(report.pixels) / static_cast<double>(std::max<std::uint64_t>(1, pixels));
@@ -167,7 +167,7 @@ std::vector<DeviceReport> reports(Frame& frame) {
 
 double frame_efficiency(const Frame& frame) {
   std::vector<DeviceWork> work;
-  for (std::size_t i = 0; i < frame.servers.size(); ++i) work.push_back(frame.queue.work(i));
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) work.push_back(frame.queue.work(i));
   return efficiency(work);
 }
 
@@ -220,7 +220,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
   result.counts = frame.counts;
   result.times = frame.times;
   if (frame.timed)
-    result.times.build_kernels += first_launch_seconds(frame.servers[*frame.timed].report.kernels);
+    result.times.build_kernels += first_launch_seconds(frame.workers[*frame.timed].report.kernels);
   result.times.readback = frame.readback;
   result.times.render = std::max(
       0.0, frame.clock.seconds() - result.times.build_kernels - result.times.upload - frame.readback);
@@ -229,7 +229,7 @@ RenderResult finish_frame(Frame& frame, std::uint64_t key) {
 
 }  // namespace
 
-RenderResult render_frame(const Scene& scene, const std::vector<ServerPlan>& devices,
+RenderResult render_frame(const Scene& scene, const std::vector<WorkerPlan>& devices,
                           const RenderOptions& options,
                           const std::function<void(const std::shared_ptr<Frame>&)>& run) {
   check_aovs(options.aovs);

@@ -115,15 +115,15 @@ struct Picked {
 /// Likewise, but reports that a complete draft waits for a kernel.
 std::string state_text(const Snapshot& now);
 
-class SceneServer;
+class SceneWorker;
 struct Frame;
 
 class RenderSession {
  public:
   /// Opens nothing: each device's thread opens it at the first start(). Throws DeviceError without devices.
   explicit RenderSession(const std::vector<DeviceInfo>& devices);
-  /// For other servers than this process's devices.
-  explicit RenderSession(std::vector<std::shared_ptr<SceneServer>> servers);
+  /// For other workers than this process's devices.
+  explicit RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers);
   /// Stops drawing: waits for launches (about 50 ms), not for a driver that hangs or compiles.
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;

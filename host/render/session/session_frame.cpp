@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-// So long a server is with one tile: then it looks for a newer scene, for picks, and shows its pixels.
+// So long a worker is with one tile: then it looks for a newer scene, for picks, and shows its pixels.
 constexpr double tile_seconds = 0.2;
 
 RenderOptions options_of(const SessionSettings& settings) {
@@ -31,11 +31,11 @@ SamplingPlan sampling_of(const CompiledScene& scene) {
   return plan;
 }
 
-std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneServer>>& servers) {
-  std::vector<DeviceSpeed> speeds(servers.size());
-  for (std::size_t i = 0; i < servers.size(); ++i) {
-    speeds[i].estimate = servers[i]->info().estimate;
-    speeds[i].processor = servers[i]->processor();
+std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneWorker>>& workers) {
+  std::vector<DeviceSpeed> speeds(workers.size());
+  for (std::size_t i = 0; i < workers.size(); ++i) {
+    speeds[i].estimate = workers[i]->info().estimate;
+    speeds[i].processor = workers[i]->processor();
     speeds[i].tile_seconds = tile_seconds;
   }
   return speeds;
@@ -69,11 +69,11 @@ void fill_from_pass(const Frame& frame, Image& image) {
   }
 }
 
-std::string doing_of(const Frame::Server& server, bool over) {
-  if (server.failed) return "out: " + (server.report.messages.empty() ? "" : server.report.messages.back());
+std::string doing_of(const Frame::Worker& worker, bool over) {
+  if (worker.failed) return "out: " + (worker.report.messages.empty() ? "" : worker.report.messages.back());
   if (over) return "waiting";
-  if (server.phase == Frame::Phase::opening) return "building a kernel";
-  return server.server->compiles() ? "building a kernel" : "drawing";
+  if (worker.phase == Frame::Phase::opening) return "building a kernel";
+  return worker.device->compiles() ? "building a kernel" : "drawing";
 }
 
 }  // namespace
@@ -87,14 +87,14 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
             {.shows_surfaces = needs_surfaces(order.scene->sampling), .grows = true});
   const std::size_t pixels = film.pixels();
   auto frame =
-      std::make_shared<Frame>(options, sampling_of(*order.scene), std::move(film), speeds_of(order.servers));
+      std::make_shared<Frame>(options, sampling_of(*order.scene), std::move(film), speeds_of(order.workers));
   std::vector<double> estimates;
-  for (const auto& server : order.servers) {
-    Frame::Server entry;
-    entry.server = server;
-    entry.report.info = server->info();
-    estimates.push_back(server->info().estimate);
-    frame->servers.push_back(std::move(entry));
+  for (const auto& worker : order.workers) {
+    Frame::Worker entry;
+    entry.device = worker;
+    entry.report.info = worker->info();
+    estimates.push_back(worker->info().estimate);
+    frame->workers.push_back(std::move(entry));
   }
   frame->live = true;
   frame->tiles = [options, estimates](const Film& made) { return plan_tiles(options, made, estimates); };
@@ -143,13 +143,13 @@ Image picture_of(const Frame& frame) {
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over) {
   std::vector<DeviceActivity> list;
   std::uint64_t all = 0;
-  for (const Frame::Server& server : frame.servers) all += server.report.pixels;
-  for (std::size_t i = 0; i < frame.servers.size(); ++i) {
-    const Frame::Server& server = frame.servers[i];
-    const DeviceReport& report = server.report;
+  for (const Frame::Worker& worker : frame.workers) all += worker.report.pixels;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+    const Frame::Worker& worker = frame.workers[i];
+    const DeviceReport& report = worker.report;
     DeviceActivity activity;
     activity.info = report.info;
-    activity.doing = doing_of(server, over);
+    activity.doing = doing_of(worker, over);
     activity.tiles = report.tiles, activity.pixels = report.pixels;
     activity.share = all > 0 ? static_cast<double>(report.pixels) / static_cast<double>(all) : 0;
     activity.busy_seconds = frame.queue.work(i).busy_seconds;

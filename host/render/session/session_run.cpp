@@ -10,8 +10,8 @@ constexpr std::chrono::seconds ending_grace{10};
 
 }  // namespace
 
-void RenderSession::State::begin(const TileServers& servers) {
-  for (const auto& server : servers) add_worker(server);
+void RenderSession::State::begin(const DeviceWorkers& workers) {
+  for (const auto& worker : workers) add_thread(worker);
   control = std::thread([self = shared_from_this()] { self->run_control(); });
 }
 
@@ -24,18 +24,18 @@ void RenderSession::State::end() {
     note();
   }
   control.join();
-  std::vector<std::shared_ptr<Worker>> all = workers;
+  std::vector<std::shared_ptr<DeviceThread>> all = threads;
   all.insert(all.end(), leaving.begin(), leaving.end());
-  for (const auto& worker : all) {
+  for (const auto& thread : all) {
     std::unique_lock lock(mutex);
-    const auto gone = [&] { return worker->gone || worker->abandoned; };
-    changed.wait_for(lock, worker->opening && worker->server->compiles() ? look_again : ending_grace, gone);
-    const bool joins = worker->gone;
+    const auto gone = [&] { return thread->gone || thread->abandoned; };
+    changed.wait_for(lock, thread->opening && thread->worker->compiles() ? look_again : ending_grace, gone);
+    const bool joins = thread->gone;
     lock.unlock();
     if (joins)
-      worker->thread.thread.join();
+      thread->driver.thread.join();
     else
-      leave_thread(worker->server->info().threads, std::move(worker->thread));
+      leave_thread(thread->worker->info().threads, std::move(thread->driver));
   }
 }
 
@@ -63,17 +63,17 @@ void RenderSession::State::run(const std::shared_ptr<SessionFrame>& mine, bool w
 
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
   const auto session = std::make_shared<RenderSession::State>();
-  TileServers servers;
-  for (const Frame::Server& server : frame->servers) servers.push_back(server.server);
-  session->begin(servers);
+  DeviceWorkers workers;
+  for (const Frame::Worker& worker : frame->workers) workers.push_back(worker.device);
+  session->begin(workers);
   const auto mine = std::make_shared<SessionFrame>();
   mine->frame = frame;
   mine->final = mine->closes = true;
   session->run(mine, wait);
   {
     const std::lock_guard lock(session->mutex);
-    for (std::size_t i = 0; i < frame->servers.size(); ++i)
-      session->workers[i]->abandoned = frame->servers[i].report.abandoned;
+    for (std::size_t i = 0; i < frame->workers.size(); ++i)
+      session->threads[i]->abandoned = frame->workers[i].report.abandoned;
   }
   session->end();
 }

@@ -14,8 +14,8 @@
 
 namespace sundog {
 
-using Servers = std::vector<std::shared_ptr<SceneServer>>;
-using TileServers = std::vector<std::shared_ptr<TileServer>>;
+using Workers = std::vector<std::shared_ptr<SceneWorker>>;
+using DeviceWorkers = std::vector<std::shared_ptr<DeviceWorker>>;
 
 // How often a frame in hand is looked at for drivers that hang.
 inline constexpr std::chrono::milliseconds look_again{50};
@@ -34,13 +34,13 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     Stopwatch clock;
     std::shared_ptr<const SessionFrame> draft{};  // whose picture it draws anew
   };
-  struct Worker {
-    std::shared_ptr<TileServer> server;
-    std::shared_ptr<SceneServer> of_scenes;  // the same; null: its scene is the only one
-    DriverThread thread;
+  struct DeviceThread {
+    std::shared_ptr<DeviceWorker> worker;
+    std::shared_ptr<SceneWorker> of_scenes;  // the same; null: its scene is the only one
+    DriverThread driver;
     std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
     bool opening = false;                // it may be in a driver's compiler
-    bool closed = false;                 // the server, behind a frame
+    bool closed = false;                 // the worker, behind a frame
     bool leave = false, gone = false;
     bool abandoned = false;  // a frame did not wait for it, and nobody does
     // Of the last frame that was rendered to its end; 0: it made nothing.
@@ -60,17 +60,17 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   std::string error;
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> current, shown;
-  std::vector<std::shared_ptr<Worker>> workers;
-  std::vector<std::shared_ptr<Worker>> leaving;
+  std::vector<std::shared_ptr<DeviceThread>> threads;
+  std::vector<std::shared_ptr<DeviceThread>> leaving;
   std::deque<Pick> picks;
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
-  Generation rested = 0;  // the last for which a server has prepared for what comes
+  Generation rested = 0;  // the last for which a worker has prepared for what comes
   bool closing = false;
   std::thread control;
   SceneCompiler compiler;       // the control thread's
   std::mutex rendering;         // taken before `mutex`: one frame at a time is rendered to its end
-  const void* rated = nullptr;  // the scene of the last such frame, by which workers' speeds are known
+  const void* rated = nullptr;  // the scene of the last such frame, by which threads' speeds are known
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
@@ -102,27 +102,27 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     pending = std::move(next);
   }
 
-  void add_worker(std::shared_ptr<TileServer> server);
-  void begin(const TileServers& servers);
+  void add_thread(std::shared_ptr<DeviceWorker> worker);
+  void begin(const DeviceWorkers& workers);
   void end();
-  /// Renders a frame of the workers' servers to its end, in place of what is drawn.
+  /// Renders a frame of the threads' workers to its end, in place of what is drawn.
   void run(const std::shared_ptr<SessionFrame>& mine, bool wait);
   void run_control();
   void free_retired(std::unique_lock<std::mutex>& lock);
   void take_order(std::unique_lock<std::mutex>& lock);
-  std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers,
+  std::shared_ptr<SessionFrame> prepare(const Order& order, Workers workers,
                                         const std::shared_ptr<const CompiledScene>& before, double speed);
   void look_at(std::unique_lock<std::mutex>& lock);
-  void run_worker(Worker& worker);
-  void serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index);
-  void serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker);
-  bool may_pick(const Worker& worker) const {
-    return !picks.empty() && worker.of_scenes && worker.seen == current && worker.of_scenes->is_open();
+  void run_thread(DeviceThread& thread);
+  void serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index);
+  void serve_pick(std::unique_lock<std::mutex>& lock, DeviceThread& thread);
+  bool may_pick(const DeviceThread& thread) const {
+    return !picks.empty() && thread.of_scenes && thread.seen == current && thread.of_scenes->is_open();
   }
-  std::optional<std::size_t> index_of(const Worker& worker) const;
+  std::optional<std::size_t> index_of(const DeviceThread& thread) const;
   void note_progress(const std::shared_ptr<SessionFrame>& mine);
   bool is_draft(const std::shared_ptr<SessionFrame>& frame) const;
-  void end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
+  void end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
                  const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
@@ -131,7 +131,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   }
   /// A frame that is rendered to its end is let go of by its caller.
   bool is_held() const { return current && current->final; }
-  void answer_picks(const std::shared_ptr<TileServer>& server);
+  void answer_picks(const std::shared_ptr<DeviceWorker>& worker);
   void drop_frame();
   void drop_picks();
   std::shared_ptr<const Image> picture_so_far(const Frame& frame) const;

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "catch.h"
-#include "render/remote/remote_server.h"
+#include "render/remote/remote_worker.h"
 
 using namespace sundog;
 using nlohmann::json;
@@ -90,7 +90,7 @@ TEST_CASE("a worker's answer that makes no sense is a failure of its device") {
     RemoteDevice device;
     device.settings = {{"aovs", json::array()}};
     device.connect = [&] { return std::make_unique<Echo>(Message{Message::ready, values, {}}); };
-    RemoteServer server(device);
-    CHECK_THROWS_AS(server.open(), DeviceError);
+    RemoteWorker worker(device);
+    CHECK_THROWS_AS(worker.open(), DeviceError);
   }
 }

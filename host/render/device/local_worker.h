@@ -6,14 +6,14 @@
 
 #include "render/device/launch_watch.h"
 #include "render/device/tile_renderer.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 
 namespace sundog {
 
-class DeviceServer : public SceneServer {
+class LocalWorker : public SceneWorker {
  public:
   /// `options` must outlive this. Does not open the device.
-  DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
+  LocalWorker(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
 
   void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
@@ -30,7 +30,7 @@ class DeviceServer : public SceneServer {
   const DeviceInfo& info() const override { return info_; }
   RenderTimes open() override;
   TileResult render(const TileRequest& request, const StopFlags& flags) override;
-  ServerFigures figures() const override;
+  WorkerFigures figures() const override;
   void close() override;
   double overdue() const override { return watch_.overdue(); }
   bool compiles() const override { return watch_.compiles(); }
@@ -51,7 +51,7 @@ class DeviceServer : public SceneServer {
   bool works_ = false;          // no failure since it was opened: usable for another scene
   bool other_scene_ = false;    // open() may keep kernels and tables
   double readback_before_ = 0;  // from previous scenes
-  ServerFigures closed_;        // from previously opened renderers
+  WorkerFigures closed_;        // from previously opened renderers
 };
 
 }  // namespace sundog
