@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "render/device/local_worker.h"
 #include "render/session/final_frame.h"
-#include "render/session/session_state.h"
+#include "render/session/live_session.h"
 
 namespace sundog {
 namespace {
@@ -21,7 +21,7 @@ Workers make_workers(const std::vector<DeviceInfo>& devices) {
 
 }  // namespace
 
-std::string state_text(SessionState state) {
+std::string live_text(SessionState state) {
   switch (state) {
     case SessionState::idle:
       return "waiting for a scene";
@@ -41,26 +41,26 @@ std::string state_text(SessionState state) {
   return "";
 }
 
-std::string state_text(const Snapshot& now) {
+std::string live_text(const Snapshot& now) {
   const bool waits = now.state == SessionState::drawing && now.draft && now.fraction >= 1;
-  return state_text(waits ? SessionState::preparing : now.state);
+  return live_text(waits ? SessionState::preparing : now.state);
 }
 
 RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_workers(devices)) {}
 
 RenderSession::RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers)
-    : state_(std::make_shared<State>()) {
-  state_->begin({workers.begin(), workers.end()});
+    : live_(std::make_shared<LiveSession>()) {
+  live_->begin(workers);
 }
 
-RenderSession::~RenderSession() { state_->end(); }
+RenderSession::~RenderSession() { live_->end(); }
 
 Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
                                 const SessionSettings& settings) {
-  State& s = *state_;
+  LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   ++s.newest;
-  s.set_pending(State::Order{s.newest, std::move(scene), settings, Stopwatch()});
+  s.set_pending(LiveSession::Order{s.newest, std::move(scene), settings, Stopwatch()});
   if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
   s.error.clear();
@@ -69,7 +69,7 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
 }
 
 void RenderSession::cancel() {
-  State& s = *state_;
+  LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   s.set_pending(std::nullopt);
   if (s.state == SessionState::idle || is_at_rest(s.state)) return;
@@ -80,9 +80,9 @@ void RenderSession::cancel() {
 
 void RenderSession::use_devices(const std::vector<DeviceInfo>& devices) {
   Workers workers = make_workers(devices);
-  State& s = *state_;
+  LiveSession& s = *live_;
   const std::scoped_lock lock(s.rendering, s.mutex);
-  std::vector<std::shared_ptr<State::DeviceThread>> before = std::exchange(s.threads, {});
+  std::vector<std::shared_ptr<DeviceThread>> before = std::exchange(s.threads, {});
   for (std::shared_ptr<SceneWorker>& worker : workers) {
     const auto same = std::ranges::find_if(before, [&](const auto& thread) {
       return thread && thread->worker->info().label() == worker->info().label();
@@ -101,7 +101,7 @@ void RenderSession::use_devices(const std::vector<DeviceInfo>& devices) {
 }
 
 Snapshot RenderSession::snapshot(bool with_picture) const {
-  const State& s = *state_;
+  const LiveSession& s = *live_;
   Snapshot snapshot;
   std::shared_ptr<SessionFrame> current, shown;
   Workers workers;
@@ -151,15 +151,15 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
 
 RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& scene,
                                    const RenderOptions& options) {
-  const std::lock_guard one_at_a_time(state_->rendering);
+  const std::lock_guard one_at_a_time(live_->rendering);
   std::vector<WorkerPlan> plans;
-  std::vector<std::shared_ptr<State::DeviceThread>> threads;
+  std::vector<std::shared_ptr<DeviceThread>> threads;
   {
-    const std::lock_guard lock(state_->mutex);
-    threads = state_->threads;
+    const std::lock_guard lock(live_->mutex);
+    threads = live_->threads;
   }
   // A single device keeps no other waiting, so an outdated speed does no harm.
-  const bool comparable = threads.size() == 1 || state_->rated == scene.get();
+  const bool comparable = threads.size() == 1 || live_->rated == scene.get();
   for (const auto& thread : threads)
     plans.push_back({thread->worker->info(), thread->worker->processor(),
                      [worker = thread->worker](const RenderOptions&) { return worker; },
@@ -169,7 +169,7 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     mine->flat = scene;
     mine->frame = frame;
     mine->final = true;
-    state_->run(mine, false);
+    live_->run_final(mine);
   });
   for (std::size_t i = 0; i < threads.size(); ++i) {
     const DeviceReport& report = result.devices[i];
@@ -177,29 +177,29 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     threads[i]->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
     threads[i]->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
   }
-  state_->rated = scene.get();
+  live_->rated = scene.get();
   return result;
 }
 
 void RenderSession::wait() const {
-  std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [&] { return state_->newest == 0 || is_at_rest(state_->state); });
+  std::unique_lock lock(live_->mutex);
+  live_->changed.wait(lock, [&] { return live_->newest == 0 || is_at_rest(live_->state); });
 }
 
 bool RenderSession::wait_for(double seconds) const {
-  std::unique_lock lock(state_->mutex);
-  return state_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
-                                  [&] { return state_->newest == 0 || is_at_rest(state_->state); });
+  std::unique_lock lock(live_->mutex);
+  return live_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
+                                 [&] { return live_->newest == 0 || is_at_rest(live_->state); });
 }
 
 bool RenderSession::wait_for_change(std::uint64_t revision, double seconds) const {
-  std::unique_lock lock(state_->mutex);
-  return state_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
-                                  [&] { return state_->revision != revision; });
+  std::unique_lock lock(live_->mutex);
+  return live_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
+                                 [&] { return live_->revision != revision; });
 }
 
 std::optional<Picked> RenderSession::pick(int x, int y) {
-  State& s = *state_;
+  LiveSession& s = *live_;
   std::future<std::optional<Picked>> answer;
   {
     std::unique_lock lock(s.mutex);

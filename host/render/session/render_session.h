@@ -116,7 +116,7 @@ struct Picked {
 std::string state_text(const Snapshot& now);
 
 class SceneWorker;
-struct Frame;
+struct LiveSession;
 
 class RenderSession {
  public:
@@ -164,9 +164,7 @@ class RenderSession {
   std::optional<Picked> pick(int x, int y);
 
  private:
-  friend void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
-  struct State;
-  std::shared_ptr<State> state_;
+  std::shared_ptr<LiveSession> live_;
 };
 
 }  // namespace sundog

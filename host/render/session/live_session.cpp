@@ -1,8 +1,7 @@
-// A session's threads: one that compiles scenes and watches the current frame, and one per device.
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/session/session_state.h"
+#include "render/session/live_session.h"
 
 namespace sundog {
 namespace {
@@ -43,44 +42,54 @@ void leave_draft(Frame& frame, std::size_t index) {
 
 }  // namespace
 
-void RenderSession::State::add_thread(std::shared_ptr<DeviceWorker> worker) {
-  auto thread = std::make_shared<DeviceThread>();
-  thread->of_scenes = std::dynamic_pointer_cast<SceneWorker>(worker);
-  thread->worker = std::move(worker);
-  threads.push_back(thread);
-  thread->driver = start_thread([self = shared_from_this(), thread]() mutable {
-    self->run_thread(*thread);
-    thread.reset();
-    self.reset();
-  });
+void LiveSession::begin(const Workers& workers) {
+  const std::lock_guard lock(mutex);
+  for (const auto& worker : workers) add_thread(worker);
+  control = std::thread([this, self = shared_from_this()] { run_control(); });
 }
 
-/// Abandons the current frame. The caller holds the mutex.
-void RenderSession::State::drop_frame() {
-  if (!current) return;
-  current->frame->stop = true;
-  current->frame->queue.close();
-  for (const auto* list : {&threads, &leaving})
-    for (const auto& thread : *list)
-      if (thread->of_scenes) thread->of_scenes->hurry();
+void LiveSession::end() {
+  {
+    const std::lock_guard lock(mutex);
+    closing = true;
+    drop_frame();
+    drop_picks();
+    note();
+  }
+  control.join();
+  FrameLoop::end();
 }
 
-void RenderSession::State::drop_picks() {
+void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {
+  look_for_stop(*mine->frame);
+  {
+    const std::lock_guard lock(mutex);
+    drop_frame();
+    drop_picks();
+    set_pending(std::nullopt);
+    error.clear();
+    mine->generation = ++newest;
+    retire(std::exchange(current, mine));
+    set_state(SessionState::drawing);
+  }
+  watch_frame(*mine->frame, false);
+  const bool complete = mine->frame->queue.complete();
+  const std::lock_guard lock(mutex);
+  drop_picks();
+  current.reset();
+  if (mine->generation == newest && state == SessionState::drawing)
+    set_state(complete ? SessionState::settled : SessionState::stopped);
+  note();  // a start() may have come meanwhile
+}
+
+void LiveSession::drop_picks() {
   for (Pick& pick : picks) pick.answer.set_value(std::nullopt);
   picks.clear();
 }
 
-std::optional<std::size_t> RenderSession::State::index_of(const DeviceThread& thread) const {
-  if (!current) return std::nullopt;
-  const auto& workers = current->frame->workers;
-  for (std::size_t i = 0; i < workers.size(); ++i)
-    if (workers[i].worker == thread.worker) return i;
-  return std::nullopt;
-}
-
 // The control thread: compiles the newest scene and watches the current frame.
 
-void RenderSession::State::run_control() {
+void LiveSession::run_control() {
   std::unique_lock lock(mutex);
   while (!closing) {
     const auto has_order = [&] { return pending && !is_awaited() && !is_held(); };
@@ -98,7 +107,7 @@ void RenderSession::State::run_control() {
   }
 }
 
-void RenderSession::State::free_retired(std::unique_lock<std::mutex>& lock) {
+void LiveSession::free_retired(std::unique_lock<std::mutex>& lock) {
   while (!retired.empty()) {
     std::vector<std::shared_ptr<const void>> old = std::exchange(retired, {});
     lock.unlock();
@@ -107,7 +116,7 @@ void RenderSession::State::free_retired(std::unique_lock<std::mutex>& lock) {
   }
 }
 
-void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
+void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   Order order = std::move(*pending);
   pending.reset();
   drop_frame();
@@ -142,8 +151,9 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   set_state(SessionState::preparing);
 }
 
-std::shared_ptr<SessionFrame> RenderSession::State::prepare(
-    const Order& order, Workers workers, const std::shared_ptr<const CompiledScene>& before, double speed) {
+std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers workers,
+                                                   const std::shared_ptr<const CompiledScene>& before,
+                                                   double speed) {
   auto made = std::make_shared<SessionFrame>();
   made->generation = order.generation;
   made->scene = order.scene;
@@ -158,7 +168,7 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
     made->times = order.draft->times;
     settings.coarse = settings.coarse && made->times.full < 0;
   }
-  const std::weak_ptr<State> session = weak_from_this();
+  const std::weak_ptr<LiveSession> session = std::static_pointer_cast<LiveSession>(shared_from_this());
   const std::weak_ptr<SessionFrame> frame = made;
   // Other kernels may be far slower.
   const bool known =
@@ -180,19 +190,19 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
 }
 
 /// Workers call this between two tiles.
-void RenderSession::State::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
+void LiveSession::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
   std::unique_lock lock(mutex);
   if (picks.empty()) return;
   const auto found =
       std::ranges::find_if(threads, [&](const auto& thread) { return thread->worker == worker; });
   if (found == threads.end()) return;
-  // A copy: serve_pick unlocks, and then the list of threads may change.
+  // A copy: run_errand unlocks, and then the list of threads may change.
   const std::shared_ptr<DeviceThread> thread = *found;  // NOLINT(performance-unnecessary-copy-initialization)
-  if (may_pick(*thread)) serve_pick(lock, *thread);
+  if (has_errand(*thread)) run_errand(lock, *thread);
 }
 
 /// Ends the generation if nobody is left to draw it.
-void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
+void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
   const std::shared_ptr<SessionFrame> mine = current;
   lock.unlock();
   Frame& frame = *mine->frame;
@@ -216,61 +226,24 @@ void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
   set_state(SessionState::failed);
 }
 
-// The threads' threads.
+// The device threads.
 
-void RenderSession::State::run_thread(DeviceThread& thread) {
-  std::unique_lock lock(mutex);
-  while (true) {
-    const auto wanted = [&] {
-      return closing || thread.leave || (current && current != thread.seen && index_of(thread)) ||
-             may_pick(thread);
-    };
-    changed.wait(lock, wanted);
-    if (closing || thread.leave) break;
-    const std::optional<std::size_t> index = index_of(thread);
-    if (current != thread.seen && index)
-      serve(lock, thread, *index);
-    else
-      serve_pick(lock, thread);
-  }
-  thread.opening = false;
-  lock.unlock();
-  try {
-    if (!thread.closed) thread.worker->close();
-  } catch (const std::exception&) {
-    // Released as well as possible.
-  }
-  lock.lock();
-  thread.gone = true;
-  changed.notify_all();
-}
-
-void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
-                                 std::size_t index) {
-  const std::shared_ptr<SessionFrame> mine = current;
-  std::shared_ptr<SessionFrame> before = std::exchange(thread.seen, mine);
-  thread.opening = true;
+void LiveSession::after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
+                              const std::shared_ptr<SessionFrame>& mine) {
   lock.unlock();
   Frame& frame = *mine->frame;
-  if (mine->flat && thread.of_scenes) thread.of_scenes->show(mine->flat, frame.options);
-  before.reset();  // outside the lock
-  work_on_frame(frame, index);
-  if (mine->final) leave_frame(frame, index, mine->closes);
+  const bool draft = thread.of_scenes->draws_draft();
   double speed = 0;
-  const bool draft = !mine->final && thread.of_scenes->draws_draft();
-  if (!mine->final) {
+  {
     const std::lock_guard frame_lock(frame.mutex);
     if (!draft) speed = frame.coarse.pixel_seconds;
     if (progress_of(frame).settled) note_progress(mine);
   }
   lock.lock();
-  thread.opening = false;
-  thread.closed = mine->closes;
   if (speed > 0) pixel_seconds = speed;
   note();
   if (draft) return end_draft(lock, thread, mine);
-  if (mine != current || mine->final || state != SessionState::settled || !thread.of_scenes->is_open())
-    return;
+  if (mine != current || state != SessionState::settled || !thread.of_scenes->is_open()) return;
   lock.unlock();
   thread.of_scenes->rest();
   lock.lock();
@@ -279,15 +252,15 @@ void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, DeviceThrea
 }
 
 /// Whether a worker has drawn part of the frame as a draft. The caller holds the mutex.
-bool RenderSession::State::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
+bool LiveSession::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
   return std::ranges::any_of(threads, [&](const auto& thread) {
     return thread->seen == frame && thread->of_scenes && thread->of_scenes->draws_draft();
   });
 }
 
 /// Waits for the frame's final kernels and restarts it, unless interrupted.
-void RenderSession::State::end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
-                                     const std::shared_ptr<SessionFrame>& mine) {
+void LiveSession::end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
+                            const std::shared_ptr<SessionFrame>& mine) {
   const auto over = [&] {
     return closing || thread.leave || pending || mine != current || is_at_rest(state);
   };
@@ -297,7 +270,7 @@ void RenderSession::State::end_draft(std::unique_lock<std::mutex>& lock, const D
   note();
 }
 
-void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, DeviceThread& thread) {
+void LiveSession::run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) {
   Pick pick = std::move(picks.front());
   picks.pop_front();
   lock.unlock();
@@ -310,7 +283,7 @@ void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Device
 }
 
 /// Called by a thread that has added a tile to the frame, whose mutex it holds.
-void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
+void LiveSession::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
   if (mine != current || is_at_rest(state)) return;
@@ -330,7 +303,7 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
 }
 
 /// Developed once for all callers, who hold the frame's mutex.
-std::shared_ptr<const Image> RenderSession::State::picture_so_far(const Frame& frame) const {
+std::shared_ptr<const Image> LiveSession::picture_so_far(const Frame& frame) const {
   const std::lock_guard lock(picture_mutex);
   const std::uint64_t count = frame.coarse.count + std::uint64_t{frame.film.stage};
   const bool same = picture && picture_frame.lock().get() == &frame && picture_passes == count &&
