@@ -331,10 +331,6 @@ void look_for_stop(Frame& frame) {
   frame.queue.close();
 }
 
-void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
-  write_checkpoint(path, frame.film, frame.pass, frame.made, frame.key, frame.options.faults);
-}
-
 void leave_frame(Frame& frame, std::size_t i, bool closes) {
   set_phase(frame, i, Phase::closing);
   try {

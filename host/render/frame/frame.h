@@ -65,7 +65,8 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::exception_ptr last_error;
   // Of the pass: its pixels, those that are done, those in the checkpoint.
   std::uint64_t pass_pixels = 0, pixels_done = 0, pixels_kept = 0;
-  std::uint64_t key = 0;  // the checkpoint's
+  std::uint64_t key = 0;        // the checkpoint's
+  std::string checkpoint_left;  // RenderResult::checkpoint_left
   Stopwatch clock, since_checkpoint, since_picture, since_pass;
   Stopwatch since_progress;                        // was reported; guarded by the mutex
   std::function<void(std::size_t)> between_tiles;  // called by each worker's thread, with its index
@@ -108,9 +109,6 @@ Film take_film(Frame& frame);
 
 /// Whether there is a pixel of the frame.
 inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || frame.film.stage > 0; }
-
-/// Writes the frame's state.
-void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path);
 
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);

@@ -1,7 +1,5 @@
 #include "render/session/frame_loop.h"
 
-#include "render/session/final_frame.h"
-
 namespace sundog {
 namespace {
 

@@ -57,4 +57,8 @@ class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
   std::optional<std::size_t> index_of(const DeviceThread& thread) const;
 };
 
+/// Makes the passes of a frame by threads of its workers, which are closed behind it. With `wait`, every
+/// thread has ended on return; otherwise DeviceInfo::threads takes over the threads inside a driver.
+void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
+
 }  // namespace sundog

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "render/device/local_worker.h"
-#include "render/session/final_frame.h"
+#include "render/frame/final_frame.h"
 #include "render/session/live_session.h"
 
 namespace sundog {
@@ -164,13 +164,12 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     plans.push_back({thread->worker->info(), thread->worker->processor(),
                      [worker = thread->worker](const RenderOptions&) { return worker; },
                      comparable ? thread->pixels_a_second : 0, comparable ? thread->measured_pixels : 0});
-  RenderResult result = render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
-    const auto mine = std::make_shared<SessionFrame>();
-    mine->flat = scene;
-    mine->frame = frame;
-    mine->final = true;
-    live_->run_final(mine);
-  });
+  const auto mine = std::make_shared<SessionFrame>();
+  mine->flat = scene;
+  mine->frame = begin_frame(*scene, plans, options);
+  mine->final = true;
+  live_->run_final(mine);
+  RenderResult result = finish_frame(*mine->frame);
   for (std::size_t i = 0; i < threads.size(); ++i) {
     const DeviceReport& report = result.devices[i];
     const bool measured = report.busy_seconds > 0;
