@@ -5,13 +5,28 @@
 #include <mutex>
 #include <vector>
 
+#include "base/driver_threads.h"
 #include "render/frame/frame.h"
-#include "render/session/device_thread.h"
+#include "render/session/session_frame.h"
 
 namespace sundog {
 
 // How often a frame in hand is looked at for drivers that hang.
 inline constexpr std::chrono::milliseconds look_again{50};
+
+/// A thread owns a device worker, with its device and store of kernels. Guarded by the loop's mutex.
+struct DeviceThread {
+  std::shared_ptr<DeviceWorker> worker;
+  std::shared_ptr<SceneWorker> of_scenes;  // the same; null: its scene is the only one
+  DriverThread driver;
+  std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
+  bool opening = false;                // it may be in a driver's compiler
+  bool closed = false;                 // the worker, behind a frame
+  bool leave = false, gone = false;
+  bool abandoned = false;  // a frame did not wait for it, and nobody does
+  // Of the last frame that was rendered to its end; 0: it made nothing.
+  double pixels_a_second = 0, measured_pixels = 0;
+};
 
 /// Locks: a frame's mutex may be held when the loop's is taken, never the other way.
 class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
