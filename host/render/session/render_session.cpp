@@ -21,7 +21,7 @@ Workers make_workers(const std::vector<DeviceInfo>& devices) {
 
 }  // namespace
 
-std::string live_text(SessionState state) {
+std::string state_text(SessionState state) {
   switch (state) {
     case SessionState::idle:
       return "waiting for a scene";
@@ -41,9 +41,9 @@ std::string live_text(SessionState state) {
   return "";
 }
 
-std::string live_text(const Snapshot& now) {
+std::string state_text(const Snapshot& now) {
   const bool waits = now.state == SessionState::drawing && now.draft && now.fraction >= 1;
-  return live_text(waits ? SessionState::preparing : now.state);
+  return state_text(waits ? SessionState::preparing : now.state);
 }
 
 RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_workers(devices)) {}
