@@ -43,7 +43,7 @@ bool is_possible(const std::vector<DeviceInfo>& devices) {
 
 /// What all combinations are compared with, and the devices that are open.
 struct Common {
-  std::map<std::string, std::shared_ptr<DeviceServer>> open;
+  std::map<std::string, std::shared_ptr<LocalWorker>> open;
   std::map<std::string, Image> alone;  // each device's own picture
   Image expected;                      // the first device's
 };
@@ -57,13 +57,13 @@ struct DeviceRanking::Combination {
   std::uint64_t differing = 0;              // pixels visibly unlike those of the first device, at most
 
   void open(const std::shared_ptr<const CompiledScene>& scene, Common& common) {
-    std::vector<std::shared_ptr<DeviceServer>> servers;
+    std::vector<std::shared_ptr<LocalWorker>> workers;
     for (const DeviceInfo& device : devices) {
-      auto& server = common.open[device.label()];
-      if (!server) server = frame_server(device, scene);
-      servers.push_back(server);
+      auto& worker = common.open[device.label()];
+      if (!worker) worker = frame_worker(device, scene);
+      workers.push_back(worker);
     }
-    frames = std::make_shared<FrameRunner>(std::move(servers), scene);
+    frames = std::make_shared<FrameRunner>(std::move(workers), scene);
     if (devices.size() > 1) return;
     const Image& own = common.alone[devices[0].label()] = confirmed_image(*frames);
     if (common.expected.data.empty()) common.expected = own;

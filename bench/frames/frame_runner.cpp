@@ -6,21 +6,21 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "render/device/device_server.h"
+#include "render/device/local_worker.h"
 
 namespace sundog {
 namespace {
 
 using Scene = std::shared_ptr<const CompiledScene>;
-using DeviceServers = std::vector<std::shared_ptr<DeviceServer>>;
+using LocalWorkers = std::vector<std::shared_ptr<LocalWorker>>;
 
 /// Opened here, so that what keeps it from working is known before any frame.
-RenderTimes open_all(const DeviceServers& servers, const Scene& scene, const RenderOptions& options) {
+RenderTimes open_all(const LocalWorkers& workers, const Scene& scene, const RenderOptions& options) {
   RenderTimes sum;
   sum.cached = true;
-  for (const auto& server : servers) {
-    server->show(scene, options);
-    const RenderTimes times = server->open();
+  for (const auto& worker : workers) {
+    worker->show(scene, options);
+    const RenderTimes times = worker->open();
     sum.build_kernels += times.build_kernels;
     sum.upload += times.upload;
     sum.cached = sum.cached && times.cached;
@@ -36,23 +36,23 @@ RenderOptions without_pictures(RenderOptions options) {
 
 }  // namespace
 
-std::shared_ptr<DeviceServer> frame_server(const DeviceInfo& device, const Scene& scene) {
+std::shared_ptr<LocalWorker> frame_worker(const DeviceInfo& device, const Scene& scene) {
   static const RenderOptions usual;
-  return std::make_shared<DeviceServer>(device, scene, usual);
+  return std::make_shared<LocalWorker>(device, scene, usual);
 }
 
 FrameRunner::FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options)
-    : FrameRunner({frame_server(device, Scene(std::shared_ptr<void>(), &scene))},
+    : FrameRunner({frame_worker(device, Scene(std::shared_ptr<void>(), &scene))},
                   Scene(std::shared_ptr<void>(), &scene), options) {}
 
-FrameRunner::FrameRunner(DeviceServers servers, Scene scene, const RenderOptions& options)
+FrameRunner::FrameRunner(LocalWorkers workers, Scene scene, const RenderOptions& options)
     : scene_(std::move(scene)),
       options_(without_pictures(options)),
-      servers_(std::move(servers)),
-      times_(open_all(servers_, scene_, options_)),
-      session_(std::vector<std::shared_ptr<SceneServer>>(servers_.begin(), servers_.end())) {}
+      workers_(std::move(workers)),
+      times_(open_all(workers_, scene_, options_)),
+      session_(std::vector<std::shared_ptr<SceneWorker>>(workers_.begin(), workers_.end())) {}
 
-std::size_t FrameRunner::greatest_group() const { return servers_.front()->greatest_group(); }
+std::size_t FrameRunner::greatest_group() const { return workers_.front()->greatest_group(); }
 
 double FrameRunner::run() {
   last_ = session_.render(scene_, options_);
@@ -81,7 +81,7 @@ double FrameRunner::kernel_seconds() const {
 }
 
 double FrameRunner::rays() const {
-  auto rays = static_cast<double>(last_.surfaces_seen);
+  auto rays = static_cast<double>(last_.film.surfaces_seen);
   for (const int kind : {COUNT_PRIMARY, COUNT_REFLECTION, COUNT_REFRACTION, COUNT_SHADOW})
     rays += static_cast<double>(last_.counts[static_cast<std::size_t>(kind)]);
   return rays;

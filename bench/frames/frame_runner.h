@@ -8,18 +8,18 @@
 
 namespace sundog {
 
-class DeviceServer;
+class LocalWorker;
 
 /// An open device, or one that a FrameRunner opens. Runners may share it, one at a time.
-std::shared_ptr<DeviceServer> frame_server(const DeviceInfo& device,
-                                           const std::shared_ptr<const CompiledScene>& scene);
+std::shared_ptr<LocalWorker> frame_worker(const DeviceInfo& device,
+                                          const std::shared_ptr<const CompiledScene>& scene);
 
 /// Kernels are built and tables uploaded once. The scene must outlive it.
 class FrameRunner {
  public:
   /// Throws DeviceError, BuildError, UsageError as render() does.
   FrameRunner(const DeviceInfo& device, const CompiledScene& scene, const RenderOptions& options = {});
-  FrameRunner(std::vector<std::shared_ptr<DeviceServer>> servers, std::shared_ptr<const CompiledScene> scene,
+  FrameRunner(std::vector<std::shared_ptr<LocalWorker>> workers, std::shared_ptr<const CompiledScene> scene,
               const RenderOptions& options = {});
   FrameRunner(const FrameRunner&) = delete;
   FrameRunner& operator=(const FrameRunner&) = delete;
@@ -55,7 +55,7 @@ class FrameRunner {
  private:
   std::shared_ptr<const CompiledScene> scene_;
   RenderOptions options_;
-  std::vector<std::shared_ptr<DeviceServer>> servers_;
+  std::vector<std::shared_ptr<LocalWorker>> workers_;
   RenderTimes times_;
   RenderSession session_;
   RenderResult last_;

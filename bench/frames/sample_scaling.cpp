@@ -20,7 +20,8 @@ SampleFigures figures_of(const FrameRunner& frames, const Image& reference, unsi
   SampleFigures figures;
   figures.rays = frames.rays();
   figures.error = compare_images(frames.image(), reference, visible_error);
-  figures.samples = last.taken.empty() ? samples : sampling_figures(last.taken, last.film.done, 0, 1).mean;
+  figures.samples =
+      last.film.taken.empty() ? samples : sampling_figures(last.film.taken, last.film.done, 0, 1).mean;
   return figures;
 }
 
@@ -46,7 +47,7 @@ SampleTimes::SampleTimes(SampleScaling plan) : plan_(std::move(plan)), reference
     const auto open = [=, device = plan_.device, compile_with = plan_.compile_with] {
       auto scene = compile_with(way.overrides);
       *samples = scene->info.samples;
-      return std::make_shared<FrameRunner>(std::vector{frame_server(device, scene)}, scene);
+      return std::make_shared<FrameRunner>(std::vector{frame_worker(device, scene)}, scene);
     };
     const auto first = [=, reference = reference_](const FrameRunner& frames) {
       *figures = figures_of(frames, *reference, *samples);
@@ -64,7 +65,7 @@ void SampleTimes::measure(const MeasureOptions& options) {
         {fmt::format("/render/samples={}", plan_.reference), "/render/adaptive/threshold=0"});
     RenderOptions stoppable;
     stoppable.stop = options.stop;
-    FrameRunner frames({frame_server(plan_.device, scene)}, scene, stoppable);
+    FrameRunner frames({frame_worker(plan_.device, scene)}, scene, stoppable);
     frames.run();
     *reference_ = frames.image();
   };

@@ -137,7 +137,7 @@ TextureCost::TextureCost(std::string scene_name, const SceneDescription& scene, 
     const auto flat = std::make_shared<const CompiledScene>(compile(described));
     const auto rays = rays_.emplace_back(std::make_shared<double>());
     const auto open = [=] {
-      return std::make_shared<FrameRunner>(std::vector{frame_server(device, flat)}, flat);
+      return std::make_shared<FrameRunner>(std::vector{frame_worker(device, flat)}, flat);
     };
     subjects_.push_back(frame_subject(fmt::format("{} on {}, {}", scene_, device_, what),
                                       {open, [rays](const FrameRunner& frames) { *rays = frames.rays(); },

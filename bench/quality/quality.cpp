@@ -46,7 +46,7 @@ QualityTimes::QualityTimes(QualityPlan plan) : plan_(std::move(plan)) {
       times_.push_back(time);
       const auto open = [this, way, samples] {
         auto scene = plan_.compile_for(way, samples);
-        return std::make_shared<FrameRunner>(std::vector{frame_server(plan_.device, scene)}, scene);
+        return std::make_shared<FrameRunner>(std::vector{frame_worker(plan_.device, scene)}, scene);
       };
       const auto first = [this, time](const FrameRunner& frames) { compare(*time, plan_, frames.image()); };
       subjects_.push_back(frame_subject(

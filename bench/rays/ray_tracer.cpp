@@ -14,12 +14,12 @@ std::size_t divide_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
 RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDefines& extra)
     : device_(device), tables_(upload_scene(device, scene)) {
-  KernelConfig config = make_kernel_config(scene, device.info());
-  for (const auto& [name, value] : extra) config.defines[name] = value;
-  batch_ = static_cast<unsigned>(std::stoul(config.defines.at("TILE_W")) *
-                                 std::stoul(config.defines.at("TILE_H")));
+  const KernelConfig config = make_kernel_config(scene, device.info());
+  KernelDefines defines = config.defines();
+  for (const auto& [name, value] : extra) defines[name] = value;
+  batch_ = static_cast<unsigned>(std::stoul(defines.at("TILE_W")) * std::stoul(defines.at("TILE_H")));
   stack_limit_ = greatest_work_group(config, device.info());
-  const Program program = device.build("entry/trace_rays.cl", config.defines);
+  const Program program = device.build("entry/trace_rays.cl", defines);
   trace_rays_ = scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(program, "trace_rays");
   occluded_rays_ = scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(program, "occluded_rays");
 }

@@ -64,7 +64,7 @@ void build_kernels(Device& device, const CompiledScene& scene, SelfCheck& check,
   for (const EmbeddedKernel& file : embedded_kernels()) {
     if (!file.path.starts_with("entry/")) continue;
     on_stage(fmt::format("building {}", file.path));
-    device.build(std::string(file.path), config.defines, nullptr, config.generated);
+    device.build(std::string(file.path), config.defines(), nullptr, config.generated);
     ++check.kernels;
   }
   check.build_seconds = clock.seconds();

@@ -134,6 +134,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   sundog::find_motion(film->result.aovs, film->shot);
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
+  film->result.film = {};
   std::vector<std::string> objects, materials;
   for (const auto& object : description->objects) objects.push_back(object.name);
   for (const auto& material : description->materials) materials.push_back(material.name);

@@ -16,7 +16,7 @@ namespace sundog {
 /// Features of a scene; kernels are specialised to them.
 struct SceneFeatures {
   std::array<bool, SHAPE_COUNT> shapes{};
-#define SUNDOG_FEATURE_MEMBER(type, definition, name) type name = 0;
+#define SUNDOG_FEATURE_MEMBER(type, definition, name, effect) type name = 0;
   SCENE_FEATURES(SUNDOG_FEATURE_MEMBER)
 #undef SUNDOG_FEATURE_MEMBER
   bool camera_inside = false;

@@ -99,7 +99,8 @@ const SharedTable<float>& lobe_energies(bool glass) {
 
 /// Adds a part's features to the whole's.
 void add_features(const SceneFeatures& part, SceneFeatures& whole) {
-#define SUNDOG_ADD_FEATURE(type, definition, name) whole.name = static_cast<type>(whole.name | part.name);
+#define SUNDOG_ADD_FEATURE(type, definition, name, effect) \
+  whole.name = static_cast<type>(whole.name | part.name);
   SCENE_FEATURES(SUNDOG_ADD_FEATURE)
 #undef SUNDOG_ADD_FEATURE
   for (std::size_t i = 0; i < part.shapes.size(); ++i) whole.shapes[i] |= part.shapes[i];

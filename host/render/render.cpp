@@ -1,49 +1,51 @@
 #include "render/render.h"
 
-#include "render/device/device_server.h"
-#include "render/session/final_frame.h"
+#include "render/device/local_worker.h"
+#include "render/frame/final_frame.h"
+#include "render/session/frame_loop.h"
 
 namespace sundog {
 namespace {
 
 using Scene = std::shared_ptr<const CompiledScene>;
 
-RenderResult render_once(const Scene& scene, const std::vector<ServerPlan>& devices,
+RenderResult render_once(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                          const RenderOptions& options, bool wait) {
-  return render_frame(scene, devices, options,
-                      [wait](const std::shared_ptr<Frame>& frame) { run_frame(frame, wait); });
+  const std::shared_ptr<Frame> frame = begin_frame(scene, devices, options);
+  run_frame(frame, wait);
+  return finish_frame(*frame);
 }
 
 /// Devices of this process.
-std::vector<ServerPlan> plan_servers(const Scene& scene, const std::vector<DeviceInfo>& devices) {
-  std::vector<ServerPlan> plans;
+std::vector<WorkerPlan> plan_workers(const Scene& scene, const std::vector<DeviceInfo>& devices) {
+  std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : devices) plans.push_back(plan_local(scene, device));
   return plans;
 }
 
 }  // namespace
 
-ServerPlan plan_local(Scene scene, const DeviceInfo& device) {
+WorkerPlan plan_local(Scene scene, const DeviceInfo& device) {
   return {device, device.type == "cpu" ? 0 : -1,
           [scene = std::move(scene), device](const RenderOptions& options) {
-            return std::make_shared<DeviceServer>(device, scene, options);
+            return std::make_shared<LocalWorker>(device, scene, options);
           }};
 }
 
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
   const Scene borrowed(Scene(), &scene);
-  return render_once(borrowed, plan_servers(borrowed, devices), options, true);
+  return render_once(scene, plan_workers(borrowed, devices), options, true);
 }
 
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
-  return render_once(scene, plan_servers(scene, devices), options, false);
+  return render_once(*scene, plan_workers(scene, devices), options, false);
 }
 
-RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<ServerPlan>& servers,
+RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<WorkerPlan>& workers,
                     const RenderOptions& options) {
-  return render_once(scene, servers, options, false);
+  return render_once(*scene, workers, options, false);
 }
 
 }  // namespace sundog

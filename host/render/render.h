@@ -10,7 +10,7 @@
 namespace sundog {
 
 /// Plans a device of this process.
-ServerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
+WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
 
 /// Renders on all `devices` together and waits for each to finish. Throws DeviceError when every device
 /// failed, BuildError when the kernels build on none, SceneError for a damaged checkpoint, UsageError for a
@@ -23,8 +23,8 @@ RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& d
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options = {});
 
-/// Renders on servers, which may be devices of other processes.
-RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<ServerPlan>& servers,
+/// Renders on workers, which may be devices of other processes.
+RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<WorkerPlan>& workers,
                     const RenderOptions& options = {});
 
 }  // namespace sundog

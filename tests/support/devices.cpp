@@ -55,7 +55,7 @@ sundog::KernelDefines all_features() {
 #define SUNDOG_DEFINE_SOLID(constant, type, name) defines["HAS_" #constant] = "1";
   SOLIDS(SUNDOG_DEFINE_SOLID)
 #undef SUNDOG_DEFINE_SOLID
-#define SUNDOG_DEFINE_FEATURE(type, definition, name) \
+#define SUNDOG_DEFINE_FEATURE(type, definition, name, effect) \
   defines[#definition] = std::is_same_v<type, bool> ? "1" : "3";
   SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
 #undef SUNDOG_DEFINE_FEATURE

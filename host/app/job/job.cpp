@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "render/film/hash.h"
 #include "render/plan/deal_devices.h"
-#include "render/remote/remote_server.h"
 #include "render/remote/remote_values.h"
+#include "render/remote/remote_worker.h"
 #include "render/remote/tile_worker.h"
 
 namespace sundog {
@@ -107,7 +107,7 @@ int processor_of(const Mailbox& job, const DeviceInfo& device) {
 }
 
 /// Without --isolate a rank itself keeps its devices from frame to frame.
-ServerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInfo& device, std::uint64_t hash,
+WorkerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInfo& device, std::uint64_t hash,
                      const KeptChannels& workers) {
   nlohmann::json settings = remote_settings(command, device);
   settings["isolate"] = command.isolate;
@@ -121,7 +121,7 @@ ServerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInf
                             command.isolate ? worker_restarts : 0,
                             command.isolate ? worker_restarts + 1 : 3};
   return {device, remote.processor,
-          [remote](const RenderOptions&) { return std::make_shared<RemoteServer>(remote); }};
+          [remote](const RenderOptions&) { return std::make_shared<RemoteWorker>(remote); }};
 }
 
 }  // namespace
@@ -142,12 +142,12 @@ std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command) 
   return choice.deal(command.verbose && !command.quiet);
 }
 
-std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
+std::vector<WorkerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
                                  const std::shared_ptr<const CompiledScene>& scene,
                                  const KeptChannels& workers) {
   const std::uint64_t hash = hash_scene(*scene);
-  std::vector<ServerPlan> plans;
+  std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : devices) {
     if (job.gone(device.rank)) continue;
     plans.push_back(device.rank > 0   ? plan_rank(job, command, device, hash, workers)

@@ -27,7 +27,7 @@ std::unique_ptr<Mailbox> join_job();
 std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command);
 
 /// For rank 0: how each of them is reached. Ranks that are gone are left out while others are there.
-std::vector<ServerPlan> plan_job(Mailbox& job, const RenderCommand& command,
+std::vector<WorkerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
                                  const std::shared_ptr<const CompiledScene>& scene,
                                  const KeptChannels& workers);

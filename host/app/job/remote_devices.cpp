@@ -8,11 +8,11 @@
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
-#include "render/device/device_server.h"
+#include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/film/hash.h"
-#include "render/remote/remote_server.h"
 #include "render/remote/remote_values.h"
+#include "render/remote/remote_worker.h"
 #include "render/remote/worker_process.h"
 #include "scene/load.h"
 
@@ -118,25 +118,25 @@ std::shared_ptr<KeptDevice> kept_device(const DeviceInfo& device, KeptOpen& kept
 }
 
 /// A kept device for one frame: it is left open behind it.
-class BorrowedServer : public TileServer {
+class BorrowedWorker : public DeviceWorker {
  public:
-  explicit BorrowedServer(SceneServer& server) : server_(server) {}
-  const DeviceInfo& info() const override { return server_.info(); }
-  RenderTimes open() override { return server_.open(); }
+  explicit BorrowedWorker(SceneWorker& worker) : worker_(worker) {}
+  const DeviceInfo& info() const override { return worker_.info(); }
+  RenderTimes open() override { return worker_.open(); }
   TileResult render(const TileRequest& request, const StopFlags& flags) override {
-    return server_.render(request, flags);
+    return worker_.render(request, flags);
   }
-  ServerFigures figures() const override { return server_.figures(); }
-  void close() override { server_.rest(); }
-  double overdue() const override { return server_.overdue(); }
-  bool compiles() const override { return server_.compiles(); }
-  void be_nice() override { server_.be_nice(); }
+  WorkerFigures figures() const override { return worker_.figures(); }
+  void close() override { worker_.rest(); }
+  double overdue() const override { return worker_.overdue(); }
+  bool compiles() const override { return worker_.compiles(); }
+  void be_nice() override { worker_.be_nice(); }
 
  private:
-  SceneServer& server_;
+  SceneWorker& worker_;
 };
 
-/// What a server refers to while it makes a frame. The lock ends first.
+/// What a worker refers to while it makes a frame. The lock ends first.
 struct ServedFrame {
   RenderOptions options;
   std::shared_ptr<const CompiledScene> scene;
@@ -144,17 +144,17 @@ struct ServedFrame {
   std::unique_lock<std::mutex> in_use;
 };
 
-std::shared_ptr<TileServer> server_of(ServedFrame& frame, const DeviceInfo& device) {
-  if (!frame.device) return std::make_shared<DeviceServer>(find_device(device), frame.scene, frame.options);
-  std::shared_ptr<SceneServer>& server = frame.device->server;
-  if (!server) server = std::make_shared<DeviceServer>(find_device(device), frame.scene, frame.options);
-  server->show(frame.scene, frame.options);
-  return std::make_shared<BorrowedServer>(*server);
+std::shared_ptr<DeviceWorker> worker_of(ServedFrame& frame, const DeviceInfo& device) {
+  if (!frame.device) return std::make_shared<LocalWorker>(find_device(device), frame.scene, frame.options);
+  std::shared_ptr<SceneWorker>& worker = frame.device->worker;
+  if (!worker) worker = std::make_shared<LocalWorker>(find_device(device), frame.scene, frame.options);
+  worker->show(frame.scene, frame.options);
+  return std::make_shared<BorrowedWorker>(*worker);
 }
 
 }  // namespace
 
-OpenedServer open_server(const json& settings, KeptOpen* kept) {
+OpenedWorker open_worker(const json& settings, KeptOpen* kept) {
   const auto device = settings.at("device").get<DeviceInfo>();
   const auto frame = std::make_shared<ServedFrame>();
   if (kept) {
@@ -165,11 +165,11 @@ OpenedServer open_server(const json& settings, KeptOpen* kept) {
   frame->options.aovs = settings.at("aovs").get<std::vector<std::string>>();
   frame->scene = kept ? load_once(settings, *kept) : load_flat(settings);
   frame->options.tuning = [flat = frame->scene](const DeviceInfo& info) { return saved_tuning(info, *flat); };
-  OpenedServer opened;
+  OpenedWorker opened;
   opened.scene = hash_scene(*frame->scene);
   opened.kept = frame;
-  opened.server = server_of(*frame, device);
-  if (settings.at("nice").get<bool>()) opened.server->be_nice();
+  opened.worker = worker_of(*frame, device);
+  if (settings.at("nice").get<bool>()) opened.worker->be_nice();
   return opened;
 }
 
@@ -195,7 +195,7 @@ KeptChannels::Connect connect_worker(const RenderCommand& command, const DeviceI
   return workers.kept(fmt::format("{} {}", device.rank, device.label()), std::move(connect));
 }
 
-ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
+WorkerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
                          const KeptChannels& workers) {
   const auto start = [label = device.label()] { return start_worker(*program_environment(), label); };
   const RemoteDevice remote{device,
@@ -206,7 +206,7 @@ ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device,
                             worker_restarts,
                             worker_restarts + 1};
   return {device, remote.processor,
-          [remote](const RenderOptions&) { return std::make_shared<RemoteServer>(remote); }};
+          [remote](const RenderOptions&) { return std::make_shared<RemoteWorker>(remote); }};
 }
 
 }  // namespace sundog

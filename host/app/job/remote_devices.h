@@ -9,7 +9,7 @@
 
 #include "app/options/options.h"
 #include "compile/scene_compiler.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/remote/kept_channels.h"
 #include "render/remote/tile_worker.h"
 #include "render/render.h"
@@ -26,7 +26,7 @@ nlohmann::json remote_settings(const RenderCommand& command, const DeviceInfo& d
 /// A device that stays open from frame to frame, used by one thread at a time.
 struct KeptDevice {
   std::mutex in_use;
-  std::shared_ptr<SceneServer> server;  // null: nobody has asked for it yet
+  std::shared_ptr<SceneWorker> worker;  // null: nobody has asked for it yet
 };
 
 /// What a process that serves several devices, or several frames, keeps from one to the next. Any thread.
@@ -40,9 +40,9 @@ struct KeptOpen {
   std::map<std::string, std::shared_ptr<KeptDevice>> devices;  // by label
 };
 
-/// Loads the scene of such settings and makes a server of the device; with `kept`, waits until nobody else in
+/// Loads the scene of such settings and makes a worker of the device; with `kept`, waits until nobody else in
 /// the process uses that device. Throws SceneError, DeviceError.
-OpenedServer open_server(const nlohmann::json& settings, KeptOpen* kept = nullptr);
+OpenedWorker open_worker(const nlohmann::json& settings, KeptOpen* kept = nullptr);
 
 /// The devices that a worker process sees: this one makes no OpenCL call.
 std::vector<DeviceInfo> enumerate_in_worker();
@@ -52,7 +52,7 @@ inline constexpr unsigned worker_restarts = 3;
 
 /// The device in a worker process of its own, for a scene of that hash; of a frame of an animation, in one of
 /// `workers`.
-ServerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
+WorkerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device, std::uint64_t scene_hash,
                          const KeptChannels& workers);
 
 /// `connect`, but frames of an animation keep the workers of those before.

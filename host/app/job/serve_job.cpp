@@ -79,7 +79,7 @@ void serve_here(Channel& channel, Service& service) {
   serve_orders(
       channel, orders,
       [&](const nlohmann::json& settings) {
-        OpenedServer opened = open_server(settings, &service.kept);
+        OpenedWorker opened = open_worker(settings, &service.kept);
         watch.look_at(opened);
         return opened;
       },

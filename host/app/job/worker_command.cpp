@@ -43,7 +43,7 @@ int serve_device(int descriptor) {
       channel, orders,
       [&](const nlohmann::json& settings) {
         watch.look_at({});  // which held the device of the frame before
-        OpenedServer opened = open_server(settings, settings.at("frame").is_number() ? &kept : nullptr);
+        OpenedWorker opened = open_worker(settings, settings.at("frame").is_number() ? &kept : nullptr);
         watch.look_at(opened);
         return opened;
       },

@@ -13,6 +13,7 @@
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "render/film/checkpoint.h"
 
 namespace sundog {
 namespace {
@@ -30,9 +31,10 @@ void write(const Picture& picture, const fs::path& path) {
 }
 
 bool keep_checkpoint(const Picture& picture) {
-  if (picture.checkpoint.empty()) return false;
+  if (picture.checkpoint.empty() || picture.checkpoint_kept) return picture.checkpoint_kept;
   try {
-    write_checkpoint(picture.checkpoint, picture.film, picture.key, program_environment()->faults);
+    write_checkpoint(picture.checkpoint, picture.film, Pass(), Film(), picture.key,
+                     program_environment()->faults);
     return true;
   } catch (const IoError&) {
     return false;

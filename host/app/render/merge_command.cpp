@@ -42,7 +42,7 @@ int merge(const MergeCommand& command) {
   FileOptions file = file_options(command);
   file.texts = name_cryptomattes(aovs, whole.names);
   file.shot = whole.shot;
-  save_image({image, aovs, whole.film, whole.key, {}, command.format, file}, command.out);
+  save_image({image, aovs, whole.film, whole.key, {}, false, command.format, file}, command.out);
   fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
   return exit_done;
 }

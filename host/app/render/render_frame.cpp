@@ -80,13 +80,13 @@ void trace_halo(const RenderCommand& command, std::shared_ptr<const SceneDescrip
   scene = std::move(with_map);
 }
 
-std::vector<ServerPlan> plan_servers(const RenderCommand& of_frame, const LoadedScene& scene,
+std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const LoadedScene& scene,
                                      const Setup& setup) {
   RenderCommand command = of_frame;
   command.moment = scene.moment;
   if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat, setup.workers);
   const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
-  std::vector<ServerPlan> plans;
+  std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : setup.devices)
     plans.push_back(command.isolate ? plan_isolated(command, device, hash, setup.workers)
                                     : plan_local(scene.flat, device));
@@ -181,7 +181,7 @@ FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup
   const Stopwatch frame;
   const auto make = [&](const LoadedScene& at) {
     return setup.session ? setup.session->render(at.flat, options)
-                         : render(at.flat, plan_servers(command, at, setup), options);
+                         : render(at.flat, plan_workers(command, at, setup), options);
   };
   RenderResult result = make(scene);
   for (int time = 1; time < scene.times && result.complete && !result.failure; ++time)

@@ -47,16 +47,18 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
 
 /// Where the samples went, in words, and with --verbose as a picture.
 void tell_samples(const RenderCommand& command, const RenderResult& result, u32 each) {
-  if (result.taken.empty()) return;
+  if (result.film.taken.empty()) return;
   const SamplingFigures figures =
-      sampling_figures(result.taken, result.film.done, result.surfaces_seen, each);
-  fmt::print("  {:.3g} samples a pixel in {} passes, at most {}", figures.mean, result.passes, figures.most);
+      sampling_figures(result.film.taken, result.film.done, result.film.surfaces_seen, each);
+  fmt::print("  {:.3g} samples a pixel in {} passes, at most {}", figures.mean, result.film.stage,
+             figures.most);
   if (result.complete)
     fmt::print("; {:.1f} % of the pixels interpolated; {:.1f} % fewer camera rays than {} a pixel",
                100 * figures.share_interpolated, 100 * figures.saved, each);
   fmt::print("\n");
   if (!command.verbose || is_standard_stream(command.out)) return;
-  write_image(sampling_picture(result.taken, result.film.width, result.film.height), samples_file(command));
+  write_image(sampling_picture(result.film.taken, result.film.width, result.film.height),
+              samples_file(command));
   fmt::print("  where they went: {}\n", samples_file(command));
 }
 
@@ -151,7 +153,11 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   file.shot = shot;
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
-  Picture picture{image, aovs, result.film, result.key, checkpoint, command.format, file};
+  // A region's film is cut, and no state of the frame.
+  const bool keeps = !command.region || result.checkpoint_kept;
+  Picture picture{
+      image,          aovs, result.film, result.key, keeps ? checkpoint : "", result.checkpoint_kept,
+      command.format, file};
   if (command.part && picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part && !is_empty(result))
     save_image(picture, command.out);
@@ -200,7 +206,7 @@ void tell_result(const RenderCommand& command, const ImageSettings& image, u32 s
   tell_samples(command, result, samples);
   if (!command.verbose) return;
   const double pixels = static_cast<double>(result.film.done.size());
-  const std::uint64_t each = bytes_a_pixel(frame_output(command, image, !result.taken.empty()));
+  const std::uint64_t each = bytes_a_pixel(frame_output(command, image, !result.film.taken.empty()));
   fmt::print("{}  {:<22} {:10.1f} MiB, {} bytes a pixel\n", details_text(result, times),
              "memory of the frame", pixels * static_cast<double>(each) / (1 << 20), each);
 }

@@ -31,15 +31,15 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
 
 /// Of a frame in passes; null for others.
 json sampling_json(const SceneDescription& scene, const RenderResult& result) {
-  if (result.taken.empty()) return nullptr;
-  const SamplingFigures figures = sampling_figures(result.taken, result.film.done, result.surfaces_seen,
-                                                   static_cast<u32>(scene.render.samples));
-  return {{"passes", result.passes},
+  if (result.film.taken.empty()) return nullptr;
+  const SamplingFigures figures = sampling_figures(
+      result.film.taken, result.film.done, result.film.surfaces_seen, static_cast<u32>(scene.render.samples));
+  return {{"passes", result.film.stage},
           {"samples", figures.samples},
           {"samples_a_pixel", figures.mean},
           {"most", figures.most},
           {"interpolated", figures.share_interpolated},
-          {"surface_rays", result.surfaces_seen},
+          {"surface_rays", result.film.surfaces_seen},
           {"camera_rays_saved", figures.saved},
           {"time_limited", result.time_limited}};
 }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "base/environment.h"
 #include "base/error.h"
 #include "scene/integrators.h"
 
@@ -25,7 +24,7 @@ void check_work_group(const DeviceInfo& device, std::size_t most, const WorkGrou
 Program build(Device& device, const std::string& entry, const KernelConfig& config, FrameKernels& kernels,
               RenderTimes& times, unsigned* built = nullptr) {
   BuildReport report;
-  Program program = device.build(entry, config.defines, &report, config.generated);
+  Program program = device.build(entry, config.defines(), &report, config.generated);
   times.cached = times.cached && report.cached;
   if (built) *built += !report.cached;
   if (!report.note.empty()) kernels.notes.push_back("no kernel cache: " + report.note);
@@ -40,7 +39,7 @@ void limit_group(std::size_t limit, std::size_t& most) {
 void find_camera_media(Device& device, FrameKernels& kernels) {
   if (!kernels.find_media.kernel())
     kernels.find_media = scene_kernel<Buffer<u32>>(
-        device.build("entry/camera_media.cl", kernels.config.defines, nullptr, kernels.config.generated),
+        device.build("entry/camera_media.cl", kernels.config.defines(), nullptr, kernels.config.generated),
         "find_camera_media");
   run_scene_kernel<Buffer<u32>>(device, kernels.find_media, {1, 1, 1, 1}, kernels.tables,
                                 kernels.tables.camera_media);
@@ -58,9 +57,9 @@ constexpr const char* photon_kernel = "trace_photons";
 /// If the integrator's kernel must be built too, starts building the photon kernel in another process, unless
 /// the driver can build both at once. Returns whether it does.
 bool begin_photon_tracer(Device& device, const Integrator& integrator, const KernelConfig& config) {
-  if (device.has(integrator.entry, config.defines, config.generated)) return false;
+  if (device.has(integrator.entry, config.defines(), config.generated)) return false;
   const std::size_t group = photon_group(config, greatest_work_group(config, device.info()));
-  return device.build_ahead(photon_entry, config.defines, PhotonKernel::empty_launch(photon_kernel, group),
+  return device.build_ahead(photon_entry, config.defines(), PhotonKernel::empty_launch(photon_kernel, group),
                             config.generated);
 }
 
@@ -86,65 +85,15 @@ void make_integrator_ready(Device& device, FrameKernels& kernels) {
   }
 }
 
-bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
-  return a.defines == b.defines && a.generated == b.generated;
-}
-
-bool keeps_programs(const Device& device) {
-  const HostEnvironment& environment = value_of(device.info().environment);
-  return environment.kernel_cache && !environment.cache.empty();
-}
-
-/// Waits for the builder's thread to build the kernels; the device's thread stops waiting if the scene is
-/// replaced. Returns the number of kernels built.
-unsigned wait_for_kernels(const Device& device, KernelBuilder& builder, const KernelOrder& order) {
-  if (!keeps_programs(device)) return 0;
-  if (builder.wait_for(order)) return 1;
-  if (!builder.is_waited_for())
-    throw NotWantedAnyMore("the scene was replaced before its kernels were built");
-  return 0;  // the build failed: the caller repeats it and reports the error
-}
-
-struct KernelPick {
-  KernelConfig config;
-  Fit fit = Fit::own;
-  bool built = true;
-};
-
-/// The kernels to draw with: the wanted ones if they are built or nothing can stand in for them, not even a
-/// draft.
-KernelPick pick(Device& device, const Integrator& integrator, const KernelConfig& wanted,
-                const FrameKernels& kernels) {
-  const auto is_built = [&](const KernelConfig& one) {
-    return device.has(integrator.entry, one.defines, one.generated);
-  };
-  if (!kernels.builder) return {wanted, Fit::own, false};
-  if (is_built(wanted)) return {wanted, Fit::own};
-  std::vector<KernelConfig> candidates = kernels.builder->built();
-  candidates.insert(candidates.end(), kernels.known.rbegin(), kernels.known.rend());
-  candidates.insert(candidates.end(), kernels.general.begin(), kernels.general.end());
-  std::ranges::stable_partition(candidates, [](const KernelConfig& one) { return !interprets(one); });
-  for (const KernelConfig& one : candidates)
-    if (stands_in(one, wanted) && is_built(one)) return {one, Fit::exact};
-  const bool tried = kernels.builder->has_tried({integrator.entry, integrator.kernel, wanted});
-  for (const KernelConfig& one : candidates)
-    if (!tried && drafts(one, wanted) && is_built(one)) return {one, Fit::draft};
-  return {wanted, Fit::own, false};
-}
-
 /// Kernels for `wanted`: its own, which are waited for where a builder makes them, or stand-ins.
 KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
-                           FrameKernels& kernels, KernelUpdate& update) {
-  KernelPick picked = pick(device, integrator, wanted, kernels);
-  kernels.fit = picked.fit;
-  if (picked.fit != Fit::own) {
-    kernels.wanted = std::move(wanted);
-  } else if (kernels.builder && !picked.built) {
-    if (photons) begin_photon_tracer(device, integrator, wanted);
-    update.built +=
-        wait_for_kernels(device, *kernels.builder, {integrator.entry, integrator.kernel, std::move(wanted)});
+                           KernelStore& store, KernelUpdate& update) {
+  KernelPick picked = store.pick(device, {integrator.entry, integrator.kernel, std::move(wanted)});
+  if (!picked.built) {
+    if (photons) begin_photon_tracer(device, integrator, picked.kernel.config);
+    update.built += store.wait_for(device, picked.kernel);
   }
-  return std::move(picked.config);
+  return std::move(picked.kernel.config);
 }
 
 /// Updates the kernels for the scene, keeping suitable ones.
@@ -153,18 +102,18 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   const Integrator& integrator = *find_integrator(scene.integrator);
   KernelConfig config = kernels.only_general ? general_config(scene, device.info(), tuning)
                                              : make_kernel_config(scene, device.info(), tuning);
-  if (kernels.mattes) config.defines["HAS_MATTES"] = "1";
-  if (kernels.light) config.defines["HAS_LIGHT_PARTS"] = "1";
-  if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
-  kernels.wanted.reset();
-  kernels.fit = Fit::own;
-  if (kernels.builder) kernels.general = general_configs(scene, device.info(), tuning);
+  if (kernels.mattes) config.numbers["HAS_MATTES"] = 1;
+  if (kernels.light) config.numbers["HAS_LIGHT_PARTS"] = 1;
+  if (kernels.counts_rays) config.numbers["HAS_RAY_COUNTS"] = 1;
+  KernelStore* const store = kernels.store;
+  if (store) store->begin_scene(general_configs(scene, device.info(), tuning));
   const bool photons = scene.features.caustics;
   const auto is_there = [&] {
     return kernels.integrator.kernel() && kernels.entry == integrator.entry &&
            same_kernels(kernels.config, config);
   };
-  if (!is_there()) config = choose_config(device, integrator, std::move(config), photons, kernels, update);
+  if (store && !is_there())
+    config = choose_config(device, integrator, std::move(config), photons, *store, update);
   if (!is_there()) {
     kernels.config = std::move(config);
     kernels.most_group = greatest_work_group(kernels.config, device.info());
@@ -172,10 +121,10 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
     const bool beside = photons && begin_photon_tracer(device, integrator, kernels.config);
     build_integrator(device, integrator, kernels, times, update);
     if (beside) make_integrator_ready(device, kernels);
-    if (kernels.builder) kernels.known.push_back(kernels.config);
+    if (store) store->remember(kernels.config);
   }
   // Last, because some drivers neither load nor start other kernels while they compile.
-  if (kernels.wanted) kernels.builder->want({integrator.entry, integrator.kernel, *kernels.wanted});
+  if (store) store->build_wanted();
   if (aovs) add_first_surfaces(device, kernels, times);
   if (photons) add_photon_tracer(device, kernels, times);
   check_work_group(device.info(), kernels.most_group, asked);
@@ -194,45 +143,23 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 
 }  // namespace
 
-void build_general_kernels(const Device& device, FrameKernels& kernels) {
-  if (!kernels.builder || !kernels.integrator.kernel()) return;
-  std::vector<KernelOrder> orders;
-  std::vector<KernelConfig> built;  // cached, because lookups read the disk cache and compute checksums
-  for (const KernelConfig& general : kernels.general)
-    if (std::ranges::find(kernels.built_general, general) != kernels.built_general.end() ||
-        device.has(kernels.entry, general.defines, general.generated))
-      built.push_back(general);
-    else
-      orders.push_back({kernels.entry, kernels.integrator.name, general});
-  kernels.built_general = std::move(built);
-  if (!orders.empty()) kernels.builder->want_later(std::move(orders));
-}
-
 bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
-  if (!kernels.builder || !kernels.wanted || kernels.fit == Fit::draft || !keeps_programs(device))
-    return false;
-  if (!kernels.builder->has_built({kernels.entry, kernels.integrator.name, *kernels.wanted})) return false;
-  kernels.config = std::move(*kernels.wanted);
-  kernels.fit = Fit::own;
-  kernels.wanted.reset();
+  if (!kernels.store) return false;
+  std::optional<KernelOrder> order = kernels.store->take_wanted(device);
+  if (!order) return false;
+  kernels.config = std::move(order->config);
   RenderTimes times;
-  kernels.integrator = integrator_kernel(build(device, kernels.entry, kernels.config, kernels, times),
-                                         kernels.integrator.name);
+  kernels.integrator =
+      integrator_kernel(build(device, kernels.entry, kernels.config, kernels, times), order->kernel);
   limit_group(device.limits(kernels.integrator).work_group, kernels.most_group);
-  kernels.known.push_back(kernels.config);
   return true;
-}
-
-bool may_end_draft(const FrameKernels& kernels) {
-  return kernels.fit == Fit::draft &&
-         kernels.builder->has_tried({kernels.entry, kernels.integrator.name, *kernels.wanted});
 }
 
 void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& times) {
   if (kernels.first_surfaces.kernel() && kernels.there_aovs == kernels.wanted_aovs) return;
   KernelConfig config = kernels.config;
-  if (kernels.wanted_aovs.all) config.defines["ALL_AOVS"] = config.defines["HAS_UV"] = "1";
-  if (kernels.wanted_aovs.features) config.defines["FEATURE_AOVS"] = "1";
+  if (kernels.wanted_aovs.all) config.numbers["ALL_AOVS"] = config.numbers["HAS_UV"] = 1;
+  if (kernels.wanted_aovs.features) config.numbers["FEATURE_AOVS"] = 1;
   kernels.there_aovs = kernels.wanted_aovs;
   kernels.first_surfaces =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(

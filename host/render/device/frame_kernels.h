@@ -6,22 +6,12 @@
 
 #include "base/error.h"
 #include "render/device/device_scene.h"
-#include "render/device/kernel_builder.h"
-#include "render/device/kernel_config.h"
+#include "render/device/kernel_store.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
 #include "shared/launch.h"
 
 namespace sundog {
-
-/// The scene was replaced while its kernels were being built. The previous kernels are unchanged.
-struct NotWantedAnyMore : DeviceError {
-  using DeviceError::DeviceError;
-};
-
-/// How the kernels that draw relate to those that the scene wants: they are these, or others that give the
-/// same bits, or others that round differently.
-enum class Fit { own, exact, draft };
 
 using PhotonKernel = SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>;
 
@@ -36,23 +26,18 @@ struct FrameKernels {
   struct MoreAovs {
     bool all = false, features = false;  // vectors
     friend bool operator==(const MoreAovs&, const MoreAovs&) = default;
-  } wanted_aovs, there_aovs;                // of first_surfaces
-  bool mattes = false;                      // the integrator notes what covers pixels
-  bool light = false;                       // and keeps the parts of their light apart
-  bool counts_rays = false;                 // the integrator counts rays per pixel
-  bool only_general = false;                // use general_config() even if the scene's own could be built
-  SceneKernel<Buffer<u32>> find_media;      // only if the camera has been inside a solid
-  std::string entry;                        // of the integrator
-  bool camera_inside = false;               // tables.camera_media are not the outside's
-  unsigned most_run = 1;                    // items that a work-item of the integrator can process
-  std::size_t most_group = 0;               // maximum work-group size; 0: unknown
-  std::vector<std::string> notes;           // why a cache was not usable
-  KernelBuilder* builder = nullptr;         // builds while other kernels draw; may be null
-  std::vector<KernelConfig> known;          // kernels that this device has built
-  std::optional<KernelConfig> wanted;       // being built while others stand in
-  Fit fit = Fit::own;                       // of `config`
-  std::vector<KernelConfig> general;        // with a builder: stand-ins for the scene's kernels
-  std::vector<KernelConfig> built_general;  // those of them known to be built
+  } wanted_aovs, there_aovs;            // of first_surfaces
+  bool mattes = false;                  // the integrator notes what covers pixels
+  bool light = false;                   // and keeps the parts of their light apart
+  bool counts_rays = false;             // the integrator counts rays per pixel
+  bool only_general = false;            // use general_config() even if the scene's own could be built
+  SceneKernel<Buffer<u32>> find_media;  // only if the camera has been inside a solid
+  std::string entry;                    // of the integrator
+  bool camera_inside = false;           // tables.camera_media are not the outside's
+  unsigned most_run = 1;                // items that a work-item of the integrator can process
+  std::size_t most_group = 0;           // maximum work-group size; 0: unknown
+  std::vector<std::string> notes;       // why a cache was not usable
+  KernelStore* store = nullptr;         // others may draw while the scene's are built; null: they do not
 };
 
 /// Builds the integrator's kernel and, with `aovs`, the AOV kernel; uploads the scene and determines the
@@ -74,16 +59,9 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,
                                   RenderTimes& times);
 
-/// Queues the general kernels (general_configs()), which draw while an edit's own kernels are built. Does
-/// nothing without a builder.
-void build_general_kernels(const Device& device, FrameKernels& kernels);
-
 /// Switches from bit-exact stand-ins to the integrator's own kernel, if it has been built meanwhile. Returns
 /// whether it did.
 bool take_wanted_kernel(Device& device, FrameKernels& kernels);
-
-/// Whether the kernels that a draft stands in for have been built, or failed to build.
-bool may_end_draft(const FrameKernels& kernels);
 
 /// Builds the photon kernel if missing.
 void add_photon_tracer(Device& device, FrameKernels& kernels, RenderTimes& times);

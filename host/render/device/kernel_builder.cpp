@@ -15,8 +15,7 @@ namespace sundog {
 namespace {
 
 bool same(const KernelOrder& a, const KernelOrder& b) {
-  return a.entry == b.entry && a.config.defines == b.config.defines &&
-         a.config.generated == b.config.generated;
+  return a.entry == b.entry && same_kernels(a.config, b.config);
 }
 
 bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
@@ -27,7 +26,7 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
 /// size.
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
-  const Program program = device.build(order.entry, order.config.defines, nullptr, order.config.generated);
+  const Program program = device.build(order.entry, order.config.defines(), nullptr, order.config.generated);
   auto kernel =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
           program, order.kernel);

@@ -27,7 +27,7 @@ class KernelBuilder {
   KernelBuilder(const KernelBuilder&) = delete;
   KernelBuilder& operator=(const KernelBuilder&) = delete;
 
-  // Call from the server's thread only, unless stated otherwise.
+  // Call from the worker's thread only, unless stated otherwise.
   /// Builds `order` next, before those that wait already; skips orders that were built or failed.
   void want(KernelOrder order);
   /// Builds these in turn once nothing else has been wanted for a second. Replaces earlier orders of this

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <set>
 #include <string>
 
@@ -21,7 +22,7 @@ constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch
 constexpr const char* fields_file = "generated/sdf.cl";
 
 // A field's own flags apply within the kernel's.
-const std::string all_field_flags = std::to_string(SDF_SMOOTH | SDF_CUT_SPHERE);
+constexpr unsigned all_field_flags = SDF_SMOOTH | SDF_CUT_SPHERE;
 
 // General kernels have room for rays of this many levels and for the BVHs of most scenes; drafts for the
 // maximum depth and any BVH.
@@ -72,52 +73,56 @@ void define_features(const SceneFeatures& features, const Define& define) {
 #define SUNDOG_DEFINE_SOLID(constant, type, name) define("HAS_" #constant, features.shapes[SHAPE_##constant]);
   SOLIDS(SUNDOG_DEFINE_SOLID)
 #undef SUNDOG_DEFINE_SOLID
-#define SUNDOG_DEFINE_FEATURE(type, definition, name) define(#definition, features.name);
+#define SUNDOG_DEFINE_FEATURE(type, definition, name, effect) define(#definition, features.name);
   SCENE_FEATURES(SUNDOG_DEFINE_FEATURE)
 #undef SUNDOG_DEFINE_FEATURE
 }
 
-/// Whether a definition changes no bit of a scene without the feature, so that kernels with it can draw such
-/// a scene (a test renders scenes both ways). Fog, lenses, textures and meshes do not qualify, because they
-/// change the arithmetic of every ray; surface coordinates rotate the frame in which layers are sampled.
-bool harmless(const std::string& definition, const KernelDefines& defines) {
-  static const std::set<std::string> always{
-      "HAS_ABSORPTION", "HAS_AREA_LIGHTS",    "HAS_BOX",         "HAS_BVH",
-      "HAS_DISK",       "HAS_EMISSION",       "HAS_ENVIRONMENT", "HAS_FRACTIONAL_EXPONENTS",
-      "HAS_GLOW",       "HAS_LIGHT_TREE",     "HAS_MEDIA",       "HAS_METAL_ROUGH",
-      "HAS_OCCLUSION",  "HAS_PLANE",          "HAS_RECTANGLE",   "HAS_ROUGH",
-      "HAS_SECONDARY",  "HAS_SHADOW_FILTERS", "HAS_SKY",         "HAS_SOFT_SHADOWS",
-      "HAS_SPHERE",     "HAS_TOUCHING",       "SDF_TWO_SIDED"};
-  if (definition == "HAS_UV") return defines.at("HAS_LAYERS") == "0";
-  return always.contains(definition);
+/// What kernels with a definition do to a scene without it: shared/features.h.
+enum class Effect { same, unlayered, rounds, mask, room, alters };
+
+Effect effect_of(const std::string& definition) {
+  static const std::map<std::string, Effect> effects = [] {
+    std::map<std::string, Effect> all{
+        {"HAS_BVH", Effect::same},    {"HAS_MESH", Effect::rounds}, {"HAS_SDF", Effect::rounds},
+        {"BVH_LEVELS", Effect::room}, {"BVH_STACK", Effect::room},  {"LIGHT_ROOM", Effect::room},
+        {"RAY_STACK", Effect::room},  {"HAS_SPHERE", Effect::same}, {"HAS_PLANE", Effect::same},
+        {"HAS_BOX", Effect::same},    {"HAS_DISK", Effect::same},   {"HAS_RECTANGLE", Effect::same}};
+#define SUNDOG_SOLID_EFFECT(constant, type, name) all.emplace("HAS_" #constant, Effect::rounds);
+    SOLIDS(SUNDOG_SOLID_EFFECT)
+#undef SUNDOG_SOLID_EFFECT
+#define SUNDOG_FEATURE_EFFECT(type, definition, name, effect) all.emplace(#definition, Effect::effect);
+    SCENE_FEATURES(SUNDOG_FEATURE_EFFECT)
+#undef SUNDOG_FEATURE_EFFECT
+    return all;
+  }();
+  const auto found = effects.find(definition);
+  return found == effects.end() ? Effect::alters : found->second;
 }
 
-/// Whether a definition changes at most rounding in a scene without the feature, because kernels test
-/// materials, objects and the camera at run time.
-bool has_no_use(const std::string& definition, const KernelDefines& defines) {
-  static const std::set<std::string> solids{
-#define SUNDOG_SOLID_DEFINITION(constant, type, name) std::string("HAS_") + #constant,
-      SOLIDS(SUNDOG_SOLID_DEFINITION)
-#undef SUNDOG_SOLID_DEFINITION
-  };
-  static const std::set<std::string> others{
-      "HAS_CAMERA_MOTION", "HAS_CHECKER",     "HAS_COAT_MAPS", "HAS_FUZZ_MAPS",     "HAS_LAYERS",
-      "HAS_LAYER_FILTERS", "HAS_LAYER_MAPS",  "HAS_MAPS",      "HAS_MESH",          "HAS_PARALLAX",
-      "HAS_RELIEF",        "HAS_ROUGH_GLASS", "HAS_SDF",       "HAS_SPECULAR_MAPS", "HAS_TEXEL_PAGES",
-      "HAS_THIN_WALLS",    "HAS_UV"};
-  return solids.contains(definition) || others.contains(definition) || harmless(definition, defines);
+/// Whether kernels with the definition draw a scene of `numbers`, which has none of it, to the same bits.
+bool is_harmless(const std::string& definition, const KernelNumbers& numbers) {
+  const Effect effect = effect_of(definition);
+  return effect == Effect::same || (effect == Effect::unlayered && numbers.at("HAS_LAYERS") == 0);
 }
 
-/// Whether the definition is a mask of kinds, one bit each.
-bool is_mask(const std::string& definition) {
-  static const std::set<std::string> masks{"SDF_FLAGS", "TEXEL_FORMATS", "TEXTURE_KINDS", "TEXTURE_MAPPINGS"};
-  return masks.contains(definition);
+/// Whether kernels with the number `has` of a definition draw a scene that wants another: to the same bits
+/// or, if they may round, up to rounding.
+bool covers(const std::string& definition, unsigned has, unsigned wants, bool may_round,
+            const KernelNumbers& wanted) {
+  const Effect effect = effect_of(definition);
+  if (definition == "SDF_FLAGS" && has == all_field_flags) return true;
+  if (effect == Effect::mask) return may_round && (wants & ~has) == 0;
+  return has > wants && (effect == Effect::room || is_harmless(definition, wanted) ||
+                         (may_round && (effect == Effect::rounds || effect == Effect::unlayered)));
 }
 
-bool is_room(const std::string& definition) {
-  static const std::set<std::string> rooms{"BVH_LEVELS", "BVH_STACK", "LIGHT_ROOM", "RAY_STACK",
-                                           "TEXTURE_STACK"};
-  return rooms.contains(definition);
+/// Whether kernels of `has` cover all definitions of `wanted`.
+bool cover(const KernelConfig& has, const KernelConfig& wanted, bool may_round) {
+  return std::ranges::equal(has.numbers, wanted.numbers, [&](const auto& one, const auto& other) {
+    return one == other || (one.first == other.first &&
+                            covers(one.first, one.second, other.second, may_round, wanted.numbers));
+  });
 }
 
 /// The kernels of the scene's features with secondary rays of at least `depth` levels.
@@ -139,12 +144,17 @@ KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, c
 }
 
 void widen(KernelConfig& config, const char* room, unsigned least) {
-  const auto found = config.defines.find(room);
-  if (found != config.defines.end() && std::stoul(found->second) < least)
-    found->second = std::to_string(least);
+  const auto found = config.numbers.find(room);
+  if (found != config.numbers.end()) found->second = std::max(found->second, least);
 }
 
 }  // namespace
+
+KernelDefines KernelConfig::defines() const {
+  KernelDefines texts;
+  for (const auto& [name, number] : numbers) texts[name] = std::to_string(number);
+  return texts;
+}
 
 bool interprets(const KernelConfig& config) {
   const auto fields = config.generated.find(fields_file);
@@ -157,14 +167,7 @@ bool stands_in(const KernelConfig& general, const KernelConfig& wanted) {
       std::ranges::equal(general.generated, wanted.generated, [&](const auto& has, const auto& wants) {
         return has == wants || (any_fields && has.first == fields_file && wants.first == fields_file);
       });
-  if (!same_files || general.defines.size() != wanted.defines.size()) return false;
-  return std::ranges::equal(general.defines, wanted.defines, [&](const auto& has, const auto& wants) {
-    if (has == wants) return true;
-    if (has.first != wants.first) return false;
-    if (has.first == "SDF_FLAGS") return has.second == all_field_flags;
-    return (is_room(has.first) || harmless(has.first, wanted.defines)) &&
-           std::stoul(has.second) >= std::stoul(wants.second);
-  });
+  return same_files && cover(general, wanted, false);
 }
 
 bool drafts(const KernelConfig& draft, const KernelConfig& wanted) {
@@ -173,24 +176,16 @@ bool drafts(const KernelConfig& draft, const KernelConfig& wanted) {
     return (file == fields_file && wanted.has_programs) ||
            (found != draft.generated.end() && found->second == text);
   };
-  if (!interprets(draft) || draft.defines.size() != wanted.defines.size() ||
-      !std::ranges::all_of(wanted.generated, [&](const auto& one) { return draws(one.first, one.second); }))
-    return false;
-  return std::ranges::equal(draft.defines, wanted.defines, [&](const auto& has, const auto& wants) {
-    if (has == wants) return true;
-    if (has.first != wants.first) return false;
-    const unsigned long there = std::stoul(has.second), asked = std::stoul(wants.second);
-    if (is_mask(has.first)) return (asked & ~there) == 0;
-    return (is_room(has.first) || has_no_use(has.first, wanted.defines)) && there >= asked;
-  });
+  return interprets(draft) && cover(draft, wanted, true) &&
+         std::ranges::all_of(wanted.generated, [&](const auto& one) { return draws(one.first, one.second); });
 }
 
 KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config = deep_config(scene, device, tuning, general_depth);
   const bool fields = config.generated.contains(fields_file);
-  for (auto& [name, value] : config.defines) {
+  for (auto& [name, number] : config.numbers) {
     const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
-    if (harmless(name, config.defines) && (fields || !of_fields)) value = "1";
+    if (is_harmless(name, config.numbers) && (fields || !of_fields)) number = 1;
   }
   widen(config, "BVH_STACK", general_bvh_stack);
   widen(config, "BVH_LEVELS", general_bvh_levels);
@@ -199,14 +194,16 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config = deep_config(scene, device, tuning, draft_depth);
-  for (auto& [name, value] : config.defines) {
-    if (has_no_use(name, config.defines)) value = "1";
-    if (is_mask(name)) value = "65535";
+  constexpr unsigned all_kinds = 65535;
+  for (auto& [name, number] : config.numbers) {
+    const Effect effect = effect_of(name);
+    if (effect == Effect::mask) number = all_kinds;
+    if (effect != Effect::mask && effect != Effect::room && effect != Effect::alters) number = 1;
   }
   widen(config, "BVH_STACK", draft_bvh_stack);
   widen(config, "BVH_LEVELS", draft_bvh_levels);
   widen(config, "TEXTURE_STACK", MOST_TEXTURE_STACK);
-  config.defines["SDF_FLAGS"] = all_field_flags;
+  config.numbers["SDF_FLAGS"] = all_field_flags;
   config.generated[fields_file] = interpreting_source;
   config.has_programs = true;
   return config;
@@ -215,7 +212,7 @@ KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, 
 KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config = general_config(scene, device, tuning);
   config.generated[fields_file] = interpreting_source;
-  config.defines["SDF_FLAGS"] = all_field_flags;
+  config.numbers["SDF_FLAGS"] = all_field_flags;
   return config;
 }
 
@@ -226,8 +223,8 @@ std::vector<KernelConfig> general_configs(const CompiledScene& scene, const Devi
     all.push_back(interpreting_config(scene, device, tuning));
   for (const char* name : {"HAS_FOG", "HAS_LENS"}) {
     KernelConfig other = all.front();
-    std::string& value = other.defines.at(name);
-    value = value == "0" ? "1" : "0";
+    unsigned& number = other.numbers.at(name);
+    number = number == 0;
     all.push_back(std::move(other));
   }
   if (calls_functions(device)) all.push_back(draft_config(scene, device, tuning));
@@ -255,8 +252,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
     config.tile_h = tuning.tile_h;
   }
   const unsigned batch = config.tile_w * config.tile_h;
-  KernelDefines& defines = config.defines;
-  const auto define = [&](const char* name, unsigned value) { defines[name] = std::to_string(value); };
+  const auto define = [&](const char* name, unsigned number) { config.numbers[name] = number; };
   define("TILE_W", config.tile_w);
   define("TILE_H", config.tile_h);
   define("WIDE_VECTORS", vectors);

@@ -1,21 +1,32 @@
-// Specialisation of kernels to a scene's features and a device's class, as sorted -D definitions.
+// Specialisation of kernels to a scene's features and a device's class, as sorted definitions.
 #pragma once
+#include <map>
+#include <string>
+
 #include "compile/compiled_scene.h"
 #include "device/device.h"
 #include "render/values/tuning.h"
 
 namespace sundog {
 
+using KernelNumbers = std::map<std::string, unsigned>;
+
 /// The shape of a work-item's pixels, and the definitions for building kernels (kernels/lib/core/config.h has
 /// the defaults).
 struct KernelConfig {
   unsigned tile_w = 4, tile_h = 4;  // pixels per work-item
   unsigned ray_stack = 0;           // rays that may wait in a work-item
-  KernelDefines defines;
-  GeneratedFiles generated;   // the scene's formulas as kernel code
-  bool has_programs = false;  // the scene also has its fields as programs
+  KernelNumbers numbers;            // the definitions
+  GeneratedFiles generated;         // the scene's formulas as kernel code
+  bool has_programs = false;        // the scene also has its fields as programs
+  KernelDefines defines() const;
   friend bool operator==(const KernelConfig&, const KernelConfig&) = default;
 };
+
+/// Whether they build the same programs.
+inline bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
+  return a.numbers == b.numbers && a.generated == b.generated;
+}
 
 /// Whether the kernels interpret any scene's field programs, slowly, instead of a scene's generated code.
 bool interprets(const KernelConfig& config);

@@ -79,7 +79,7 @@ void PhotonMaps::make_room(const PhotonTracer& tracer) {
   if (!plan_.lights_inside) return;
   const KernelConfig& config = tracer.kernels.config;
   auto find = scene_kernel<Buffer<u32>>(
-      device.build("entry/light_media.cl", config.defines, nullptr, config.generated), "find_light_media");
+      device.build("entry/light_media.cl", config.defines(), nullptr, config.generated), "find_light_media");
   run_scene_kernel<Buffer<u32>>(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
   device.finish();
 }

@@ -11,14 +11,14 @@ std::vector<SceneProgram> scene_programs(const CompiledScene& scene, const Devic
   const KernelConfig config = make_kernel_config(scene, device);
   std::vector<SceneProgram> programs;
   const auto add = [&](bool wanted, const char* entry) {
-    if (wanted) programs.push_back({entry, config.defines, config.generated});
+    if (wanted) programs.push_back({entry, config.defines(), config.generated});
   };
   add(true, integrator.entry);
   add(true, "entry/aov.cl");
   add(integrator.needs_camera_media && scene.features.camera_inside, "entry/camera_media.cl");
   add(scene.features.caustics, "entry/trace_photons.cl");
   add(scene.features.caustics, "entry/light_media.cl");
-  if (scene.info.instance_count > 0) programs.push_back({"entry/trace_rays.cl", config.defines, {}});
+  if (scene.info.instance_count > 0) programs.push_back({"entry/trace_rays.cl", config.defines(), {}});
   return programs;
 }
 

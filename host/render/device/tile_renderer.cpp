@@ -22,6 +22,9 @@ struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
 };
 
+/// First samples look for the surfaces.
+bool looks(const TileRequest& request) { return request.surfaces && request.first_sample == 0; }
+
 /// The counters of a tile's launches, in blocks.
 using LaunchCounts = std::array<u32, std::size_t{COUNTER_BLOCKS} * COUNTER_BLOCK>;
 
@@ -56,8 +59,8 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 }
 
 /// Applies a frame's options to the kernels.
-FrameKernels wanted_by(const RenderOptions& options, KernelBuilder* builder, FrameKernels kernels) {
-  kernels.builder = options.kernels == KernelChoice::own_when_built ? builder : nullptr;
+FrameKernels wanted_by(const RenderOptions& options, KernelStore* store, FrameKernels kernels) {
+  kernels.store = options.kernels == KernelChoice::own_when_built ? store : nullptr;
   kernels.only_general = options.kernels == KernelChoice::general;
   const AovLayout layout = aov_layout(options.aovs);
   kernels.wanted_aovs = {layout.surfaces == all_aov_vectors, shows_features(options.aovs)};
@@ -79,15 +82,13 @@ std::optional<LaunchFailure> failure_of(const DeviceError& error) {
 }  // namespace
 
 TileRenderer::TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options,
-                           RenderTimes& times, LaunchWatch& watch, KernelBuilder* builder)
+                           RenderTimes& times, LaunchWatch& watch, KernelStore* store)
     : device_(device),
-      options_(&options),
-      builder_(builder),
+      store_(store),
       marches_(!scene.sdf_fields.empty()),
-      samples_(scene.info.samples),
       tuning_(tuning_of(options, device.info())),
       asked_(options.work_group),
-      kernels_(wanted_by(options, builder, {})),
+      kernels_(wanted_by(options, store, {})),
       update_(
           update_frame_kernels(device, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times)),
       photons_(scene),
@@ -99,14 +100,12 @@ void TileRenderer::change_scene(const CompiledScene& scene, const RenderOptions&
                                 RenderTimes& times) {
   const Tuning tuning = tuning_of(options, device_.info());
   const bool same_tuning = tuning == tuning_, same_group = options.work_group == asked_;
-  options_ = &options;
   layout_ = aov_layout(options.aovs);
   marches_ = !scene.sdf_fields.empty();
   tuning_ = tuning;
   asked_ = options.work_group;
-  samples_ = scene.info.samples;
   photons_ = PhotonMaps(scene);
-  kernels_ = wanted_by(options, builder_, std::move(kernels_));
+  kernels_ = wanted_by(options, store_, std::move(kernels_));
   update_ =
       update_frame_kernels(device_, scene, tuning_, asked_, makes_aovs(scene, options), kernels_, times);
   const bool same_scene = update_.uploads.bytes == 0 && !update_.uploads.numbers;
@@ -122,7 +121,8 @@ void TileRenderer::keep_programs() { device_.save_programs(); }
 
 void TileRenderer::rest() {
   device_.save_programs();
-  build_general_kernels(device_, kernels_);
+  if (kernels_.store)
+    kernels_.store->build_general(device_, {kernels_.entry, kernels_.integrator.name, kernels_.config});
 }
 
 void TileRenderer::prepare_surfaces() {
@@ -134,7 +134,7 @@ void TileRenderer::prepare_surfaces() {
 // further maps are made.
 unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   u32 first = request.first_sample;
-  const u32 end = first + samples_of(request);
+  const u32 end = first + request.sample_count;
   while (first < end && !flags.set()) {
     if (!photons_.prepare({device_, kernels_, watch_}, flags, first, end)) return 0;
     const u32 last = photons_.end_of_maps(first, end);
@@ -205,7 +205,7 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
     pixels -= static_cast<std::uint64_t>(
         std::count(first, first + static_cast<std::ptrdiff_t>(pixels), static_cast<u32>(NO_PIXEL)));
   }
-  const auto wanted = static_cast<u32>(pixels * samples_of(asked));
+  const auto wanted = static_cast<u32>(pixels * asked.sample_count);
   const auto aovs = looks(asked) ? static_cast<u32>(pixels) : 0u;
   if (fault(value_of(device_.info().environment).faults, "cut",
             fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
@@ -245,7 +245,7 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (weights_.count < pixels) weights_ = device_.make<float>(pixels);
-  const std::size_t sums = wants_aovs(request) ? layout_.sums() : 0;
+  const std::size_t sums = request.surfaces ? layout_.sums() : 0;
   if (film_.count < (1 + sums) * pixels) film_ = device_.make<float4>((1 + sums) * pixels);
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
@@ -281,7 +281,7 @@ void TileRenderer::read_aovs(const TileRequest& request, TileResult& result) {
   result.aovs = request.aovs;
   result.aovs.resize(layout_.vectors() * pixels);
   if (looks(request)) look_at_surfaces(request, result);
-  if (layout_.sums() == 0 || samples_of(request) == 0 || pixels == 0) return;
+  if (layout_.sums() == 0 || request.sample_count == 0 || pixels == 0) return;
   std::vector<float4> sums(layout_.sums() * pixels);
   device_.read(film_, std::span<float4>(sums), whole);
   put_vectors(sums, layout_.sums(), layout_.surfaces, layout_.vectors(), result.aovs);
@@ -308,10 +308,9 @@ TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags&
   result.tile = request.tile;
   const SettledAtEnd settled(device_);
   write_start(request, result);
-  const unsigned samples = samples_of(request);
-  if (samples > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
-  if (wants_aovs(request)) read_aovs(request, result);
-  read_result(samples, result);
+  if (request.sample_count > 0) result.tile.height = static_cast<int>(launch_samples(request, flags));
+  if (request.surfaces) read_aovs(request, result);
+  read_result(request.sample_count, result);
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include "render/device/launch_watch.h"
 #include "render/device/photon_maps.h"
 #include "render/film/film.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
 
@@ -16,13 +16,13 @@ namespace sundog {
 class TileRenderer {
  public:
   /// Builds the kernels and uploads the scene; fills `times`. Reports each launch to `watch`. If the options
-  /// allow it, `builder` builds kernels in the background while others stand in. Throws DeviceError,
+  /// allow it, `store` builds kernels in the background while others stand in. Throws DeviceError,
   /// BuildError.
   TileRenderer(Device& device, const CompiledScene& scene, const RenderOptions& options, RenderTimes& times,
-               LaunchWatch& watch, KernelBuilder* builder = nullptr);
+               LaunchWatch& watch, KernelStore* store = nullptr);
 
-  /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. `options`
-  /// must outlive this. Unusable after an exception. Throws like the constructor.
+  /// Switches to another scene: keeps suitable kernels and tables, builds and uploads the others. Unusable
+  /// after an exception. Throws like the constructor.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
 
   /// Caches the driver's compiled programs for the next start.
@@ -39,20 +39,13 @@ class TileRenderer {
   /// samples, finally in work-groups of one; if a work-group is too large, with half the group size. Throws
   /// DeviceError.
   TileResult render(const TileRequest& request, const StopFlags& flags);
-  /// Renders a plain frame's tile.
-  TileResult render(const Tile& tile, const StopFlags& flags) {
-    TileRequest request;
-    request.tile = tile;
-    return render(request, flags);
-  }
 
   /// Statistics of the constructor or the last change_scene().
   const KernelUpdate& update() const { return update_; }
   /// The specialisation of its kernels; changes before a tile when better ones have been built.
   const KernelConfig& config() const { return kernels_.config; }
-  /// Whether the picture must be drawn again by other kernels, and whether those are built.
-  bool draws_draft() const { return kernels_.fit == Fit::draft; }
-  bool may_end_draft() const { return sundog::may_end_draft(kernels_); }
+  /// Whether the picture must be drawn again by other kernels.
+  bool draws_draft() const { return kernels_.store && kernels_.store->draws_draft(); }
   /// Maximum work-group size of its kernels; 0: unknown.
   std::size_t greatest_group() const { return sizer_.most_group(); }
   double readback_seconds() const { return readback_seconds_; }
@@ -69,20 +62,10 @@ class TileRenderer {
   void read_aovs(const TileRequest& request, TileResult& result);
   void look_at_surfaces(const TileRequest& request, TileResult& result);
   void check_finished(const TileRequest& asked, const TileResult& made);
-  unsigned samples_of(const TileRequest& request) const {
-    return request.in_pass ? request.sample_count : samples_;
-  }
-  bool wants_aovs(const TileRequest& request) const {
-    return request.in_pass ? request.surfaces : show_surfaces(options_->aovs);
-  }
-  /// First samples look for the surfaces.
-  bool looks(const TileRequest& request) const { return wants_aovs(request) && request.first_sample == 0; }
 
   Device& device_;
-  const RenderOptions* options_;
-  KernelBuilder* builder_;
+  KernelStore* store_;
   bool marches_;  // the scene has fields
-  unsigned samples_;
   Tuning tuning_;
   WorkGroup asked_;
   FrameKernels kernels_;

@@ -1,102 +1,210 @@
-// Checkpoints: the film of an interrupted frame. The file is a header, then the film's arrays, then a
-// checksum, in the machine's own byte order (sundog runs on little-endian hosts).
+// A checkpoint is a header, then arrays, each behind its length, then a checksum, in the machine's own byte
+// order (sundog runs on little-endian hosts).
+#include "render/film/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
 #include <string>
 
-#include "base/error.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "base/limits.h"
-#include "render/film/checkpoint_file.h"
-#include "render/film/film.h"
 #include "render/film/hash.h"
 
 namespace sundog {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-constexpr char magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'C', '1'};
+
+// The last two letters are the version.
+constexpr char magic[8] = {'S', 'U', 'N', 'D', 'O', 'G', 'F', '1'};
+constexpr std::size_t magic_name = 6;
 
 struct Header {
   char magic[8];
   std::uint64_t key;
-  std::int32_t width, height;
-  std::uint64_t aovs;  // code() of their layout; 0: none
+  std::int32_t width, height, pass_width, pass_height;
+  std::uint32_t needs, aovs;  // of the film; aovs: code() of its layout, 0: none
+  std::uint32_t first_sample, sample_count, surfaces, costs, has_block_rays;
+  std::uint32_t stage, step, unused;
+  std::uint64_t surfaces_seen;
 };
 
-template <class T>
-void append(std::string& out, const std::vector<T>& values) {
-  out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+std::uint32_t code_of(const FilmNeeds& needs) {
+  return u32(needs.counts_rays) | u32(needs.grows) << 1 | u32(needs.keeps_earlier) << 2;
 }
 
-template <class T>
-void take(const std::string& in, std::size_t& at, std::vector<T>& values) {
-  const std::size_t size = values.size() * sizeof(T);
-  if (size > 0) std::memcpy(values.data(), in.data() + at, size);
-  at += size;
+std::uint32_t aovs_of(const FilmNeeds& needs) { return needs.shows_surfaces ? needs.layout.code() : 0; }
+
+/// Calls visit(array) for each array of the file, in its order.
+template <class Whole, class Pixels, class Visit>
+void for_each_array(Whole& film, Pixels& pixels, Whole& made, const Visit& visit) {
+  visit(film.sums), visit(film.weights), visit(film.aovs), visit(film.rays), visit(film.done);
+  visit(film.taken), visit(film.states), visit(film.earlier), visit(film.moved), visit(film.block_rays);
+  visit(pixels);
+  visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
 }
 
-std::size_t bytes_of(const Film& film) {
-  return film.sums.size() * sizeof(float4) + film.weights.size() * sizeof(float) +
-         film.aovs.size() * sizeof(float4) + film.rays.size() * sizeof(u32) + film.done.size();
+constexpr std::size_t sample_bytes = sizeof(float4) + sizeof(float) + 1;  // sums, weight, whether it is done
+
+/// Throws SceneError where the file is too short for the pixels of its pass: no memory is taken for them.
+void check_memory(const std::filesystem::path& path, const Film& film, const Pass& pass,
+                  std::size_t file_bytes) {
+  const auto pixels = static_cast<std::uintmax_t>(pass.width) * static_cast<std::uintmax_t>(pass.height);
+  const std::size_t a_pixel = sample_bytes + (pass.surfaces ? sizeof(float4) * film.layout.vectors() : 0);
+  if (pixels * a_pixel > file_bytes)
+    throw SceneError(path.string(), "",
+                     fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes; remove it to "
+                                 "start anew",
+                                 pass.width, pass.height, file_bytes));
+}
+
+/// More than a checkpoint of that frame has: a list of pixels is padded to rows of whole blocks.
+std::uintmax_t most_bytes(const Film& film) {
+  const std::uintmax_t of_film =
+      sample_bytes + (film.shows_surfaces ? sizeof(float4) * film.layout.vectors() : 0) + sizeof(u32);
+  constexpr std::uintmax_t of_growth = 4 * sizeof(u32) + sizeof(PixelState) + sizeof(float4);
+  constexpr std::uintmax_t more = std::uintmax_t{1} << 16;
+  return (film.grows ? 2 * of_film + of_growth : of_film) * (film.pixels() + more);
+}
+
+bool starts_with_magic(const std::string& bytes, std::size_t length) {
+  return bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, length) == 0;
+}
+
+UsageError other_checkpoint(const std::filesystem::path& path) {
+  return UsageError(path.string() +
+                    ": is a checkpoint of another scene or of other settings; remove it to start anew");
+}
+
+/// The file's bytes without their checksum, which is right. A file that is longer than the frame's longest
+/// is not read.
+std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most) {
+  std::string start(sizeof magic, ' ');
+  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
+    throw UsageError(path.string() +
+                     ": is a checkpoint of another version of sundog; finish the frame with that version, or "
+                     "remove the file to start anew");
+  std::error_code failed;
+  const std::uintmax_t size = std::filesystem::file_size(path, failed);
+  if (!failed && size > most) throw other_checkpoint(path);
+  std::string bytes = read_input(path, most);
+  std::uint64_t checksum = 0;
+  if (!starts_with_magic(bytes, sizeof magic) || bytes.size() < sizeof(Header) + sizeof checksum)
+    throw damaged_checkpoint(path);
+  const std::size_t end = bytes.size() - sizeof checksum;
+  std::memcpy(&checksum, bytes.data() + end, sizeof checksum);
+  if (checksum != hash_bytes(bytes.data(), end)) throw damaged_checkpoint(path);
+  bytes.resize(end);
+  return bytes;
+}
+
+/// Whether the pixels are the image's own, or a list as list_pass() makes it: each pixel once.
+bool are_pixels_of(const Film& film, const Pass& pass) {
+  if (pass.pixels.empty()) return pass.width == film.width && pass.height == film.height;
+  if (!is_list_size(pass.width, pass.height)) return false;
+  std::vector<bool> listed(film.pixels());
+  for (std::size_t i = 0; i < pass.pixels.size(); ++i) {
+    const u32 pixel = pass.pixels[i];
+    if (pixel == NO_PIXEL) continue;
+    const u32 x = pixel & 0xffffu, y = pixel >> 16;
+    if (x >= static_cast<u32>(film.width) || y >= static_cast<u32>(film.height)) return false;
+    const auto p = static_cast<std::size_t>(image_index(film, pass, i));
+    if (listed[p]) return false;
+    listed[p] = true;
+  }
+  return true;
+}
+
+/// Whether the arrays hold what a film may.
+bool are_true(const Film& film, const Pass& pass, const Film& made) {
+  const auto known = [](PixelState state) { return state <= PixelState::interpolated; };
+  return all_flags(film.done) && all_flags(made.done) && std::ranges::all_of(film.states, known) &&
+         (pass.is_none() ? pass.pixels.empty() : are_pixels_of(film, pass));
+}
+
+/// Takes the header's values for `film` and `pass`; whether a frame with this film has them.
+bool take_header(const Header& header, Film& film, Pass& pass) {
+  film.stage = header.stage, film.step = header.step;
+  film.surfaces_seen = header.surfaces_seen;
+  pass.width = header.pass_width, pass.height = header.pass_height;
+  pass.first_sample = header.first_sample, pass.sample_count = header.sample_count;
+  pass.surfaces = header.surfaces != 0, pass.costs = header.costs != 0;
+  if (pass.is_none()) return film.stage > 0;
+  if (film.stage > 0 ? !film.grows : pass.first_sample > 0) return false;
+  return is_frame_size(pass.width, pass.height) && (!pass.surfaces || film.shows_surfaces);
 }
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key,
-                      const std::shared_ptr<Faults>& faults) {
+SceneError damaged_checkpoint(const std::filesystem::path& path) {
+  return {path.string(), "", "is no sundog checkpoint, or is damaged; remove it to start anew"};
+}
+
+void write_checkpoint(const std::filesystem::path& path, const Film& film, const Pass& pass, const Film& made,
+                      std::uint64_t key, const std::shared_ptr<Faults>& faults) {
   Header header{};
   std::memcpy(header.magic, magic, sizeof magic);
   header.key = key;
-  header.width = film.width;
-  header.height = film.height;
-  header.aovs = film.aovs.empty() ? 0 : film.layout.code();
-  std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
-  bytes.reserve(sizeof header + bytes_of(film) + sizeof(std::uint64_t));
-  append(bytes, film.sums);
-  append(bytes, film.weights);
-  append(bytes, film.aovs);
-  append(bytes, film.rays);
-  append(bytes, film.done);
+  header.width = film.width, header.height = film.height;
+  header.pass_width = pass.width, header.pass_height = pass.height;
+  header.needs = code_of(film), header.aovs = aovs_of(film);
+  header.first_sample = pass.first_sample, header.sample_count = pass.sample_count;
+  header.surfaces = pass.surfaces, header.costs = pass.costs;
+  header.has_block_rays = !film.block_rays.empty();
+  header.stage = film.stage, header.step = film.step;
+  header.surfaces_seen = film.surfaces_seen;
+  std::size_t size = sizeof header + sizeof(std::uint64_t);
+  for_each_array(film, pass.pixels, made,
+                 [&](const auto& array) { size += sizeof(std::uint64_t) + array.size() * sizeof array[0]; });
+  std::string bytes;
+  bytes.reserve(size);
+  bytes.append(reinterpret_cast<const char*>(&header), sizeof header);
+  for_each_array(film, pass.pixels, made, [&](const auto& array) {
+    const std::uint64_t count = array.size();
+    bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+    bytes.append(reinterpret_cast<const char*>(array.data()), count * sizeof array[0]);
+  });
   const std::uint64_t checksum = hash_bytes(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
   write_file(path, bytes, faults);
 }
 
-std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path) {
-  Header header{};
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
-  if (std::memcmp(header.magic, magic, sizeof magic) != 0) return std::nullopt;
-  return header.key;
-}
-
-void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key) {
-  const std::size_t expected = sizeof(Header) + bytes_of(film);
-  const std::string bytes = read_checkpoint_bytes(path, expected + sizeof(std::uint64_t));
-  Header header{};
-  std::uint64_t checksum = 0;
+void read_checkpoint(const std::filesystem::path& path, Film& film, Pass& pass, Film& made,
+                     std::uint64_t key) {
+  const std::string bytes = checked_bytes(path, most_bytes(film));
   const SceneError damaged = damaged_checkpoint(path);
-  if (bytes.size() < sizeof header + sizeof checksum) throw damaged;
+  Header header{};
   std::memcpy(&header, bytes.data(), sizeof header);
-  const std::size_t body = bytes.size() - sizeof checksum;
-  std::memcpy(&checksum, bytes.data() + body, sizeof checksum);
-  if (std::memcmp(header.magic, magic, sizeof magic) != 0 || checksum != hash_bytes(bytes.data(), body) ||
-      !is_frame_size(header.width, header.height))
-    throw damaged;
-  if (header.key != key || header.width != film.width || header.height != film.height || body != expected ||
-      header.aovs != (film.aovs.empty() ? 0 : film.layout.code()))
+  if (header.key != key || header.width != film.width || header.height != film.height ||
+      header.needs != code_of(film) || header.aovs != aovs_of(film))
     throw other_checkpoint(path);
+  if (!take_header(header, film, pass)) throw damaged;
+  check_memory(path, film, pass, bytes.size());
+  if (film.stage > 0) film.allocate();
+  film.block_rays.resize(header.has_block_rays ? cost_blocks(header.width, header.height) : 0);
+  made = pass.is_none() ? Film() : film_of_pass(film, pass);
   std::size_t at = sizeof header;
-  take(bytes, at, film.sums);
-  take(bytes, at, film.weights);
-  take(bytes, at, film.aovs);
-  take(bytes, at, film.rays);
-  take(bytes, at, film.done);
-  if (!all_flags(film.done)) throw damaged;
+  const auto take = [&](auto& array) {
+    std::uint64_t count = 0;
+    if (bytes.size() - at < sizeof count) throw damaged;
+    std::memcpy(&count, bytes.data() + at, sizeof count);
+    at += sizeof count;
+    const bool is_list = static_cast<const void*>(&array) == &pass.pixels;
+    if (is_list && (count == 0 || count == made.done.size())) array.resize(count);
+    if (count != array.size() || (bytes.size() - at) / sizeof array[0] < count) throw damaged;
+    if (count > 0) std::memcpy(array.data(), bytes.data() + at, count * sizeof array[0]);
+    at += count * sizeof array[0];
+  };
+  for_each_array(film, pass.pixels, made, take);
+  if (at != bytes.size() || !are_true(film, pass, made)) throw damaged;
+  for (std::size_t p = 0; p < film.states.size(); ++p)
+    if (film.states[p] == PixelState::sampled) see(film, p);
 }
 
 }  // namespace sundog

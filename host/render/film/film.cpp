@@ -2,25 +2,34 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "base/error.h"
 #include "render/film/light_parts.h"
+#include "render/film/pass.h"
 
 namespace sundog {
 
 Film::Film(int width_, int height_, bool with_aovs, AovLayout layout_)
-    : width(width_), height(height_), layout(layout_) {
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  sums.resize(pixels);
-  weights.resize(pixels);
-  done.resize(pixels);
-  if (with_aovs) aovs.resize(layout.vectors() * pixels);
+    : Film(width_, height_, FilmNeeds{.layout = layout_, .shows_surfaces = with_aovs}) {
+  allocate();
 }
 
 Film Film::with_aovs(int width, int height, const std::vector<std::string>& names) {
-  Film film(width, height, show_surfaces(names), aov_layout(names));
-  if (counts_rays(names)) film.rays.resize(film.done.size());
+  Film film(width, height, film_needs(names));
+  film.allocate();
   return film;
+}
+
+void Film::allocate() {
+  const std::size_t all = pixels();
+  sums.resize(all), weights.resize(all), done.resize(all);
+  if (shows_surfaces) aovs.resize(layout.vectors() * all);
+  if (counts_rays) rays.resize(all);
+  if (!grows) return;
+  taken.resize(all), states.resize(all), seen.resize(all), moved_by_one.resize(all);
+  moved.resize(all, std::numeric_limits<float>::infinity());
+  if (keeps_earlier) earlier.resize(all);
 }
 
 namespace {
@@ -65,13 +74,15 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
 }
 
 Film Film::cut(const Tile& area) const {
-  Film part;
-  part.width = area.width, part.height = area.height, part.layout = layout;
+  Film part(area.width, area.height, *this);
+  part.grows = part.keeps_earlier = false;
   part.sums = cut_pixels(sums, width, area);
   part.weights = cut_pixels(weights, width, area);
   part.aovs = cut_pixels(aovs, width, area, layout.vectors());
   part.rays = cut_pixels(rays, width, area);
   part.done = cut_pixels(done, width, area);
+  part.taken = cut_pixels(taken, width, area);
+  part.stage = stage, part.surfaces_seen = surfaces_seen;
   return part;
 }
 
@@ -193,6 +204,11 @@ bool is_light(const std::string& aov) {
 
 bool counts_rays(const std::vector<std::string>& names) { return std::ranges::count(names, "rays") > 0; }
 
+FilmNeeds film_needs(const std::vector<std::string>& names) {
+  return {
+      .layout = aov_layout(names), .shows_surfaces = show_surfaces(names), .counts_rays = counts_rays(names)};
+}
+
 std::size_t film_bytes(const std::vector<std::string>& names) {
   const std::size_t aovs = show_surfaces(names) ? sizeof(float4) * aov_layout(names).vectors() : 0;
   return sizeof(float4) + sizeof(float) + 1 + aovs + (counts_rays(names) ? sizeof(u32) : 0);
@@ -214,13 +230,19 @@ Image Film::develop(int channels) const {
   return image;
 }
 
+/// A number of each pixel that is done.
+template <class T>
+static Image pixel_numbers(const Film& film, const std::vector<T>& numbers) {
+  Image image(film.width, film.height, 1);
+  for (std::size_t i = 0; i < film.done.size(); ++i)
+    if (film.done[i]) image.data[i] = static_cast<float>(numbers[i]);
+  return image;
+}
+
 Image Film::develop_aov(const std::string& name) const {
-  if (name == "rays" && !rays.empty()) {
-    Image image(width, height, 1);
-    for (std::size_t i = 0; i < done.size(); ++i)
-      if (done[i]) image.data[i] = static_cast<float>(rays[i]);
-    return image;
-  }
+  if (name == "rays" && !rays.empty()) return pixel_numbers(*this, rays);
+  if (name == "samples") return taken.empty() ? pixel_numbers(*this, weights) : pixel_numbers(*this, taken);
+  if (name == "variance" && !earlier.empty()) return develop_variance(*this);
   const AovPlace* place = find_place(name);
   if (!place || aovs.empty() || !holds(layout, *place)) throw UsageError("no AOV is called '" + name + "'");
   Image image(width, height, static_cast<int>(place->count));

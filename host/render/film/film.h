@@ -2,8 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,8 +13,6 @@
 #include "shared/types.h"
 
 namespace sundog {
-
-class Faults;
 
 /// float4 a pixel that hold AOVs of first surfaces: what passes ask for, these with a denoiser's features,
 /// and all that there are (kernels/entry/aov.cl).
@@ -64,48 +60,79 @@ std::vector<T> cut_pixels(const std::vector<T>& values, int width, const Tile& a
   return cut;
 }
 
-/// width * height pixels, row 0 at the top. `aovs` holds the layout's float4 a pixel when the frame has AOVs,
-/// else nothing.
-struct Film {
+/// Whether each is 0 or 1.
+inline bool all_flags(const std::vector<std::uint8_t>& flags) {
+  return std::ranges::all_of(flags, [](std::uint8_t flag) { return flag <= 1; });
+}
+
+/// What has become of a pixel. The film's weights say how many samples count.
+enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
+
+/// What a pixel shows, for its neighbours' expected errors: red, green and blue, to which what is missing of
+/// alpha is added (red) and from which it is taken (green), and the sum of their squares. They are added up
+/// at once.
+using Seen [[gnu::vector_size(16)]] = float;
+
+/// What a film holds of each pixel besides its samples' sum and weight.
+struct FilmNeeds {
+  AovLayout layout = {};
+  bool shows_surfaces = false;  // the layout's vectors
+  bool counts_rays = false;
+  bool grows = false;          // later passes add samples to earlier ones
+  bool keeps_earlier = false;  // of a film that grows: for pixel_errors() and the AOV variance
+};
+
+/// width * height pixels, row 0 at the top: those of a frame, or of one pass. An array that is not needed is
+/// empty; so are all before the first pass.
+struct Film : FilmNeeds {
   int width = 0, height = 0;
-  AovLayout layout;
-  std::vector<float4> sums;    // rgb and coverage
-  std::vector<float> weights;  // samples that count
-  std::vector<float4> aovs;
-  std::vector<u32> rays;           // of each pixel; empty where they are not counted
-  std::vector<std::uint8_t> done;  // 1: the pixel has all its samples
+  std::vector<float4> sums;        // rgb and coverage
+  std::vector<float> weights;      // samples that count
+  std::vector<float4> aovs;        // the layout's vectors a pixel
+  std::vector<u32> rays;           // of each pixel
+  std::vector<std::uint8_t> done;  // 1: the pixel has a sample or more; in a pass, all of the pass
+  // Of a film that grows:
+  std::vector<u32> taken;          // samples of each pixel; 0 where it is interpolated
+  std::vector<PixelState> states;  // of each pixel
+  std::vector<float4> earlier;     // the sums before a pixel's last pass; w = weight
+  std::vector<float> moved;        // squares of how far doublings moved it, the last for half
+  std::vector<u32> block_rays;     // of each block of 4x4 pixels in a pass with `costs`; empty: not counted
+  // Follow from sums, weights, taken and moved:
+  std::vector<Seen> seen;
+  std::vector<float> moved_by_one;  // `moved`, scaled to one sample; 0 with one
+  u32 stage = 0;                    // passes that are complete
+  u32 step = 0;                     // of the planner
+  std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
 
   Film() = default;
+  /// Without pixels, which its first pass brings.
+  Film(int width_, int height_, const FilmNeeds& needs) : FilmNeeds(needs), width(width_), height(height_) {}
+  /// With pixels that are not done.
   Film(int width, int height, bool with_aovs, AovLayout layout = {});
   /// One that holds what these AOVs want.
   static Film with_aovs(int width, int height, const std::vector<std::string>& names);
+  /// Adds pixels that are not done, where it has none.
+  void allocate();
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   bool is_done(const Tile& tile) const;
   /// Puts a finished tile's pixels, row by row, in their places. Spans as long as the tile (aovs: the
   /// layout's vectors times; they and the rays may be empty). Returns how many of them were not done before.
   std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
                     std::span<const float4> tile_aovs, std::span<const u32> tile_rays = {});
-  /// A part of the film, which `area` lies in.
+  /// A part of the film, which `area` lies in. It does not grow.
   Film cut(const Tile& area) const;
   /// The mean of the samples; alpha, if there are 4 channels, is coverage; pixels that are not done are 0.
   Image develop(int channels = 4) const;
-  /// The named AOV (one of aov_names(), but those that develop_aovs() makes of more than the film); pixels
-  /// that are not done are 0. Parts of light sum to develop()'s colours, to the bit (fit_sum()).
+  /// The named AOV (one of aov_names()); pixels that are not done are 0. Parts of light sum to develop()'s
+  /// colours, to the bit (fit_sum()).
   Image develop_aov(const std::string& name) const;
 };
 
-/// Writes the film for a later --resume; `key` identifies scene and settings. Throws IoError.
-void write_checkpoint(const std::filesystem::path& path, const Film& film, std::uint64_t key,
-                      const std::shared_ptr<Faults>& faults = nullptr);
-
-/// The key of the checkpoint in that file; none where there is no file, or another one.
-std::optional<std::uint64_t> checkpoint_key(const std::filesystem::path& path);
-
-/// Reads a checkpoint into `film`, which has the frame's size. Throws UsageError when it belongs to another
-/// scene or setting, IoError when it is damaged.
-void read_checkpoint(const std::filesystem::path& path, Film& film, std::uint64_t key);
-
 /// The AOVs `render` can make.
 const std::vector<std::string>& aov_names();
+
+/// What a film holds for them.
+FilmNeeds film_needs(const std::vector<std::string>& names);
 
 /// Whether they need `aovs` of a film. The others come of the samples' sums alone.
 bool show_surfaces(const std::vector<std::string>& names);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 
 namespace sundog {
 namespace {

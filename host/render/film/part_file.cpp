@@ -14,7 +14,6 @@
 #include "base/json_memory.h"
 #include "base/limits.h"
 #include "base/memory.h"
-#include "render/film/checkpoint_file.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
+#include "render/film/checkpoint.h"
 
 namespace sundog {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::uint64_t least_pixels = 1024;
 
 void set_phase(Frame& frame, std::size_t i, Phase phase) {
   const std::lock_guard lock(frame.mutex);
-  frame.servers[i].phase = phase;
+  frame.workers[i].phase = phase;
   frame.changed.notify_all();
 }
 
@@ -34,8 +35,7 @@ void set_phase(Frame& frame, std::size_t i, Phase phase) {
 void report_progress(Frame& frame) {
   if (!frame.options.on_progress) return;
   frame.since_progress = Stopwatch();
-  frame.options.on_progress(
-      {frame.pixels_done, static_cast<std::uint64_t>(frame.film.done.size()), frame.clock.seconds()});
+  frame.options.on_progress({frame.pixels_done, frame.pass_pixels, frame.clock.seconds()});
 }
 
 /// The pixels of a tile, one each.
@@ -48,67 +48,52 @@ void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   }
 }
 
-/// What a server is asked for.
-TileRequest request_of(Frame& frame, const Tile& tile) {
+/// What a worker is asked for; nothing when the frame is over.
+std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   TileRequest request;
   request.tile = tile;
   const std::lock_guard lock(frame.mutex);
-  if (!frame.passes) return request;
-  const Pass& pass = frame.passes->pass;
-  const GrowingFilm& film = frame.passes->film;
-  request.in_pass = true;
+  if (frame.over) return std::nullopt;
+  const Pass& pass = frame.pass;
+  const Film& film = frame.film;
   request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
   request.surfaces = pass.surfaces, request.costs = pass.costs;
   const std::size_t pixels = pixel_count(tile);
   if (!pass.pixels.empty()) {
     request.pixels.resize(pixels);
-    for_each_pixel(frame.film, tile,
+    for_each_pixel(frame.made, tile,
                    [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
   }
   if (pass.first_sample == 0) return request;
   request.sums.resize(pixels);
   request.weights.resize(pixels);
-  request.rays.resize(film.film.rays.empty() ? 0 : pixels);
-  const std::size_t vectors = pass.surfaces ? film.film.layout.vectors() : 0;
+  request.rays.resize(film.rays.empty() ? 0 : pixels);
+  const std::size_t vectors = pass.surfaces ? film.layout.vectors() : 0;
   request.aovs.resize(vectors * pixels);
-  for_each_pixel(frame.film, tile, [&](std::size_t at, std::size_t i) {
+  for_each_pixel(frame.made, tile, [&](std::size_t at, std::size_t i) {
     prefetch_sums(film, pass, i + pixels_ahead);
     const std::int64_t found = image_index(film, pass, i);
     if (found < 0) return;
     const auto p = static_cast<std::size_t>(found);
-    request.sums[at] = film.film.sums[p];
-    request.weights[at] = film.film.weights[p];
-    if (!request.rays.empty()) request.rays[at] = film.film.rays[p];
-    std::copy_n(film.film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
+    request.sums[at] = film.sums[p];
+    request.weights[at] = film.weights[p];
+    if (!request.rays.empty()) request.rays[at] = film.rays[p];
+    std::copy_n(film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
                 request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * at));
   });
   return request;
 }
 
-void write_state(const std::filesystem::path& path, const Film& film,
-                 const std::optional<FramePasses>& passes, std::uint64_t key,
-                 const std::shared_ptr<Faults>& faults) {
-  if (passes)
-    write_growing_checkpoint(path, passes->film, passes->pass, film, key, faults);
-  else
-    write_checkpoint(path, film, key, faults);
-}
-
-/// Whether there is a pixel of the frame. The caller holds its mutex.
-bool has_pixels(const Frame& frame) {
-  return frame.pixels_done > 0 || (frame.passes && frame.passes->film.stage > 0);
-}
-
 /// Shows the picture so far, every so often.
 void show_picture(Frame& frame) {
   if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
-  GrowingFilm film;
+  Film film;
   {
     const std::lock_guard lock(frame.mutex);
     if (!has_pixels(frame)) return;
     film = film_so_far(frame);
   }
-  frame.options.on_picture(frame.options.region ? film.film.cut(frame.inner) : film.film);
+  frame.options.on_picture(frame.options.region ? film.cut(frame.inner) : film);
   frame.since_picture = Stopwatch();
 }
 
@@ -118,13 +103,13 @@ void show_progress(Frame& frame) {
   if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
-/// Whether the frame may end at its time limit. In passes it first makes a whole one to show, and gets
-/// further than a checkpoint that it began with: else it would not if its kernels are compiled for longer.
-/// The caller holds its mutex.
+/// Whether the frame may end at its time limit. In several passes it first makes a whole one to show, and
+/// gets further than a checkpoint that it began with: else it would not if its kernels are compiled for
+/// longer. The caller holds its mutex.
 bool may_end(const Frame& frame) {
-  if (!frame.passes) return true;
-  return frame.passes->film.stage > 0 && std::ranges::any_of(frame.servers, [](const Frame::Server& server) {
-           return server.report.pixels > 0;
+  if (!in_passes(frame.plan.settings)) return true;
+  return frame.film.stage > 0 && std::ranges::any_of(frame.workers, [](const Frame::Worker& worker) {
+           return worker.report.pixels > 0;
          });
 }
 
@@ -144,26 +129,27 @@ void keep_checkpoint(Frame& frame) {
   if (checkpoint_path(options).empty()) return;
   if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
   frame.since_checkpoint = Stopwatch();
-  Film film;
-  std::optional<FramePasses> passes;
+  Film film, made;
+  Pass pass;
   {
     const std::lock_guard lock(frame.mutex);
     if (frame.pixels_done == frame.pixels_kept) return;
     frame.pixels_kept = frame.pixels_done;
     film = frame.film;
-    passes = frame.passes;
+    pass = frame.pass;
+    made = frame.made;
   }
   try {
-    write_state(checkpoint_path(options), film, passes, frame.key, options.faults);
+    write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
   } catch (const IoError&) {
     // What keeps it from being written is reported at the end, if the frame does not come to its end.
   }
 }
 
 void take_figures(Frame& frame, std::size_t i) {
-  const ServerFigures figures = frame.servers[i].server->figures();
+  const WorkerFigures figures = frame.workers[i].device->figures();
   const std::lock_guard lock(frame.mutex);
-  DeviceReport& report = frame.servers[i].report;
+  DeviceReport& report = frame.workers[i].report;
   report.kernels = figures.kernels;
   report.notes = figures.notes;
   report.tables_uploaded = figures.tables_uploaded;
@@ -172,67 +158,69 @@ void take_figures(Frame& frame, std::size_t i) {
   frame.readback = std::max(frame.readback, figures.readback_seconds);
 }
 
-/// Puts a tile, or the finished rows of one, into the film.
+/// Puts a tile, or the finished rows of one, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
-  const std::lock_guard lock(frame.mutex);
   if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
+  frame.pixels_done += frame.made.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
-  frame.servers[i].report.pixels += pixel_count(made.tile);
-  if (!frame.stop) plan_next_pass(frame);
+  frame.workers[i].report.pixels += pixel_count(made.tile);
+  if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
   report_progress(frame);
   look_for_stop(frame);
   look_at_clock(frame);
 }
 
-/// Takes a failure down. Returns false when the server has failed too often.
+/// Takes a failure down. Returns false when the worker has failed too often.
 bool note_failure(Frame& frame, std::size_t i, const char* what) {
   const std::lock_guard lock(frame.mutex);
-  DeviceReport& report = frame.servers[i].report;
+  DeviceReport& report = frame.workers[i].report;
   report.messages.push_back(what);
-  return ++report.failures < frame.servers[i].server->failures_allowed();
+  return ++report.failures < frame.workers[i].device->failures_allowed();
 }
 
-/// Opens the server; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
+/// Opens the worker; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
 /// would mend is thrown at once: kernels that do not build, a process that is gone.
 RenderTimes open(Frame& frame, std::size_t i) {
   while (true) {
     try {
-      return frame.servers[i].server->open();
+      return frame.workers[i].device->open();
     } catch (const DeviceError& error) {
       if (error.status == 0 || frame.stop || !note_failure(frame, i, error.what())) throw;
     }
   }
 }
 
-/// Has the server render a tile of the frame, which lies somewhere in the picture.
-TileResult render_in_picture(const Frame& frame, TileServer& server, TileRequest request,
+/// Has the worker render a tile of the frame, which lies somewhere in the picture.
+TileResult render_in_picture(const Frame& frame, DeviceWorker& worker, TileRequest request,
                              const StopFlags& flags) {
-  if (!frame.options.region) return server.render(request, flags);
+  if (!frame.options.region) return worker.render(request, flags);
   const Tile asked = request.tile;
   if (request.pixels.empty()) request.tile.x += frame.area.x, request.tile.y += frame.area.y;
   const u32 corner = static_cast<u32>(frame.area.x) | static_cast<u32>(frame.area.y) << 16;
   for (u32& pixel : request.pixels)
     if (pixel != NO_PIXEL) pixel += corner;
-  TileResult made = server.render(request, flags);
+  TileResult made = worker.render(request, flags);
   made.tile.x = asked.x, made.tile.y = asked.y;
   return made;
 }
 
-/// Makes one tile; throws what the server throws.
+/// Makes one tile; throws what the worker throws.
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
   const Stopwatch busy;
-  const TileResult made =
-      render_in_picture(frame, *frame.servers[i].server, request_of(frame, job.tile), flags);
+  std::optional<TileRequest> request = request_of(frame, job.tile);
+  if (!request) return;
+  const TileResult made = render_in_picture(frame, *frame.workers[i].device, std::move(*request), flags);
+  const double seconds = busy.seconds();
   const bool whole = made.tile == job.tile;
-  const bool first = whole ? frame.queue.finished(i, job, busy.seconds()) : frame.queue.given_up(i, job);
-  if (first) keep_tile(frame, i, made);
+  // The queue has all tiles when the film has them.
   const std::lock_guard lock(frame.mutex);
-  (first ? frame.servers[i].report.tiles : frame.servers[i].report.outrun) += whole || !first;
+  const bool first = whole ? frame.queue.finished(i, job, seconds) : frame.queue.given_up(i, job);
+  if (first) keep_tile(frame, i, made);
+  (first ? frame.workers[i].report.tiles : frame.workers[i].report.outrun) += whole || !first;
 }
 
-/// Takes tiles until there are none, the frame is stopped, or the server has failed too often (which throws).
+/// Takes tiles until there are none, the frame is stopped, or the worker has failed too often (which throws).
 void work(Frame& frame, std::size_t i) {
   while (const std::optional<TileJob> job = frame.queue.take(i)) {
     if (frame.between_tiles) frame.between_tiles(i);
@@ -252,26 +240,26 @@ void work(Frame& frame, std::size_t i) {
 
 /// A device that is expected to be of little use beside a fast one on the same cores takes only idle ones.
 void be_nice(const Frame& frame, std::size_t i) {
-  const auto estimate = [&](std::size_t k) { return frame.servers[k].server->info().estimate; };
-  const int processor = frame.servers[i].server->processor();
-  for (std::size_t k = 0; k < frame.servers.size(); ++k)
-    if (processor >= 0 && frame.servers[k].server->processor() == processor &&
+  const auto estimate = [&](std::size_t k) { return frame.workers[k].device->info().estimate; };
+  const int processor = frame.workers[i].device->processor();
+  for (std::size_t k = 0; k < frame.workers.size(); ++k)
+    if (processor >= 0 && frame.workers[k].device->processor() == processor &&
         estimate(k) > burden_factor * estimate(i))
-      return frame.servers[i].server->be_nice();
+      return frame.workers[i].device->be_nice();
 }
 
 void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   const std::lock_guard lock(frame.mutex);
-  frame.servers[i].report.kernels_cached = times.cached;
-  frame.servers[i].report.ready = true;
+  frame.workers[i].report.kernels_cached = times.cached;
+  frame.workers[i].report.ready = true;
   if (!frame.timed) {
     frame.times = times;
     frame.timed = i;
   }
-  frame.servers[i].phase = Phase::working;
+  frame.workers[i].phase = Phase::working;
 }
 
-/// Waits until the frame is over, and retires servers that hang.
+/// Waits until the frame is over, and retires workers that hang.
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_again)) {
     show_progress(frame);
@@ -282,12 +270,12 @@ void watch(Frame& frame) {
     }
     keep_checkpoint(frame);
     show_picture(frame);
-    for (std::size_t i = 0; i < frame.servers.size(); ++i) {
-      const double seconds = frame.servers[i].server->overdue();
+    for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+      const double seconds = frame.workers[i].device->overdue();
       if (seconds <= 0) continue;
       const std::string why = fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
-                                          frame.servers[i].server->info().label(), seconds);
-      retire_server(frame, i, why, std::make_exception_ptr(DeviceError(why)));
+                                          frame.workers[i].device->info().label(), seconds);
+      retire_worker(frame, i, why, std::make_exception_ptr(DeviceError(why)));
     }
   }
 }
@@ -298,9 +286,9 @@ void wait_for_threads(Frame& frame, bool stopped) {
   std::unique_lock lock(frame.mutex);
   const auto wait = [&](double seconds, Phase phase) {
     frame.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
-      return std::ranges::none_of(frame.servers, [&](const Frame::Server& server) {
-        return !server.failed && server.phase == phase &&
-               !(phase == Phase::working && server.server->compiles());
+      return std::ranges::none_of(frame.workers, [&](const Frame::Worker& worker) {
+        return !worker.failed && worker.phase == phase &&
+               !(phase == Phase::working && worker.device->compiles());
       });
     });
   };
@@ -310,19 +298,19 @@ void wait_for_threads(Frame& frame, bool stopped) {
 
 }  // namespace
 
-void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
+void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
   frame.queue.retire(i);
   const std::lock_guard lock(frame.mutex);
-  Frame::Server& server = frame.servers[i];
-  if (server.failed) return;
-  server.failed = server.report.retired = true;
-  if (server.report.messages.empty() || server.report.messages.back() != why)
-    server.report.messages.push_back(why);
+  Frame::Worker& worker = frame.workers[i];
+  if (worker.failed) return;
+  worker.failed = worker.report.retired = true;
+  if (worker.report.messages.empty() || worker.report.messages.back() != why)
+    worker.report.messages.push_back(why);
   frame.last_error = std::move(error);
-  if (std::ranges::all_of(frame.servers, &Frame::Server::failed)) frame.queue.close();
+  if (std::ranges::all_of(frame.workers, &Frame::Worker::failed)) frame.queue.close();
 }
 
-void serve_frame(Frame& frame, std::size_t i) {
+void work_on_frame(Frame& frame, std::size_t i) {
   try {
     be_nice(frame, i);
     if (frame.queue.wait_until_needed(i)) {
@@ -332,7 +320,7 @@ void serve_frame(Frame& frame, std::size_t i) {
       work(frame, i);
     }
   } catch (const std::exception& error) {
-    retire_server(frame, i, error.what(), std::current_exception());
+    retire_worker(frame, i, error.what(), std::current_exception());
   }
   take_figures(frame, i);
 }
@@ -343,15 +331,11 @@ void look_for_stop(Frame& frame) {
   frame.queue.close();
 }
 
-void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path) {
-  write_state(path, frame.film, frame.passes, frame.key, frame.options.faults);
-}
-
 void leave_frame(Frame& frame, std::size_t i, bool closes) {
   set_phase(frame, i, Phase::closing);
   try {
-    TileServer& server = *frame.servers[i].server;
-    closes ? server.close() : server.keep_programs();
+    DeviceWorker& worker = *frame.workers[i].device;
+    closes ? worker.close() : worker.keep_programs();
   } catch (const std::exception&) {
     // The device is gone either way; the frame keeps its finished tiles.
   }
@@ -363,9 +347,9 @@ void watch_frame(Frame& frame, bool wait) {
   const bool stopped = frame.stop.exchange(true);
   if (!wait) wait_for_threads(frame, stopped);
   std::unique_lock lock(frame.mutex);
-  const auto is_gone = [](const Frame::Server& server) { return server.phase == Phase::gone; };
-  if (wait) frame.changed.wait(lock, [&] { return std::ranges::all_of(frame.servers, is_gone); });
-  for (Frame::Server& server : frame.servers) server.report.abandoned = !is_gone(server);
+  const auto is_gone = [](const Frame::Worker& worker) { return worker.phase == Phase::gone; };
+  if (wait) frame.changed.wait(lock, [&] { return std::ranges::all_of(frame.workers, is_gone); });
+  for (Frame::Worker& worker : frame.workers) worker.report.abandoned = !is_gone(worker);
   frame.over = true;
 }
 

@@ -1,4 +1,4 @@
-// A frame at work: a session's threads, one a server, take tiles from the queue, while another watches for
+// A frame at work: a session's threads, one a worker, take tiles from the queue, while another watches for
 // the end, for an interrupt and for drivers that hang. Internal to the render layer.
 #pragma once
 #include <condition_variable>
@@ -11,60 +11,66 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/plan/coarse.h"
 #include "render/plan/passes.h"
 #include "render/plan/tile_queue.h"
 
 namespace sundog {
 
-/// A frame that is made in passes: the one in hand is Frame::film and the queue's tiles.
-struct FramePasses {
-  GrowingFilm film;  // all passes before
-  Pass pass;
-  SamplingPlan plan;
-  std::function<TilePlan(const Film&)> tiles;  // of a pass
-  // Of a frame that somebody waits for:
-  CoarsePicture coarse;        // what is complete
-  int coarse_block = 0;        // the pass in hand is of such blocks; 0: it is one of the frame's own
-  unsigned coarse_passes = 0;  // that are complete
-  Stopwatch since_pass;        // the one in hand began
-  // A sample's of a pixel, by the last pass over coarse or all pixels or the frame before; 0: not known.
-  double pixel_seconds = 0;
+/// Coarse passes before a frame's own, where somebody waits for it.
+struct CoarsePasses {
+  CoarsePicture picture;     // what is complete
+  int block = 0;             // the pass in hand is of such blocks; 0: it is one of the frame's own
+  unsigned count = 0;        // that are complete
+  double pixel_seconds = 0;  // a sample's of a pixel, by the last pass over coarse or all pixels or the frame
+                             // before; 0: not known
 };
 
 /// What the threads share. It lives until the last of them is gone, which may be after the frame's end.
 struct Frame : std::enable_shared_from_this<Frame> {
-  Frame(RenderOptions options_, Film film_, TilePlan plan, std::vector<DeviceSpeed> speeds)
-      : options(std::move(options_)), film(std::move(film_)), queue(std::move(plan), std::move(speeds)) {}
+  /// `film` is empty: begin_pass() or continue_pass() come next.
+  Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds)
+      : options(std::move(options_)),
+        plan(std::move(plan_)),
+        film(std::move(film_)),
+        queue({.lists = std::vector<WaitingTiles>(1)}, std::move(speeds)) {
+    queue.expect_more();
+  }
 
   enum class Phase { opening, working, closing, gone };
-  struct Server {
-    std::shared_ptr<TileServer> server;
+  struct Worker {
+    std::shared_ptr<DeviceWorker> device;
     DeviceReport report;
     Phase phase = Phase::opening;
     bool failed = false;  // for good
   };
 
   const RenderOptions options;
+  const SamplingPlan plan;
+  std::function<TilePlan(const Film&)> tiles;  // of a pass
   Tile area, inner;  // of the picture, that the film holds; of the film, that are the region
-  std::vector<Server> servers;
-  std::mutex mutex;  // for everything below, and the servers' reports and phases
+  std::vector<Worker> workers;
+  std::mutex mutex;  // for everything below, and the workers' reports and phases
   std::condition_variable changed;
-  Film film;
-  std::optional<FramePasses> passes;
+  Film film;  // of the passes that are complete
+  Pass pass;  // the one in hand; none where the film is complete
+  Film made;  // what there is of it
+  CoarsePasses coarse;
   TileQueue queue;
   RayCounts counts{};
-  RenderTimes times;                 // of the first server to be ready
-  std::optional<std::size_t> timed;  // that server
+  RenderTimes times;                 // of the first worker to be ready
+  std::optional<std::size_t> timed;  // that worker
   double readback = 0;
   std::exception_ptr last_error;
-  std::uint64_t pixels_done = 0, pixels_kept = 0;  // the latter are in the checkpoint
-  std::uint64_t key = 0;                           // the checkpoint's
-  Stopwatch clock, since_checkpoint, since_picture;
+  // Of the pass: its pixels, those that are done, those in the checkpoint.
+  std::uint64_t pass_pixels = 0, pixels_done = 0, pixels_kept = 0;
+  std::uint64_t key = 0;        // the checkpoint's
+  std::string checkpoint_left;  // RenderResult::checkpoint_left
+  Stopwatch clock, since_checkpoint, since_picture, since_pass;
   Stopwatch since_progress;                        // was reported; guarded by the mutex
-  std::function<void(std::size_t)> between_tiles;  // called by each server's thread, with its index
-  bool live = false;                               // the servers' figures are kept up to date
+  std::function<void(std::size_t)> between_tiles;  // called by each worker's thread, with its index
+  bool live = false;                               // the workers' figures are kept up to date
   bool over = false;                               // the result is being gathered: nothing more goes in
   bool limited = false;                            // the time limit ended it
   std::atomic<bool> stop{false};
@@ -75,34 +81,43 @@ inline const std::filesystem::path& checkpoint_path(const RenderOptions& options
   return options.checkpoint.empty() ? options.resume : options.checkpoint;
 }
 
-/// Plans the next pass when all pixels of the one in hand are done; without another the frame is complete.
-/// The caller holds the frame's mutex, or is alone with it.
+/// Plans the next pass when all tiles of the one in hand are done; without another the frame is complete.
+/// The caller holds the frame's mutex, or is alone with it, here and below.
 void plan_next_pass(Frame& frame);
+
+/// Begins a pass; without one the frame is complete.
+void begin_pass(Frame& frame, std::optional<Pass> next);
+
+/// Begins the rest of a pass of which Frame::made has a part.
+void continue_pass(Frame& frame);
 
 /// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
 void begin_coarse(Frame& frame, int block);
 
-/// Takes part with server i until the frame is over: opens it, makes tiles, notes what it did. A server that
+/// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
 /// fails too often is retired. What it throws is kept in the frame.
-void serve_frame(Frame& frame, std::size_t i);
+void work_on_frame(Frame& frame, std::size_t i);
 
-/// Takes a server out of the frame: what it holds goes to others; without any other, the frame ends.
-void retire_server(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
+/// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
+void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
-/// What there is of the picture: of a frame in passes with what is done of the one in hand.
-GrowingFilm film_so_far(const Frame& frame);
+/// What there is of the picture, with what is done of the pass in hand.
+Film film_so_far(const Frame& frame);
 
-/// Writes the frame's state.
-void write_frame_checkpoint(const Frame& frame, const std::filesystem::path& path);
+/// Takes that from a frame that is over.
+Film take_film(Frame& frame);
+
+/// Whether there is a pixel of the frame.
+inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || frame.film.stage > 0; }
 
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);
 
-/// Called by a server's thread after serve_frame(), for a frame that watch_frame() watches. Closes the server
-/// if `closes`; otherwise writes its compiled kernels to the cache.
+/// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
+/// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
-/// Waits for the frame's end: finished, stopped (options.stop), or out of servers. With `wait`, every server
+/// Waits for the frame's end: finished, stopped (options.stop), or out of workers. With `wait`, every worker
 /// has left it on return; else those in a driver are abandoned, but for moments of grace.
 void watch_frame(Frame& frame, bool wait);
 

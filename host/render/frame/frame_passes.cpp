@@ -8,72 +8,68 @@
 namespace sundog {
 namespace {
 
-std::size_t pixels_of(const Frame& frame) { return frame.passes->film.taken.size(); }
-
 /// A coarse pass is complete: its picture may be looked at. Returns the block of the next one; 0: none.
 int take_coarse(Frame& frame) {
-  FramePasses& passes = *frame.passes;
-  const Film& whole = passes.film.film;
-  passes.coarse.take(passes.pass, frame.film, whole.width, whole.height, passes.coarse_block);
-  ++passes.coarse_passes;
-  const double blocks = static_cast<double>(passes.coarse.colors.size());
-  passes.pixel_seconds = expected_pixel_seconds(passes.since_pass.seconds() / blocks, passes.pixel_seconds);
-  return next_block(passes.coarse_block, passes.pixel_seconds, pixels_of(frame));
+  CoarsePasses& coarse = frame.coarse;
+  coarse.picture.take(frame.pass, frame.made, frame.film.width, frame.film.height, coarse.block);
+  ++coarse.count;
+  const double blocks = static_cast<double>(coarse.picture.colors.size());
+  coarse.pixel_seconds = expected_pixel_seconds(frame.since_pass.seconds() / blocks, coarse.pixel_seconds);
+  return next_block(coarse.block, coarse.pixel_seconds, frame.film.pixels());
 }
 
 /// The pass that comes after the one that is complete.
 std::optional<Pass> following_pass(Frame& frame) {
-  FramePasses& passes = *frame.passes;
-  if (passes.coarse_block == 0) {
-    if (passes.film.stage == 0)
-      passes.pixel_seconds = passes.since_pass.seconds() / static_cast<double>(pixels_of(frame));
-    add_pass(passes.film, passes.pass, std::move(frame.film), true);
+  CoarsePasses& coarse = frame.coarse;
+  if (coarse.block == 0) {
+    if (frame.film.stage == 0)
+      coarse.pixel_seconds = frame.since_pass.seconds() / static_cast<double>(frame.film.pixels());
+    add_pass(frame.film, frame.pass, std::move(frame.made), true);
   } else {
-    passes.coarse_block = take_coarse(frame);
-    const Film& whole = passes.film.film;
-    if (passes.coarse_block > 0) return coarse_pass(whole.width, whole.height, passes.coarse_block);
+    coarse.block = take_coarse(frame);
+    if (coarse.block > 0) return coarse_pass(frame.film.width, frame.film.height, coarse.block);
   }
-  return next_pass(passes.film, passes.plan, passes.pass);
+  return next_pass(frame.film, frame.plan, frame.pass);
+}
+
+/// Puts what is done of the pass in hand into the film of the passes before.
+Film joined(const Frame& frame, Film film, Film made) {
+  if (!made.done.empty() && frame.coarse.block == 0) add_pass(film, frame.pass, std::move(made), false);
+  if (film.sums.empty()) film.allocate();
+  if (frame.plan.settings.subsample && !frame.pass.is_none()) interpolate_rest(film);
+  return film;
 }
 
 }  // namespace
 
+void continue_pass(Frame& frame) {
+  frame.since_pass = Stopwatch();
+  frame.pass_pixels = frame.made.done.size();
+  frame.pixels_done = static_cast<std::uint64_t>(std::ranges::count(frame.made.done, std::uint8_t{1}));
+  frame.queue.refill(frame.tiles(frame.made));
+}
+
+void begin_pass(Frame& frame, std::optional<Pass> next) {
+  frame.pass = next ? std::move(*next) : Pass();
+  frame.made = Film();
+  if (!next) return frame.queue.no_more();
+  frame.made = film_of_pass(frame.film, frame.pass);
+  frame.pixels_kept = ~std::uint64_t{0};
+  continue_pass(frame);
+}
+
 void begin_coarse(Frame& frame, int block) {
-  FramePasses& passes = *frame.passes;
-  const Film& whole = passes.film.film;
-  passes.coarse_block = block;
-  passes.pass =
-      block > 0 ? coarse_pass(whole.width, whole.height, block) : *next_pass(passes.film, passes.plan);
-  frame.film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
+  frame.coarse.block = block;
+  begin_pass(frame, block > 0 ? coarse_pass(frame.film.width, frame.film.height, block)
+                              : next_pass(frame.film, frame.plan));
 }
 
 void plan_next_pass(Frame& frame) {
-  const auto all_done = [&] { return std::ranges::count(frame.film.done, 0) == 0; };
-  while (frame.passes && frame.queue.waits_for_more() && all_done()) {
-    std::optional<Pass> next = following_pass(frame);
-    frame.film = Film();
-    frame.pixels_done = 0;
-    frame.pixels_kept = ~std::uint64_t{0};
-    if (!next) return frame.queue.no_more();
-    FramePasses& passes = *frame.passes;
-    passes.pass = std::move(*next);
-    passes.since_pass = Stopwatch();
-    frame.film = film_of_pass(passes.film, passes.pass, passes.pass.surfaces);
-    frame.queue.refill(passes.tiles(frame.film));
-  }
+  while (frame.queue.waits_for_more()) begin_pass(frame, following_pass(frame));
 }
 
-GrowingFilm film_so_far(const Frame& frame) {
-  GrowingFilm film;
-  if (!frame.passes) {
-    film.film = frame.film;
-    return film;
-  }
-  film = frame.passes->film;
-  if (!frame.film.done.empty() && frame.passes->coarse_block == 0)
-    add_pass(film, frame.passes->pass, frame.film, false);
-  if (frame.passes->plan.settings.subsample) interpolate_rest(film);
-  return film;
-}
+Film film_so_far(const Frame& frame) { return joined(frame, frame.film, frame.made); }
+
+Film take_film(Frame& frame) { return joined(frame, std::move(frame.film), std::move(frame.made)); }
 
 }  // namespace sundog

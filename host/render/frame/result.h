@@ -22,25 +22,22 @@ struct RenderResult {
   std::vector<DeviceReport> devices;
   double efficiency = 1;  // work done over what the devices could have done (plan.h)
   RenderTimes times;
-  Film film;                        // what the image was developed from
-  std::vector<u32> taken;           // of a frame in passes: samples of each pixel, 0 where it is interpolated
-  std::uint64_t surfaces_seen = 0;  // of such a frame: rays that only looked which surface a pixel shows
-  unsigned passes = 0;              // of such a frame: that are complete
-  bool time_limited = false;        // it ended at the time limit
-  std::uint64_t key = 0;            // of the scene, for write_checkpoint; 0 without a checkpoint
-  std::exception_ptr failure;       // every device failed: what the last one threw (options.keep_failed)
-  bool checkpoint_kept = false;     // an interrupted frame is in the checkpoint
-  std::string checkpoint_left;      // why the frame did not continue from one (options.renews_checkpoint)
-  std::string checkpoint_error;     // why it could not be written there
+  Film film;                     // what the image was developed from
+  bool time_limited = false;     // it ended at the time limit
+  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without a checkpoint
+  std::exception_ptr failure;    // every device failed: what the last one threw (options.keep_failed)
+  bool checkpoint_kept = false;  // an interrupted frame is in the checkpoint
+  std::string checkpoint_left;   // why the frame did not continue from one (options.renews_checkpoint)
+  std::string checkpoint_error;  // why it could not be written there
 };
 
-class TileServer;
+class DeviceWorker;
 
 /// What makes tiles, and what is known of it before it is opened.
-struct ServerPlan {
+struct WorkerPlan {
   DeviceInfo info;
   int processor = -1;  // devices with the same number run on the same cores (plan.h)
-  std::function<std::shared_ptr<TileServer>(const RenderOptions&)> make;
+  std::function<std::shared_ptr<DeviceWorker>(const RenderOptions&)> make;
   // Measured in the previous frame, if that frame is comparable:
   double pixels_a_second = 0, measured_pixels = 0;
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/image.h"
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 
 namespace sundog {
 

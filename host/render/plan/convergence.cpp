@@ -32,9 +32,9 @@ struct SeenAround {
   float moved;
 };
 
-SeenAround sum_3x3(const GrowingFilm& film, std::size_t x, std::size_t y) {
-  const auto width = static_cast<std::size_t>(film.film.width);
-  const auto height = static_cast<std::size_t>(film.film.height);
+SeenAround sum_3x3(const Film& film, std::size_t x, std::size_t y) {
+  const auto width = static_cast<std::size_t>(film.width);
+  const auto height = static_cast<std::size_t>(film.height);
   const std::size_t left = x - (x > 0), right = std::min(x + 1, width - 1);
   const std::size_t top = y - (y > 0), bottom = std::min(y + 1, height - 1);
   SeenAround around{{{}, static_cast<float>((right - left + 1) * (bottom - top + 1))}, 0};
@@ -51,11 +51,10 @@ SeenAround sum_3x3(const GrowingFilm& film, std::size_t x, std::size_t y) {
   return around;
 }
 
-void prefetch_3x3(const GrowingFilm& film, u32 pixel) {
-  const auto width = static_cast<std::size_t>(film.film.width);
+void prefetch_3x3(const Film& film, u32 pixel) {
+  const auto width = static_cast<std::size_t>(film.width);
   const std::size_t x = pixel & 0xffffu, y = pixel >> 16;
-  for (std::size_t v = y - (y > 0); v <= std::min(y + 1, static_cast<std::size_t>(film.film.height) - 1);
-       ++v) {
+  for (std::size_t v = y - (y > 0); v <= std::min(y + 1, static_cast<std::size_t>(film.height) - 1); ++v) {
     __builtin_prefetch(&film.seen[v * width + x]);
     __builtin_prefetch(&film.moved_by_one[v * width + x]);
   }
@@ -102,8 +101,8 @@ float known(float square) { return std::isnan(square) ? std::numeric_limits<floa
 
 }  // namespace
 
-std::vector<float> expected_squares_of_one(const GrowingFilm& film) {
-  const auto width = static_cast<std::size_t>(film.film.width);
+std::vector<float> expected_squares_of_one(const Film& film) {
+  const auto width = static_cast<std::size_t>(film.width);
   const std::vector<Seen>& seen = film.seen;
   std::vector<float> variances(seen.size()), squares(seen.size());
   for_all_3x3(seen, width, [&](std::size_t p, const Around<Seen>& around) {
@@ -115,8 +114,8 @@ std::vector<float> expected_squares_of_one(const GrowingFilm& film) {
   return squares;
 }
 
-std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u32>& pixels, u32 level) {
-  const auto width = static_cast<std::size_t>(film.film.width);
+std::vector<float> expected_squares(const Film& film, const std::vector<u32>& pixels, u32 level) {
+  const auto width = static_cast<std::size_t>(film.width);
   const std::vector<Seen>& seen = film.seen;
   std::vector<float> expected(pixels.size());
   if (level == 1) {
@@ -140,10 +139,10 @@ std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u
   return expected;
 }
 
-std::vector<float> block_costs(const GrowingFilm& film) {
-  const auto width = static_cast<u32>(film.film.width), height = static_cast<u32>(film.film.height);
+std::vector<float> block_costs(const Film& film) {
+  const auto width = static_cast<u32>(film.width), height = static_cast<u32>(film.height);
   constexpr u32 edge = cost_block;
-  std::vector<float> costs(cost_blocks(film.film.width, film.film.height), 1.0f);
+  std::vector<float> costs(cost_blocks(film.width, film.height), 1.0f);
   const double rays = std::accumulate(film.block_rays.begin(), film.block_rays.end(), 0.0);
   if (rays == 0) return costs;  // not counted
   const u32 columns = (width + edge - 1) / edge;

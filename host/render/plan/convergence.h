@@ -1,8 +1,8 @@
-// Estimates the error of a growing film's pixels relative to infinitely many samples.
+// Estimates the error of a film's pixels relative to infinitely many samples.
 #pragma once
 #include <vector>
 
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 
 namespace sundog {
 
@@ -10,13 +10,13 @@ namespace sundog {
 /// squared pixel_errors(). Three indicators: the change of the pixel by doubling samples, that of its
 /// neighbours (Dammertz and others 2010), and the variance of nearby colours, since the few samples of a
 /// pixel may all miss an edge.
-std::vector<float> expected_squares(const GrowingFilm& film, const std::vector<u32>& pixels, u32 level);
+std::vector<float> expected_squares(const Film& film, const std::vector<u32>& pixels, u32 level);
 
 /// Expected squared errors of all pixels, row by row, at one sample each.
-std::vector<float> expected_squares_of_one(const GrowingFilm& film);
+std::vector<float> expected_squares_of_one(const Film& film);
 
 /// Relative number of rays per sample in each block of pixels, with mean 1, if counted; else 1 each.
 /// Expensive samples must reduce more error.
-std::vector<float> block_costs(const GrowingFilm& film);
+std::vector<float> block_costs(const Film& film);
 
 }  // namespace sundog

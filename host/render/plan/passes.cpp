@@ -14,9 +14,9 @@ namespace sundog {
 namespace {
 
 /// A pass over the whole image.
-Pass whole_pass(const GrowingFilm& film, u32 first_sample, u32 sample_count, bool surfaces) {
+Pass whole_pass(const Film& film, u32 first_sample, u32 sample_count, bool surfaces) {
   Pass pass;
-  pass.width = film.film.width, pass.height = film.film.height;
+  pass.width = film.width, pass.height = film.height;
   pass.first_sample = first_sample, pass.sample_count = sample_count;
   pass.surfaces = surfaces;
   return pass;
@@ -36,10 +36,10 @@ u32 first_level(const SamplingPlan& plan) {
 
 /// Keeps the pixels with the largest errors such that `more` samples each stay within the budget, in mean
 /// samples per pixel.
-void keep_budget(const GrowingFilm& film, double budget, u32 more, const std::vector<float>& squares,
+void keep_budget(const Film& film, double budget, u32 more, const std::vector<float>& squares,
                  std::vector<std::size_t>& kept) {
   const double spent = std::accumulate(film.taken.begin(), film.taken.end(), 0.0);
-  const double left = budget * static_cast<double>(film.taken.size()) - spent;
+  const double left = budget * static_cast<double>(film.pixels()) - spent;
   const auto most = static_cast<std::size_t>(std::max(0.0, left / more));
   if (kept.size() <= most) return;
   const auto worse = [&](std::size_t a, std::size_t b) {
@@ -63,26 +63,25 @@ bool differs_from_neighbors(const Film& film, u32 pixel, float threshold) {
 /// The pixels of the last pass, with `level` samples each, that need `more`. Samples go where each reduces
 /// the picture's squared error most: at n samples the threshold is sqrt(n / 2) times as high. A budget
 /// selects the largest errors.
-std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last, u32 level,
+std::vector<u32> unconverged(const Film& film, const SamplingPlan& plan, const Pass& last, u32 level,
                              u32 more) {
   const auto threshold = static_cast<float>(plan.settings.threshold);
   const bool by_surfaces = level == first_level(plan) && plan.settings.surfaces;
   std::vector<float> limits = block_costs(film);
   for (float& limit : limits) limit *= threshold * threshold * static_cast<float>(level) / 2;
   if (level == 1 && last.pixels.empty() && !by_surfaces && plan.settings.budget == 0)
-    return pixels_above(limits, expected_squares_of_one(film), film.film.width, film.film.height);
+    return pixels_above(limits, expected_squares_of_one(film), film.width, film.height);
   std::vector<u32> pixels = pixels_of(last);
   std::vector<float> squares = expected_squares(film, pixels, level);
   const float contrast = static_cast<float>(plan.settings.contrast) * threshold;
-  const u32 columns = cost_blocks_along(film.film.width);
+  const u32 columns = cost_blocks_along(film.width);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const u32 x = pixels[i] & 0xffffu, y = pixels[i] >> 16;
     const float limit = limits[y / cost_block * columns + x / cost_block];
     const bool is_above = squares[i] > limit;
     squares[i] /= limit;
-    if (is_above || (by_surfaces && differs_from_neighbors(film.film, pixels[i], contrast)))
-      kept.push_back(i);
+    if (is_above || (by_surfaces && differs_from_neighbors(film, pixels[i], contrast))) kept.push_back(i);
   }
   if (plan.settings.budget > 0) keep_budget(film, plan.settings.budget, more, squares, kept);
   for (std::size_t i = 0; i < kept.size(); ++i) pixels[i] = pixels[kept[i]];
@@ -91,7 +90,7 @@ std::vector<u32> unconverged(const GrowingFilm& film, const SamplingPlan& plan, 
 }
 
 /// Doubles the samples of pixels that have not converged; those of the last pass have `level` samples.
-std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
+std::optional<Pass> double_samples(const Film& film, const SamplingPlan& plan, const Pass& last) {
   const u32 level = last.first_sample + last.sample_count;
   if (level >= plan.samples) return std::nullopt;
   u32 next = std::min(2 * level, plan.samples);
@@ -105,7 +104,7 @@ std::optional<Pass> double_samples(const GrowingFilm& film, const SamplingPlan& 
   return pass;
 }
 
-std::optional<Pass> more_samples(const GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
+std::optional<Pass> more_samples(const Film& film, const SamplingPlan& plan, const Pass& last) {
   if (film.stage == 0) {
     Pass pass = whole_pass(film, 0, 1, plan.surfaces || needs_surfaces(plan.settings));
     pass.costs = plan.settings.threshold > 0;
@@ -144,18 +143,22 @@ bool needs_surfaces(const Sampling& settings) {
   return (settings.threshold > 0 && settings.surfaces) || settings.subsample;
 }
 
-double mean_error(const GrowingFilm& film) {
+double mean_error(const Film& film) {
   const std::vector<float> errors = pixel_errors(film);
   return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
 }
 
 bool may_be_of(const SamplingPlan& plan, const Pass& pass) {
+  if (!in_passes(plan.settings))
+    return pass.pixels.empty() && pass.first_sample == 0 && pass.sample_count == plan.samples;
   const bool looks = plan.settings.subsample && pass.surfaces && pass.first_sample == 0;
   return (pass.sample_count > 0 || looks) && pass.sample_count <= plan.samples &&
          pass.first_sample <= plan.samples - pass.sample_count;
 }
 
-std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last) {
+std::optional<Pass> next_pass(Film& film, const SamplingPlan& plan, const Pass& last) {
+  if (!in_passes(plan.settings) && film.stage > 0) return std::nullopt;
+  if (!in_passes(plan.settings)) return whole_pass(film, 0, plan.samples, plan.surfaces);
   if (plan.settings.subsample) return next_subsampling_pass(film, plan);
   return more_samples(film, plan, last);
 }

@@ -1,11 +1,11 @@
-// Decides which pixels get which samples next, from a growing film; independent of who renders them.
+// Decides which pixels get which samples next, from the film so far; independent of who renders them.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "compile/compiled_scene.h"
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 #include "scene/description.h"
 
 namespace sundog {
@@ -23,7 +23,7 @@ struct SamplingPlan {
 /// Marks materials through which the camera sees other surfaces straight on.
 std::vector<std::uint8_t> clear_materials(const CompiledScene& scene);
 
-/// Whether a frame is rendered in passes.
+/// Whether a frame is rendered in several passes; a plain frame has one with all samples.
 bool in_passes(const Sampling& settings);
 
 /// Whether the passes need the surfaces that the camera sees.
@@ -31,12 +31,12 @@ bool needs_surfaces(const Sampling& settings);
 
 /// The pass after those in `film`, of which `last` is the last, if any; none when the frame is finished.
 /// Increments film.step. Covers the whole image or a list of pixels.
-std::optional<Pass> next_pass(GrowingFilm& film, const SamplingPlan& plan, const Pass& last = {});
+std::optional<Pass> next_pass(Film& film, const SamplingPlan& plan, const Pass& last = {});
 
 /// Whether a pass can belong to the plan; validates passes read from files.
 bool may_be_of(const SamplingPlan& plan, const Pass& pass);
 
 /// The mean of the pixels' estimated errors (pixel_errors()); infinite while unknown.
-double mean_error(const GrowingFilm& film);
+double mean_error(const Film& film);
 
 }  // namespace sundog

@@ -16,10 +16,10 @@ constexpr float even_cosine = 0.98f;
 
 /// The image as cells between corners that are two pixels apart, or one at the far edges.
 struct Grid {
-  const GrowingFilm& film;
+  const Film& film;
   float threshold;
   std::span<const std::uint8_t> panes = {};  // SamplingPlan::panes
-  int width = film.film.width, height = film.film.height;
+  int width = film.width, height = film.height;
 
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -36,7 +36,7 @@ struct Grid {
 
   /// Whether the pixel's ray meets a pane, behind which it sees no surfaces.
   bool meets_pane(std::size_t p) const {
-    const float material = film.film.aovs[film.film.layout.vectors() * p + 2].w;
+    const float material = film.aovs[film.layout.vectors() * p + 2].w;
     return material >= 0 && static_cast<std::size_t>(material) < panes.size() &&
            panes[static_cast<std::size_t>(material)];
   }
@@ -46,8 +46,8 @@ struct Grid {
     if (meets_pane(four[0])) return false;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t k = i + 1; k < 4; ++k) {
-        if (!same_surface(film.film, four[i], four[k], even_cosine)) return false;
-        if (contrast(color_at(film.film, four[i]), color_at(film.film, four[k])) > threshold) return false;
+        if (!same_surface(film, four[i], four[k], even_cosine)) return false;
+        if (contrast(color_at(film, four[i]), color_at(film, four[k])) > threshold) return false;
       }
     return true;
   }
@@ -67,7 +67,7 @@ struct Grid {
   Color promised(int x, int y) const {
     Color sum;
     for (const std::size_t corner : corners(x, y)) {
-      const Color color = color_at(film.film, corner);
+      const Color color = color_at(film, corner);
       sum.r += 0.25f * color.r, sum.g += 0.25f * color.g, sum.b += 0.25f * color.b;
     }
     return sum;
@@ -93,7 +93,7 @@ std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
 /// Whether a pixel's surface matches those of all its corners.
 bool fits_corners(const Grid& grid, int x, int y) {
   for (const std::size_t corner : grid.corners(x, y))
-    if (!same_surface(grid.film.film, corner, grid.at(x, y), even_cosine)) return false;
+    if (!same_surface(grid.film, corner, grid.at(x, y), even_cosine)) return false;
   return true;
 }
 
@@ -101,13 +101,13 @@ bool fits_corners(const Grid& grid, int x, int y) {
 /// or reflection, which may continue between nearby corners.
 bool surprises(const Grid& grid, int x, int y) {
   const std::size_t p = grid.at(x, y);
-  const GrowingFilm& film = grid.film;
+  const Film& film = grid.film;
   if (film.states[p] != PixelState::sampled || grid.is_corner(x, y)) return false;
-  return contrast(color_at(film.film, p), grid.promised(x, y)) > grid.threshold;
+  return contrast(color_at(film, p), grid.promised(x, y)) > grid.threshold;
 }
 
 std::vector<u32> near_surprises(const Grid& grid) {
-  std::vector<std::uint8_t> wanted(grid.film.taken.size());
+  std::vector<std::uint8_t> wanted(grid.film.pixels());
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {
       if (!surprises(grid, x, y)) continue;
@@ -149,7 +149,7 @@ void take_light(Film& film, const std::array<std::size_t, 4>& corners, std::size
 }
 
 /// Sets pixels without samples to the mean of those corners that have some.
-void interpolate(GrowingFilm& film, const Grid& grid) {
+void interpolate(Film& film, const Grid& grid) {
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x) {
       const std::size_t p = grid.at(x, y);
@@ -159,12 +159,12 @@ void interpolate(GrowingFilm& film, const Grid& grid) {
       const Color color = grid.promised(x, y);
       float coverage = 0;
       for (const std::size_t corner : grid.corners(x, y))
-        coverage += 0.25f * film.film.sums[corner].w / std::max(film.film.weights[corner], 1.0f);
-      film.film.sums[p] = {color.r, color.g, color.b, coverage};
-      film.film.weights[p] = 1;
-      take_mattes(film.film, grid.corners(x, y)[0], p);
-      take_light(film.film, grid.corners(x, y), p);
-      film.film.done[p] = 1;
+        coverage += 0.25f * film.sums[corner].w / std::max(film.weights[corner], 1.0f);
+      film.sums[p] = {color.r, color.g, color.b, coverage};
+      film.weights[p] = 1;
+      take_mattes(film, grid.corners(x, y)[0], p);
+      take_light(film, grid.corners(x, y), p);
+      film.done[p] = 1;
       film.states[p] = PixelState::interpolated;
     }
 }
@@ -175,16 +175,16 @@ Pass first_samples(const std::vector<u32>& pixels, u32 samples, bool surfaces) {
   return pass;
 }
 
-Pass corner_pass(const GrowingFilm& film, u32 samples) {
+Pass corner_pass(const Film& film, u32 samples) {
   const Grid grid{film, 0};
   return first_samples(pick_any(grid, [&](int x, int y) { return grid.is_corner(x, y); }), samples, true);
 }
 
 }  // namespace
 
-void interpolate_rest(GrowingFilm& film) { interpolate(film, Grid{film, 0}); }
+void interpolate_rest(Film& film) { interpolate(film, Grid{film, 0}); }
 
-std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan) {
+std::optional<Pass> next_subsampling_pass(Film& film, const SamplingPlan& plan) {
   const Grid grid{film, static_cast<float>(plan.settings.subsample_contrast), plan.panes};
   if (film.step == 0) {
     ++film.step;

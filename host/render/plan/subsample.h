@@ -5,16 +5,16 @@
 #pragma once
 #include <optional>
 
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 
 namespace sundog {
 
 struct SamplingPlan;
 
 /// The pass after those in `film`; none when the rest has been interpolated. Increments film.step.
-std::optional<Pass> next_subsampling_pass(GrowingFilm& film, const SamplingPlan& plan);
+std::optional<Pass> next_subsampling_pass(Film& film, const SamplingPlan& plan);
 
 /// Sets pixels without samples to the mean of those corners that have some.
-void interpolate_rest(GrowingFilm& film);
+void interpolate_rest(Film& film);
 
 }  // namespace sundog

@@ -14,7 +14,7 @@ HangWatch::~HangWatch() {
   thread_.join();
 }
 
-void HangWatch::look_at(const OpenedServer& opened) {
+void HangWatch::look_at(const OpenedWorker& opened) {
   const std::lock_guard lock(mutex_);
   opened_ = opened;
 }
@@ -23,10 +23,10 @@ void HangWatch::watch() {
   for (; !leaving_; std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
     if (always_) always_();
     const std::lock_guard lock(mutex_);
-    const double seconds = opened_.server ? opened_.server->overdue() : 0;
+    const double seconds = opened_.worker ? opened_.worker->overdue() : 0;
     if (seconds <= 0) continue;
     on_hang_(fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
-                         opened_.server->info().label(), seconds));
+                         opened_.worker->info().label(), seconds));
     return;
   }
 }

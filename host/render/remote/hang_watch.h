@@ -1,4 +1,4 @@
-// Watches a server's launches from another thread, in a process that serves others.
+// Watches a worker's launches from another thread, in a process that serves others.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -19,7 +19,7 @@ class HangWatch {
   HangWatch(const HangWatch&) = delete;
   HangWatch& operator=(const HangWatch&) = delete;
 
-  void look_at(const OpenedServer& opened);
+  void look_at(const OpenedWorker& opened);
 
  private:
   void watch();
@@ -27,7 +27,7 @@ class HangWatch {
   std::function<void(const std::string&)> on_hang_;
   std::function<void()> always_;
   std::mutex mutex_;
-  OpenedServer opened_;
+  OpenedWorker opened_;
   std::atomic<bool> leaving_{false};
   std::thread thread_;
 };

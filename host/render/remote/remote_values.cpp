@@ -50,7 +50,6 @@ void check_asked(const Tile& tile, const Tile& asked) {
 PackedTile pack_request(const TileRequest& request) {
   PackedTile packed;
   packed.values = {{"tile", request.tile}};
-  if (!request.in_pass) return packed;
   packed.values["pass"] = {{"pixels", request.pixels.size()}, {"sums", request.sums.size()},
                            {"rays", request.rays.size()},     {"aovs", request.aovs.size()},
                            {"first", request.first_sample},   {"count", request.sample_count},
@@ -66,9 +65,7 @@ PackedTile pack_request(const TileRequest& request) {
 TileRequest unpack_request(const nlohmann::json& values, const std::string& data) {
   TileRequest request;
   request.tile = tile_from(values);
-  if (!values.contains("pass")) return request;
   const nlohmann::json& pass = values.at("pass");
-  request.in_pass = true;
   request.first_sample = pass.at("first").get<u32>();
   request.sample_count = pass.at("count").get<u32>();
   request.surfaces = pass.at("surfaces").get<bool>();
@@ -110,10 +107,9 @@ TileResult unpack_tile(const nlohmann::json& values, const std::string& data, co
   check_asked(result.tile, request.tile);
   result.counts = values.at("counts").get<RayCounts>();
   const std::size_t pixels = pixel_count(result.tile);
-  const bool surfaces = request.in_pass ? request.surfaces : show_surfaces(aov_names);
-  const bool counted = counts_rays(aov_names) || (request.in_pass && request.costs);
+  const bool counted = counts_rays(aov_names) || request.costs;
   const std::size_t aovs = none_or_all(values.at("aovs"),
-                                       surfaces ? aov_layout(aov_names).vectors() * pixels : 0),
+                                       request.surfaces ? aov_layout(aov_names).vectors() * pixels : 0),
                     rays = none_or_all(values.at("rays"), counted ? pixels : 0);
   if (data.size() != pixels * (sizeof(float4) + sizeof(float)) + aovs * sizeof(float4) + rays * sizeof(u32))
     throw DeviceError("a tile came with too many or too few bytes");

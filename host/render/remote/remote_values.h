@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 
 namespace sundog {
 
@@ -18,7 +18,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tile, x, y, width, height)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkGroup, kind, x, y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, readback, cached)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ServerFigures, kernels, readback_seconds, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerFigures, kernels, readback_seconds, notes)
 
 /// Calls `read`; throws DeviceError "FROM: ..." if the message lacks something.
 template <class Read>

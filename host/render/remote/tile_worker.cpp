@@ -80,34 +80,34 @@ std::optional<Message> Orders::next() {
 
 namespace {
 
-/// The server of the frame in hand.
+/// The worker of the frame in hand.
 struct Current {
-  OpenedServer opened;
+  OpenedWorker opened;
   nlohmann::json settings;
 };
 
 Message opened(Current& current, const Message& order,
-               const std::function<OpenedServer(const nlohmann::json&)>& make) {
-  if (!current.opened.server || current.settings != order.values) {
-    if (const auto last = std::exchange(current.opened, {}); last.server) last.server->close();
+               const std::function<OpenedWorker(const nlohmann::json&)>& make) {
+  if (!current.opened.worker || current.settings != order.values) {
+    if (const auto last = std::exchange(current.opened, {}); last.worker) last.worker->close();
     current.opened = make(order.values);
     current.settings = order.values;
   }
-  const RenderTimes times = current.opened.server->open();
+  const RenderTimes times = current.opened.worker->open();
   return {Message::ready, {{"times", times}, {"scene", current.opened.scene}}, {}};
 }
 
-Message made(TileServer& server, const Message& order, const StopFlags& flags) {
-  PackedTile packed = pack_tile(server.render(unpack_request(order.values, order.data), flags));
+Message made(DeviceWorker& worker, const Message& order, const StopFlags& flags) {
+  PackedTile packed = pack_tile(worker.render(unpack_request(order.values, order.data), flags));
   packed.values["job"] = order.values.at("job");
-  packed.values["figures"] = server.figures();
+  packed.values["figures"] = worker.figures();
   return {Message::tile, std::move(packed.values), std::move(packed.data)};
 }
 
 }  // namespace
 
 void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedServer(const nlohmann::json& settings)>& make,
+                  const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list) {
   Current current;
   while (const std::optional<Message> order = orders.next()) {
@@ -117,14 +117,14 @@ void serve_orders(Channel& channel, Orders& orders,
         answer = {Message::devices, {{"devices", list()}, {"cores", usable_cores()}}, {}};
       else if (order->kind == Message::open)
         answer = opened(current, *order, make);
-      else if (current.opened.server)
-        answer = made(*current.opened.server, *order, {&orders.unwanted(), nullptr});
+      else if (current.opened.worker)
+        answer = made(*current.opened.worker, *order, {&orders.unwanted(), nullptr});
     } catch (const std::exception& error) {
       answer = failure(error);
     }
     channel.send(answer);
   }
-  if (current.opened.server) current.opened.server->close();
+  if (current.opened.worker) current.opened.worker->close();
 }
 
 }  // namespace sundog

@@ -1,11 +1,11 @@
-// The peer of a RemoteServer: takes orders from a channel and executes them on a device.
+// The peer of a RemoteWorker: takes orders from a channel and executes them on a device.
 #pragma once
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <thread>
 
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/remote/channel.h"
 
 namespace sundog {
@@ -44,16 +44,16 @@ class Orders {
 };
 
 /// A device prepared for a frame.
-struct OpenedServer {
-  std::shared_ptr<const void> kept;  // keeps what the server refers to
-  std::shared_ptr<TileServer> server;
+struct OpenedWorker {
+  std::shared_ptr<const void> kept;  // keeps what the worker refers to
+  std::shared_ptr<DeviceWorker> worker;
   std::uint64_t scene = 0;  // hash_scene() of its scene
 };
 
-/// Serves until closed: frames one after the other. `make` creates the server for an open order (loading its
-/// scene); exceptions from it and from the server are sent as the reply. `list` lists the devices.
+/// Serves until closed: frames one after the other. `make` creates the worker for an open order (loading its
+/// scene); exceptions from it and from the worker are sent as the reply. `list` lists the devices.
 void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedServer(const nlohmann::json& settings)>& make,
+                  const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list);
 
 }  // namespace sundog

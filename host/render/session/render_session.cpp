@@ -4,19 +4,19 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/device/device_server.h"
-#include "render/session/final_frame.h"
-#include "render/session/session_state.h"
+#include "render/device/local_worker.h"
+#include "render/frame/final_frame.h"
+#include "render/session/live_session.h"
 
 namespace sundog {
 namespace {
 
-Servers make_servers(const std::vector<DeviceInfo>& devices) {
+Workers make_workers(const std::vector<DeviceInfo>& devices) {
   if (devices.empty()) throw DeviceError("no device to render on");
-  Servers servers;
+  Workers workers;
   for (const DeviceInfo& device : devices)
-    servers.push_back(std::make_shared<DeviceServer>(device, nullptr, RenderOptions{}));
-  return servers;
+    workers.push_back(std::make_shared<LocalWorker>(device, nullptr, RenderOptions{}));
+  return workers;
 }
 
 }  // namespace
@@ -46,21 +46,21 @@ std::string state_text(const Snapshot& now) {
   return state_text(waits ? SessionState::preparing : now.state);
 }
 
-RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_servers(devices)) {}
+RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_workers(devices)) {}
 
-RenderSession::RenderSession(std::vector<std::shared_ptr<SceneServer>> servers)
-    : state_(std::make_shared<State>()) {
-  state_->begin({servers.begin(), servers.end()});
+RenderSession::RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers)
+    : live_(std::make_shared<LiveSession>()) {
+  live_->begin(workers);
 }
 
-RenderSession::~RenderSession() { state_->end(); }
+RenderSession::~RenderSession() { live_->end(); }
 
 Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
                                 const SessionSettings& settings) {
-  State& s = *state_;
+  LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   ++s.newest;
-  s.set_pending(State::Order{s.newest, std::move(scene), settings, Stopwatch()});
+  s.set_pending(LiveSession::Order{s.newest, std::move(scene), settings, Stopwatch()});
   if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
   s.error.clear();
@@ -69,7 +69,7 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
 }
 
 void RenderSession::cancel() {
-  State& s = *state_;
+  LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   s.set_pending(std::nullopt);
   if (s.state == SessionState::idle || is_at_rest(s.state)) return;
@@ -79,32 +79,32 @@ void RenderSession::cancel() {
 }
 
 void RenderSession::use_devices(const std::vector<DeviceInfo>& devices) {
-  Servers servers = make_servers(devices);
-  State& s = *state_;
+  Workers workers = make_workers(devices);
+  LiveSession& s = *live_;
   const std::scoped_lock lock(s.rendering, s.mutex);
-  std::vector<std::shared_ptr<State::Worker>> before = std::exchange(s.workers, {});
-  for (std::shared_ptr<SceneServer>& server : servers) {
-    const auto same = std::ranges::find_if(before, [&](const auto& worker) {
-      return worker && worker->server->info().label() == server->info().label();
+  std::vector<std::shared_ptr<DeviceThread>> before = std::exchange(s.threads, {});
+  for (std::shared_ptr<SceneWorker>& worker : workers) {
+    const auto same = std::ranges::find_if(before, [&](const auto& thread) {
+      return thread && thread->worker->info().label() == worker->info().label();
     });
     if (same == before.end())
-      s.add_worker(std::move(server));
+      s.add_thread(std::move(worker));
     else
-      s.workers.push_back(std::exchange(*same, nullptr));
+      s.threads.push_back(std::exchange(*same, nullptr));
   }
-  for (const auto& worker : before)
-    if (worker) {
-      worker->leave = true;
-      s.leaving.push_back(worker);
+  for (const auto& thread : before)
+    if (thread) {
+      thread->leave = true;
+      s.leaving.push_back(thread);
     }
   s.note();
 }
 
 Snapshot RenderSession::snapshot(bool with_picture) const {
-  const State& s = *state_;
+  const LiveSession& s = *live_;
   Snapshot snapshot;
   std::shared_ptr<SessionFrame> current, shown;
-  Servers servers;
+  Workers workers;
   {
     const std::lock_guard lock(s.mutex);
     snapshot.generation = s.newest;
@@ -112,24 +112,24 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
     snapshot.state = s.state;
     snapshot.error = s.error;
     snapshot.prepared = s.rested == s.newest && s.newest > 0;
-    for (const auto& worker : s.workers) servers.push_back(worker->of_scenes);
+    for (const auto& thread : s.threads) workers.push_back(thread->of_scenes);
     current = s.current;
     shown = s.shown;
     snapshot.draft = current && s.is_draft(current);
     const std::shared_ptr<SessionFrame>& times = current && current->generation == s.newest ? current : shown;
     if (times) snapshot.times = times->times;
   }
-  for (const auto& server : servers) snapshot.kernels_waiting += server->kernels_waiting();
+  for (const auto& worker : workers) snapshot.kernels_waiting += worker->kernels_waiting();
   snapshot.prepared = snapshot.prepared && snapshot.kernels_waiting == 0;
   if (current) {
     const Frame& frame = *current->frame;
     const std::lock_guard lock(current->frame->mutex);
     snapshot.devices = activity_of(frame, is_at_rest(snapshot.state));
     snapshot.work.compiled = current->compiled;
-    for (const Frame::Server& server : frame.servers) {
-      snapshot.work.tables_uploaded += server.report.tables_uploaded;
-      snapshot.work.bytes_uploaded += server.report.bytes_uploaded;
-      snapshot.work.kernels_built += server.report.kernels_built;
+    for (const Frame::Worker& worker : frame.workers) {
+      snapshot.work.tables_uploaded += worker.report.tables_uploaded;
+      snapshot.work.bytes_uploaded += worker.report.bytes_uploaded;
+      snapshot.work.kernels_built += worker.report.kernels_built;
     }
     if (current->generation == snapshot.generation)
       snapshot.fraction = samples_of(frame, current->flat->info.samples).fraction;
@@ -151,55 +151,54 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
 
 RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& scene,
                                    const RenderOptions& options) {
-  const std::lock_guard one_at_a_time(state_->rendering);
-  std::vector<ServerPlan> plans;
-  std::vector<std::shared_ptr<State::Worker>> workers;
+  const std::lock_guard one_at_a_time(live_->rendering);
+  std::vector<WorkerPlan> plans;
+  std::vector<std::shared_ptr<DeviceThread>> threads;
   {
-    const std::lock_guard lock(state_->mutex);
-    workers = state_->workers;
+    const std::lock_guard lock(live_->mutex);
+    threads = live_->threads;
   }
   // A single device keeps no other waiting, so an outdated speed does no harm.
-  const bool comparable = workers.size() == 1 || state_->rated == scene.get();
-  for (const auto& worker : workers)
-    plans.push_back({worker->server->info(), worker->server->processor(),
-                     [server = worker->server](const RenderOptions&) { return server; },
-                     comparable ? worker->pixels_a_second : 0, comparable ? worker->measured_pixels : 0});
-  RenderResult result = render_frame(scene, plans, options, [&](const std::shared_ptr<Frame>& frame) {
-    const auto mine = std::make_shared<SessionFrame>();
-    mine->flat = scene;
-    mine->frame = frame;
-    mine->final = true;
-    state_->run(mine, false);
-  });
-  for (std::size_t i = 0; i < workers.size(); ++i) {
+  const bool comparable = threads.size() == 1 || live_->rated == scene.get();
+  for (const auto& thread : threads)
+    plans.push_back({thread->worker->info(), thread->worker->processor(),
+                     [worker = thread->worker](const RenderOptions&) { return worker; },
+                     comparable ? thread->pixels_a_second : 0, comparable ? thread->measured_pixels : 0});
+  const auto mine = std::make_shared<SessionFrame>();
+  mine->flat = scene;
+  mine->frame = begin_frame(*scene, plans, options);
+  mine->final = true;
+  live_->run_final(mine);
+  RenderResult result = finish_frame(*mine->frame);
+  for (std::size_t i = 0; i < threads.size(); ++i) {
     const DeviceReport& report = result.devices[i];
     const bool measured = report.busy_seconds > 0;
-    workers[i]->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
-    workers[i]->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
+    threads[i]->pixels_a_second = measured ? static_cast<double>(report.pixels) / report.busy_seconds : 0;
+    threads[i]->measured_pixels = measured ? static_cast<double>(report.pixels) : 0;
   }
-  state_->rated = scene.get();
+  live_->rated = scene.get();
   return result;
 }
 
 void RenderSession::wait() const {
-  std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [&] { return state_->newest == 0 || is_at_rest(state_->state); });
+  std::unique_lock lock(live_->mutex);
+  live_->changed.wait(lock, [&] { return live_->newest == 0 || is_at_rest(live_->state); });
 }
 
 bool RenderSession::wait_for(double seconds) const {
-  std::unique_lock lock(state_->mutex);
-  return state_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
-                                  [&] { return state_->newest == 0 || is_at_rest(state_->state); });
+  std::unique_lock lock(live_->mutex);
+  return live_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
+                                 [&] { return live_->newest == 0 || is_at_rest(live_->state); });
 }
 
 bool RenderSession::wait_for_change(std::uint64_t revision, double seconds) const {
-  std::unique_lock lock(state_->mutex);
-  return state_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
-                                  [&] { return state_->revision != revision; });
+  std::unique_lock lock(live_->mutex);
+  return live_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
+                                 [&] { return live_->revision != revision; });
 }
 
 std::optional<Picked> RenderSession::pick(int x, int y) {
-  State& s = *state_;
+  LiveSession& s = *live_;
   std::future<std::optional<Picked>> answer;
   {
     std::unique_lock lock(s.mutex);

@@ -115,15 +115,15 @@ struct Picked {
 /// Likewise, but reports that a complete draft waits for a kernel.
 std::string state_text(const Snapshot& now);
 
-class SceneServer;
-struct Frame;
+class SceneWorker;
+struct LiveSession;
 
 class RenderSession {
  public:
   /// Opens nothing: each device's thread opens it at the first start(). Throws DeviceError without devices.
   explicit RenderSession(const std::vector<DeviceInfo>& devices);
-  /// For other servers than this process's devices.
-  explicit RenderSession(std::vector<std::shared_ptr<SceneServer>> servers);
+  /// For other workers than this process's devices.
+  explicit RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers);
   /// Stops drawing: waits for launches (about 50 ms), not for a driver that hangs or compiles.
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;
@@ -164,9 +164,7 @@ class RenderSession {
   std::optional<Picked> pick(int x, int y);
 
  private:
-  friend void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
-  struct State;
-  std::shared_ptr<State> state_;
+  std::shared_ptr<LiveSession> live_;
 };
 
 }  // namespace sundog

@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-// So long a server is with one tile: then it looks for a newer scene, for picks, and shows its pixels.
+// So long a worker is with one tile: then it looks for a newer scene, for picks, and shows its pixels.
 constexpr double tile_seconds = 0.2;
 
 RenderOptions options_of(const SessionSettings& settings) {
@@ -31,26 +31,14 @@ SamplingPlan sampling_of(const CompiledScene& scene) {
   return plan;
 }
 
-std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneServer>>& servers) {
-  std::vector<DeviceSpeed> speeds(servers.size());
-  for (std::size_t i = 0; i < servers.size(); ++i) {
-    speeds[i].estimate = servers[i]->info().estimate;
-    speeds[i].processor = servers[i]->processor();
+std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneWorker>>& workers) {
+  std::vector<DeviceSpeed> speeds(workers.size());
+  for (std::size_t i = 0; i < workers.size(); ++i) {
+    speeds[i].estimate = workers[i]->info().estimate;
+    speeds[i].processor = workers[i]->processor();
     speeds[i].tile_seconds = tile_seconds;
   }
   return speeds;
-}
-
-FramePasses passes_of(const FrameOrder& order, const RenderOptions& options) {
-  FramePasses passes;
-  const SceneInfo& info = order.scene->info;
-  passes.plan = sampling_of(*order.scene);
-  passes.film = GrowingFilm(static_cast<int>(info.width), static_cast<int>(info.height),
-                            needs_surfaces(order.scene->sampling), AovLayout(), false);
-  std::vector<double> estimates;
-  for (const auto& server : order.servers) estimates.push_back(server->info().estimate);
-  passes.tiles = [options, estimates](const Film& film) { return plan_tiles(options, film, estimates); };
-  return passes;
 }
 
 void set_pixel(float* pixel, const float4& sum, float weight) {
@@ -70,9 +58,10 @@ void fill_coarse(const CoarsePicture& coarse, Image& image) {
 }
 
 /// The pixels of the pass in hand that are done.
-void fill_from_pass(const FramePasses& passes, const Film& made, Image& image) {
+void fill_from_pass(const Frame& frame, Image& image) {
+  const Film& made = frame.made;
   for (std::size_t i = 0; i < made.done.size(); ++i) {
-    const std::int64_t p = made.done[i] ? image_index(passes.film, passes.pass, i) : -1;
+    const std::int64_t p = made.done[i] ? image_index(frame.film, frame.pass, i) : -1;
     if (p < 0) continue;
     float* pixel = image.data.data() + 4 * p;
     std::fill_n(pixel, 4, 0.0f);
@@ -80,11 +69,11 @@ void fill_from_pass(const FramePasses& passes, const Film& made, Image& image) {
   }
 }
 
-std::string doing_of(const Frame::Server& server, bool over) {
-  if (server.failed) return "out: " + (server.report.messages.empty() ? "" : server.report.messages.back());
+std::string doing_of(const Frame::Worker& worker, bool over) {
+  if (worker.failed) return "out: " + (worker.report.messages.empty() ? "" : worker.report.messages.back());
   if (over) return "waiting";
-  if (server.phase == Frame::Phase::opening) return "building a kernel";
-  return server.server->compiles() ? "building a kernel" : "drawing";
+  if (worker.phase == Frame::Phase::opening) return "building a kernel";
+  return worker.device->compiles() ? "building a kernel" : "drawing";
 }
 
 }  // namespace
@@ -92,78 +81,75 @@ std::string doing_of(const Frame::Server& server, bool over) {
 std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
                                           std::function<void(const RenderProgress&)> on_progress) {
   RenderOptions options = options_of(order.settings);
-  FramePasses passes = passes_of(order, options);
-  const std::size_t pixels = passes.film.taken.size();
   options.on_progress = std::move(on_progress);
-  auto frame = std::make_shared<Frame>(options, Film(), TilePlan{{WaitingTiles()}}, speeds_of(order.servers));
-  for (const auto& server : order.servers) {
-    Frame::Server entry;
-    entry.server = server;
-    entry.report.info = server->info();
-    frame->servers.push_back(std::move(entry));
+  const SceneInfo& info = order.scene->info;
+  Film film(static_cast<int>(info.width), static_cast<int>(info.height),
+            {.shows_surfaces = needs_surfaces(order.scene->sampling), .grows = true});
+  const std::size_t pixels = film.pixels();
+  auto frame =
+      std::make_shared<Frame>(options, sampling_of(*order.scene), std::move(film), speeds_of(order.workers));
+  std::vector<double> estimates;
+  for (const auto& worker : order.workers) {
+    Frame::Worker entry;
+    entry.device = worker;
+    entry.report.info = worker->info();
+    estimates.push_back(worker->info().estimate);
+    frame->workers.push_back(std::move(entry));
   }
   frame->live = true;
-  passes.pixel_seconds = order.pixel_seconds;
-  frame->passes = std::move(passes);
+  frame->tiles = [options, estimates](const Film& made) { return plan_tiles(options, made, estimates); };
+  frame->coarse.pixel_seconds = order.pixel_seconds;
   begin_coarse(*frame, order.settings.coarse ? first_block(order.pixel_seconds, pixels) : 0);
-  frame->queue.expect_more();
-  frame->queue.refill(frame->passes->tiles(frame->film));
   return frame;
 }
 
 FrameProgress progress_of(const Frame& frame) {
-  const FramePasses& passes = *frame.passes;
+  const int block = frame.coarse.picture.block;
   FrameProgress progress;
-  progress.pass = passes.coarse_passes + passes.film.stage;
+  progress.pass = frame.coarse.count + frame.film.stage;
   progress.settled = frame.queue.complete();
-  progress.full = passes.film.stage > 0;
-  progress.whole = progress.full || passes.coarse.block > 0;
-  progress.block = progress.full || passes.coarse.block == 0 ? 1 : static_cast<unsigned>(passes.coarse.block);
+  progress.full = frame.film.stage > 0;
+  progress.whole = progress.full || block > 0;
+  progress.block = progress.full || block == 0 ? 1 : static_cast<unsigned>(block);
   return progress;
 }
 
 FrameSamples samples_of(const Frame& frame, unsigned wanted) {
   if (frame.queue.complete()) return {wanted, 1};
-  if (!frame.passes)
-    return {0, static_cast<double>(frame.pixels_done) /
-                   static_cast<double>(std::max<std::size_t>(1, frame.film.done.size()))};
-  const FramePasses& passes = *frame.passes;
-  const std::vector<u32>& taken = passes.film.taken;
   double all = 0;
   u32 least = ~0u;
-  for (const u32 samples : taken) {
+  for (const u32 samples : frame.film.taken) {
     all += samples;
     least = std::min(least, samples);
   }
-  if (passes.coarse_block == 0) all += static_cast<double>(frame.pixels_done) * passes.pass.sample_count;
+  if (frame.coarse.block == 0) all += static_cast<double>(frame.pixels_done) * frame.pass.sample_count;
   constexpr double most = 0.999;  // 1 is settled
-  const double wanted_in_all = static_cast<double>(taken.size()) * std::max(1u, wanted);
-  return {passes.film.stage > 0 ? least : 0, std::min(most, all / wanted_in_all)};
+  const double wanted_in_all = static_cast<double>(frame.film.pixels()) * std::max(1u, wanted);
+  return {frame.film.stage > 0 ? least : 0, std::min(most, all / wanted_in_all)};
 }
 
 Image picture_of(const Frame& frame) {
-  const FramePasses& passes = *frame.passes;
-  if (frame.film.done.empty()) return passes.film.film.develop(4);
-  if (passes.plan.settings.subsample && passes.coarse_block == 0) {
-    if (passes.film.stage > 0) return film_so_far(frame).film.develop(4);
-  }
-  Image image = passes.film.stage > 0 ? passes.film.film.develop(4)
-                                      : Image(passes.film.film.width, passes.film.film.height, 4);
-  if (passes.film.stage == 0 && passes.coarse.block > 0) fill_coarse(passes.coarse, image);
-  if (passes.coarse_block == 0) fill_from_pass(passes, frame.film, image);
+  const Film& film = frame.film;
+  const CoarsePasses& coarse = frame.coarse;
+  if (frame.made.done.empty()) return film.develop(4);
+  if (frame.plan.settings.subsample && coarse.block == 0 && film.stage > 0)
+    return film_so_far(frame).develop(4);
+  Image image = film.stage > 0 ? film.develop(4) : Image(film.width, film.height, 4);
+  if (film.stage == 0 && coarse.picture.block > 0) fill_coarse(coarse.picture, image);
+  if (coarse.block == 0) fill_from_pass(frame, image);
   return image;
 }
 
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over) {
   std::vector<DeviceActivity> list;
   std::uint64_t all = 0;
-  for (const Frame::Server& server : frame.servers) all += server.report.pixels;
-  for (std::size_t i = 0; i < frame.servers.size(); ++i) {
-    const Frame::Server& server = frame.servers[i];
-    const DeviceReport& report = server.report;
+  for (const Frame::Worker& worker : frame.workers) all += worker.report.pixels;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+    const Frame::Worker& worker = frame.workers[i];
+    const DeviceReport& report = worker.report;
     DeviceActivity activity;
     activity.info = report.info;
-    activity.doing = doing_of(server, over);
+    activity.doing = doing_of(worker, over);
     activity.tiles = report.tiles, activity.pixels = report.pixels;
     activity.share = all > 0 ? static_cast<double>(report.pixels) / static_cast<double>(all) : 0;
     activity.busy_seconds = frame.queue.work(i).busy_seconds;

@@ -13,10 +13,10 @@ namespace sundog {
 struct SessionFrame {
   Generation generation = 0;
   std::shared_ptr<const SceneDescription> scene;
-  std::shared_ptr<const CompiledScene> flat;  // null: the servers have the scene
+  std::shared_ptr<const CompiledScene> flat;  // null: the workers have the scene
   std::shared_ptr<Frame> frame;
   bool final = false;   // it is rendered to its end for a caller who waits, and shown by nobody
-  bool closes = false;  // so is the session: servers are closed behind it
+  bool closes = false;  // so is the session: workers are closed behind it
   Stopwatch clock;      // since start()
   Stopwatch begun;      // since it can be drawn
   SessionSettings settings;
@@ -28,7 +28,7 @@ struct SessionFrame {
 struct FrameOrder {
   std::shared_ptr<const CompiledScene> scene;
   SessionSettings settings;
-  std::vector<std::shared_ptr<SceneServer>> servers;
+  std::vector<std::shared_ptr<SceneWorker>> workers;
   double pixel_seconds = 0;  // of a pixel's sample, by the generation before; 0: not known
 };
 
@@ -55,7 +55,7 @@ FrameSamples samples_of(const Frame& frame, unsigned wanted);
 /// The picture so far; to the bit that of the film when it is settled. The caller holds the frame's mutex.
 Image picture_of(const Frame& frame);
 
-/// What the frame's servers do and did. The caller holds its mutex.
+/// What the frame's workers do and did. The caller holds its mutex.
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over);
 
 }  // namespace sundog

@@ -67,7 +67,7 @@ TEST_CASE("adaptive and subsampled frames have the same bits for every tile and 
       options.work_group = {WorkGroup::Kind::fixed, 2, 1};
       const RenderResult tiled = scenes::render_on(info, scene, options);
       CHECK(same_bits(whole.image, tiled.image));
-      CHECK(whole.taken == tiled.taken);
+      CHECK(whole.film.taken == tiled.film.taken);
       CHECK(whole.counts == tiled.counts);
     });
 }
@@ -80,7 +80,7 @@ TEST_CASE("a frame in passes has a plain frame's bits where every pixel has ever
     const RenderResult expected = scenes::render_on(info, plain), made = scenes::render_on(info, passes);
     CHECK(same_bits(expected.image, made.image));
     CHECK(expected.counts == made.counts);
-    CHECK(made.passes == 4);  // 1, 2, 4, 6
+    CHECK(made.film.stage == 4);  // 1, 2, 4, 6
   });
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("an adaptive frame continues after an interruption to the same bits") 
       continue;
     }
     CHECK(same_bits(whole.image, part.image));
-    CHECK(whole.taken == part.taken);
+    CHECK(whole.film.taken == part.film.taken);
     CHECK(interrupted > 1);
     return;
   }
@@ -118,7 +118,7 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   const Image right = scenes::render_on(info, reference).image;
   const RenderResult adaptive = scenes::render_on(info, adaptive_scene());
   const SamplingFigures figures =
-      sampling_figures(adaptive.taken, adaptive.film.done, adaptive.surfaces_seen, 16);
+      sampling_figures(adaptive.film.taken, adaptive.film.done, adaptive.film.surfaces_seen, 16);
   CHECK(figures.saved > 0.2);
   CHECK(figures.most == 16);
   CHECK(root_mean_square(adaptive.image, right) <
@@ -127,7 +127,7 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   const RenderResult sparse = scenes::render_on(info, subsampled_scene());
   const Image all = scenes::render_on(info, ball_scene(2)).image;
   CHECK(root_mean_square(sparse.image, all) < 0.01);
-  CHECK(sampling_figures(sparse.taken, sparse.film.done, 0, 2).share_interpolated > 0.05);
+  CHECK(sampling_figures(sparse.film.taken, sparse.film.done, 0, 2).share_interpolated > 0.05);
 }
 
 TEST_CASE("a frame that its time limit ends is saved, and continues from its checkpoint") {
@@ -142,9 +142,9 @@ TEST_CASE("a frame that its time limit ends is saved, and continues from its che
   CHECK(result.time_limited);
   CHECK(result.checkpoint_kept);
   // Its whole passes are shown, which ended in the middle of another: all pixels have the samples of one.
-  REQUIRE(result.taken.front() > 0);
-  CHECK(std::ranges::count(result.taken, result.taken.front()) == std::ssize(result.taken));
-  scene.render.samples = static_cast<int>(result.taken.front());
+  REQUIRE(result.film.taken.front() > 0);
+  CHECK(std::ranges::count(result.film.taken, result.film.taken.front()) == std::ssize(result.film.taken));
+  scene.render.samples = static_cast<int>(result.film.taken.front());
   CHECK(same_bits(result.image, scenes::render_on(test_devices().front(), scene).image));
 }
 

@@ -53,16 +53,16 @@ TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the 
   const DeviceInfo info = with_cache(own_info, folder / "cache");
   const CompiledScene first = compile(scenes::shipped_small("spheres"));
   Device device(info), own_device(own_info);
-  KernelBuilder builder(info);
+  KernelStore store(info);
   LaunchWatch watch;
   RenderTimes times;
   RenderOptions options, own_options;
   options.kernels = KernelChoice::own_when_built;
-  TileRenderer renderer(device, first, options, times, watch, &builder);
+  TileRenderer renderer(device, first, options, times, watch, &store);
   TileRenderer own(own_device, first, own_options, times, watch, nullptr);
   const Integrator& integrator = *find_integrator(first.integrator);
-  builder.want({integrator.entry, integrator.kernel, draft_config(first, info)});
-  wait_for(builder);
+  store.builder().want({integrator.entry, integrator.kernel, draft_config(first, info)});
+  wait_for(store.builder());
 
   for (const char* name : {"relief", "textures", "hollow_ice", "cornell", "lights", "fractal_in_ice"}) {
     const CompiledScene scene = compile(scenes::shipped_small(name));
@@ -72,6 +72,7 @@ TEST_CASE("drafts draw the shipped scenes but for rounding, and give way to the 
     REQUIRE(renderer.draws_draft());
     TileRequest request;
     request.tile = whole(scene);
+    request.sample_count = scene.info.samples;
     const TileResult draft = renderer.render(request, {});
     own.change_scene(scene, own_options, times);
     CHECK(share_of_others(draft.sums, own.render(request, {}).sums) < 0.01);

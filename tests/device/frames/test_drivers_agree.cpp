@@ -56,7 +56,7 @@ TEST_CASE(
   std::map<std::string, bool> found;
   for (const std::string& name : scenes_of_all_features()) {
     const SceneFeatures features = compile(scene_named(name)).features;
-#define SUNDOG_FIND_FEATURE(type, definition, name) found[#name] |= features.name != 0;
+#define SUNDOG_FIND_FEATURE(type, definition, name, effect) found[#name] |= features.name != 0;
     SCENE_FEATURES(SUNDOG_FIND_FEATURE)
 #undef SUNDOG_FIND_FEATURE
   }

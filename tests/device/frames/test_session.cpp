@@ -49,7 +49,7 @@ void wait_until_prepared(RenderSession& session) {
 }
 
 bool has_kernels(const DeviceInfo& info, const CompiledScene& scene, const KernelConfig& kernels) {
-  return Device(info).has(find_integrator(scene.integrator)->entry, kernels.defines, kernels.generated);
+  return Device(info).has(find_integrator(scene.integrator)->entry, kernels.defines(), kernels.generated);
 }
 
 /// Until the session has built these kernels of the scene.
@@ -277,9 +277,9 @@ TEST_CASE("kernels stand in for others that leave harmless features out") {
   const CompiledScene layers =
       compile(load_scene(SUNDOG_SOURCE_DIR "/tests/support/every_feature/layers.json"));
   const KernelConfig layered = make_kernel_config(layers, device);
-  CHECK(general_config(layers, device).defines.at("HAS_UV") == layered.defines.at("HAS_UV"));
+  CHECK(general_config(layers, device).numbers.at("HAS_UV") == layered.numbers.at("HAS_UV"));
   KernelConfig with_coordinates = layered;
-  with_coordinates.defines.at("HAS_UV") = "1";
+  with_coordinates.numbers.at("HAS_UV") = 1;
   CHECK_FALSE(stands_in(with_coordinates, layered));
 }
 

@@ -15,7 +15,7 @@ using namespace sundog;
 TEST_CASE("a formula's own kernel takes over from the interpreter between tiles, and no bit changes") {
   const DeviceInfo& info = test_devices().front();
   Device device(info);
-  KernelBuilder builder(info);
+  KernelStore store(info);
   LaunchWatch watch;
   RenderTimes times;
   RenderOptions options;
@@ -27,19 +27,21 @@ TEST_CASE("a formula's own kernel takes over from the interpreter between tiles,
   other.sdf_parameters = formula.sdf_parameters;
   other.sdf_fields = formula.sdf_fields;
   other.features.field_flags = formula.features.field_flags;
-  TileRenderer renderer(device, first, options, times, watch, &builder);
+  TileRenderer renderer(device, first, options, times, watch, &store);
   const Integrator& integrator = *find_integrator(first.integrator);
-  builder.want({integrator.entry, integrator.kernel, interpreting_config(first, info)});
-  wait_for(builder);
+  store.builder().want({integrator.entry, integrator.kernel, interpreting_config(first, info)});
+  wait_for(store.builder());
 
   renderer.change_scene(other, options, times);
   CHECK(renderer.update().built == 0);
   CHECK(interprets(renderer.config()));
-  const Tile tile{0, 0, 24, 18};
+  TileRequest request;
+  request.tile = {0, 0, 24, 18};
+  request.sample_count = other.info.samples;
   const StopFlags flags;
-  const TileResult early = renderer.render(tile, flags);
-  wait_for(builder);
-  const TileResult late = renderer.render(tile, flags);
+  const TileResult early = renderer.render(request, flags);
+  wait_for(store.builder());
+  const TileResult late = renderer.render(request, flags);
   CHECK_FALSE(interprets(renderer.config()));
   CHECK(early.sums == late.sums);
   CHECK(std::ranges::any_of(late.sums, [](const float4& sum) { return sum.x > 0; }));

@@ -138,7 +138,7 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
   const u32 few = 1u << TEXEL_GREY8 | 1u << TEXEL_RGBA8;
   features.texel_formats = !images ? 0 : part == Part::value ? 0xFFFF : few;
   features.texel_pages = pages;
-  KernelDefines defines = make_kernel_config(flat, info).defines;
+  KernelDefines defines = make_kernel_config(flat, info).defines();
   defines["PART"] = std::to_string(static_cast<int>(part));
   return defines;
 }

@@ -27,7 +27,7 @@ std::string difference(const CompiledScene& a, const CompiledScene& b) {
     where += #name " ";
   SCENE_TABLES(COMPARE_TABLE)
 #undef COMPARE_TABLE
-#define COMPARE_FEATURE(type, definition, name) \
+#define COMPARE_FEATURE(type, definition, name, effect) \
   if (a.features.name != b.features.name) where += "feature " #name " ";
   SCENE_FEATURES(COMPARE_FEATURE)
 #undef COMPARE_FEATURE

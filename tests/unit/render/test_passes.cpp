@@ -2,11 +2,13 @@
 #include "render/plan/passes.h"
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <set>
 
 #include "base/error.h"
 #include "catch.h"
+#include "render/film/checkpoint.h"
 #include "render/plan/convergence.h"
 #include "render/plan/subsample.h"
 #include "shared/sampler.h"
@@ -25,17 +27,24 @@ struct MadeUpPixel {
   u32 rays = 1;
 };
 
+/// The film of a frame in passes.
+Film growing(bool with_aovs, int high = height) {
+  return {width, high, {.shows_surfaces = with_aovs, .grows = true, .keeps_earlier = true}};
+}
+
 /// Makes all pixels of a pass by `pixel(x, y, sample)`, as a device would.
 template <class Pixel>
-Film made(const GrowingFilm& film, const Pass& pass, const Pixel& pixel) {
-  Film result = film_of_pass(film, pass, pass.surfaces);
+Film made(const Film& film, const Pass& pass, const Pixel& pixel) {
+  Film result = film_of_pass(film, pass);
   for (std::size_t i = 0; i < result.done.size(); ++i) {
     result.done[i] = 1;
     const std::int64_t p = image_index(film, pass, i);
     if (p < 0) continue;
     const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
-    result.sums[i] = film.film.sums[static_cast<std::size_t>(p)];
-    result.weights[i] = film.film.weights[static_cast<std::size_t>(p)];
+    if (pass.first_sample > 0) {
+      result.sums[i] = film.sums[static_cast<std::size_t>(p)];
+      result.weights[i] = film.weights[static_cast<std::size_t>(p)];
+    }
     for (u32 s = pass.first_sample; s < pass.first_sample + pass.sample_count; ++s) {
       const float value = pixel(x, y, s).value;
       result.sums[i].x += value, result.sums[i].y += value, result.sums[i].z += value;
@@ -53,7 +62,7 @@ Film made(const GrowingFilm& film, const Pass& pass, const Pixel& pixel) {
 
 /// Runs all passes that come after `last`. Returns how many there were.
 template <class Pixel>
-int run(GrowingFilm& film, const SamplingPlan& plan, const Pixel& pixel, Pass last = {}) {
+int run(Film& film, const SamplingPlan& plan, const Pixel& pixel, Pass last = {}) {
   int passes = 0;
   while (const auto pass = next_pass(film, plan, last)) {
     REQUIRE(++passes < 100);
@@ -100,18 +109,18 @@ TEST_CASE("a progressive frame doubles the samples of all pixels up to the numbe
   SamplingPlan plan;
   plan.settings.progressive = true;
   plan.samples = 11;
-  GrowingFilm film(width, height, false);
+  Film film = growing(false);
   const int passes = run(film, plan, [](int, int, u32 sample) { return MadeUpPixel{float(sample), 0}; });
   CHECK(passes == 5);  // 1, 2, 4, 8, 11
   for (std::size_t p = 0; p < film.taken.size(); ++p) {
     REQUIRE(film.taken[p] == 11);
-    REQUIRE(film.film.sums[p].x == 55);
+    REQUIRE(film.sums[p].x == 55);
   }
 }
 
 TEST_CASE("a picture without noise gets the first samples alone, and an edge all of them") {
   const auto flat = [](int, int, u32) { return MadeUpPixel{0.5f, 1}; };
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   run(film, adaptive_plan(0.02, 64), flat);
   for (const u32 taken : film.taken) REQUIRE(taken == 1);
 
@@ -119,7 +128,7 @@ TEST_CASE("a picture without noise gets the first samples alone, and an edge all
     const bool odd = (sample & (sample - 1)) == 0;
     return MadeUpPixel{x == 16 ? (odd ? 40.0f * float(sample) : 0.0f) : 0.5f, 1};
   };
-  GrowingFilm other(width, height, true);
+  Film other = growing(true);
   run(other, adaptive_plan(0.02, 64), edge);
   for (int y = 0; y < height; ++y) {
     CHECK(other.taken[at(16, y)] == 64);
@@ -130,7 +139,7 @@ TEST_CASE("a picture without noise gets the first samples alone, and an edge all
 
 TEST_CASE("neighbours with other objects get more samples though they have the same colour") {
   const auto two = [](int x, int, u32) { return MadeUpPixel{0.5f, x < 10 ? 1 : 2}; };
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   SamplingPlan plan = adaptive_plan(0.02, 64);
   plan.settings.surfaces = true;
   run(film, plan, two);
@@ -141,7 +150,7 @@ TEST_CASE("neighbours with other objects get more samples though they have the s
 TEST_CASE(
     "a pixel whose samples all fell on one side of an edge gets more, as its neighbours tell of the edge") {
   const auto step = [](int x, int, u32) { return MadeUpPixel{x < 10 ? 0.25f : 0.75f, 1}; };
-  GrowingFilm film(width, height, false);
+  Film film = growing(false);
   run(film, adaptive_plan(0.02, 64), step);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -161,7 +170,7 @@ TEST_CASE("the expected error is that of the doublings, the last counting half, 
     const float sums[] = {1 - m1 - m2, 1 + m1 - m2, 1 + m2, 1 + m2};
     return MadeUpPixel{sums[sample], 1};
   };
-  GrowingFilm film(width, height, false);
+  Film film = growing(false);
   SamplingPlan plan;
   plan.settings.progressive = true;
   plan.samples = 4;
@@ -179,7 +188,7 @@ TEST_CASE("where blocks of pixels take more rays, more of the error must be at s
     return MadeUpPixel{1 + noise * float((x + y + int(sample)) % 2), 1, x < 16 ? 1u : 9u};
   };
   const auto samples = [&](double threshold, bool costs) {
-    GrowingFilm film(width, height, false);
+    Film film = growing(false);
     const SamplingPlan plan = adaptive_plan(threshold, 64);
     Pass first = *next_pass(film, plan);
     CHECK(first.costs);
@@ -204,7 +213,7 @@ TEST_CASE("a budget is kept, and the pixels of the largest errors get it") {
   };
   SamplingPlan plan = adaptive_plan(1e-4, 1024);
   plan.settings.budget = 3;
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   run(film, plan, noisy);
   double sum = 0;
   for (const u32 taken : film.taken) sum += taken;
@@ -221,7 +230,7 @@ TEST_CASE("a frame ends when its mean error is below the noise threshold") {
   const auto noisy = [](int x, int y, u32 sample) {
     return MadeUpPixel{float(hash_u32(sample + hash_u32(static_cast<u32>(at(x, y)))) & 1u), 1};
   };
-  GrowingFilm film(width, height, false);
+  Film film = growing(false);
   run(film, plan, noisy);
   CHECK(mean_error(film) < 0.01);
   CHECK(film.taken[0] < 65536);
@@ -230,7 +239,7 @@ TEST_CASE("a frame ends when its mean error is below the noise threshold") {
 
 TEST_CASE("subsampling interpolates even surfaces, and looks at each pixel before") {
   const auto ramp = [](int x, int y, u32) { return MadeUpPixel{0.5f + 0.001f * float(x + y), 1}; };
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   run(film, subsampling_plan(4), ramp);
   int sampled = 0;
   for (int y = 0; y < height; ++y)
@@ -238,7 +247,7 @@ TEST_CASE("subsampling interpolates even surfaces, and looks at each pixel befor
       const std::size_t p = at(x, y);
       const bool corner = (x % 2 == 0 || x == width - 1) && (y % 2 == 0 || y == height - 1);
       CHECK(film.states[p] == (corner ? PixelState::sampled : PixelState::interpolated));
-      CHECK(film.film.sums[p].x / film.film.weights[p] == Approx(ramp(x, y, 0).value).margin(1e-5));
+      CHECK(film.sums[p].x / film.weights[p] == Approx(ramp(x, y, 0).value).margin(1e-5));
       sampled += corner;
     }
   CHECK(sampled == 17 * 10);
@@ -250,21 +259,21 @@ TEST_CASE("a thing one pixel wide between the corners is found by its surface") 
     const bool on = x == 7 || y == 9;
     return MadeUpPixel{on ? 0.51f : 0.5f, on ? 2 : 1};
   };
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   run(film, subsampling_plan(1), wire);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      CHECK(film.film.sums[at(x, y)].x / film.film.weights[at(x, y)] == Approx(wire(x, y, 0).value));
+      CHECK(film.sums[at(x, y)].x / film.weights[at(x, y)] == Approx(wire(x, y, 0).value));
 }
 
 TEST_CASE("a shadow one pixel wide is followed from where a corner lies in it") {
   // It falls mostly between the corners, and is one only here and there.
   const auto shadow = [](int x, int y, u32) { return MadeUpPixel{x == (y < 4 ? 8 : 7) ? 0.1f : 0.5f, 1}; };
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   run(film, subsampling_plan(1), shadow);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      CHECK(film.film.sums[at(x, y)].x / film.film.weights[at(x, y)] == Approx(shadow(x, y, 0).value));
+      CHECK(film.sums[at(x, y)].x / film.weights[at(x, y)] == Approx(shadow(x, y, 0).value));
 }
 
 TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's") {
@@ -273,10 +282,10 @@ TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's
     return MadeUpPixel{float((x * 7 + y * 3 + int(sample) * 5) % 11) / 11, (x / 5) % 3};
   };
   const SamplingPlan plan = adaptive_plan(0.05, 32);
-  GrowingFilm whole(width, height, true);
+  Film whole = growing(true);
   run(whole, plan, noisy);
 
-  GrowingFilm film(width, height, true);
+  Film film = growing(true);
   Pass pass = *next_pass(film, plan);
   for (int passes = 0; passes < 3; ++passes) {
     add_pass(film, pass, made(film, pass, noisy), true);
@@ -287,93 +296,132 @@ TEST_CASE("a frame in passes continues from its checkpoint, and takes no other's
   Film half = made(film, pass, noisy);
   for (std::size_t i = 0; i < half.done.size() / 2; ++i) half.done[i] = 0;
   const auto file = folder / "state";
-  write_growing_checkpoint(file, film, pass, half, 42);
+  write_checkpoint(file, film, pass, half, 42);
 
-  GrowingFilm back(width, height, true);
+  Film back = growing(true);
   Pass same;
   Film part;
-  CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 43), UsageError);
-  read_growing_checkpoint(file, back, same, part, 42);
+  CHECK_THROWS_AS(read_checkpoint(file, back, same, part, 43), UsageError);
+  read_checkpoint(file, back, same, part, 42);
   CHECK(same.pixels == pass.pixels);
   CHECK(part.done == half.done);
   add_pass(back, same, made(back, same, noisy), true);
   run(back, plan, noisy, same);
   CHECK(back.taken == whole.taken);
-  for (std::size_t p = 0; p < back.taken.size(); ++p) REQUIRE(back.film.sums[p] == whole.film.sums[p]);
+  for (std::size_t p = 0; p < back.taken.size(); ++p) REQUIRE(back.sums[p] == whole.sums[p]);
 
-  GrowingFilm smaller(width, height - 1, true);
-  CHECK_THROWS_AS(read_growing_checkpoint(file, smaller, same, part, 42), UsageError);
+  Film smaller = growing(true, height - 1);
+  CHECK_THROWS_AS(read_checkpoint(file, smaller, same, part, 42), UsageError);
   std::filesystem::resize_file(file, 500);
-  CHECK_THROWS_AS(read_growing_checkpoint(file, back, same, part, 42), SceneError);
+  CHECK_THROWS_AS(read_checkpoint(file, back, same, part, 42), SceneError);
 }
 
 TEST_CASE("a checkpoint whose values no frame has is refused, whatever its checksum says") {
   const TemporaryFolder folder;
   const auto file = folder / "forged";
   const SamplingPlan plan = adaptive_plan(0.05, 32);
-  const auto forge = [&](const std::function<void(GrowingFilm&, Pass&, Film&)>& change) {
-    GrowingFilm film(width, height, true);
+  const auto forge = [&](const std::function<void(Film&, Pass&, Film&)>& change) {
+    Film film = growing(true);
     Pass pass = list_pass({3 | 4 << 16, 5 | 6 << 16}, 1, 1);
-    Film made = film_of_pass(film, pass, false);
+    Film made = film_of_pass(film, pass);
     film.stage = 1;
+    film.allocate();
     change(film, pass, made);
-    write_growing_checkpoint(file, film, pass, made, 42);
-    GrowingFilm back(width, height, true);
+    write_checkpoint(file, film, pass, made, 42);
+    Film back = growing(true);
     Pass read;
     Film part;
-    read_growing_checkpoint(file, back, read, part, 42);
+    read_checkpoint(file, back, read, part, 42);
     return may_be_of(plan, read);
   };
-  CHECK(forge([](GrowingFilm&, Pass&, Film&) {}));
+  CHECK(forge([](Film&, Pass&, Film&) {}));
   for (const u32 pixel : {0x7fff7fffu, 0x00500000u, u32{width}, u32{height} << 16, 3u | 4u << 16})
-    CHECK_THROWS_AS(forge([&](GrowingFilm&, Pass& pass, Film&) { pass.pixels[1] = pixel; }), SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass&, Film&) { film.states[7] = PixelState{9}; }), SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass&, Film&) { film.film.done[7] = 2; }), SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm&, Pass&, Film& made) { made.done[0] = 255; }), SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm&, Pass& pass, Film&) { pass.surfaces = true; }), SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass& pass, Film& made) {  // a list that is one pixel high
+    CHECK_THROWS_AS(forge([&](Film&, Pass& pass, Film&) { pass.pixels[1] = pixel; }), SceneError);
+  CHECK_THROWS_AS(forge([](Film& film, Pass&, Film&) { film.states[7] = PixelState{9}; }), SceneError);
+  CHECK_THROWS_AS(forge([](Film& film, Pass&, Film&) { film.done[7] = 2; }), SceneError);
+  CHECK_THROWS_AS(forge([](Film&, Pass&, Film& made) { made.done[0] = 255; }), SceneError);
+  CHECK_THROWS_AS(forge([](Film&, Pass& pass, Film&) { pass.surfaces = true; }), SceneError);
+  CHECK_THROWS_AS(forge([](Film& film, Pass& pass, Film& made) {  // a list that is one pixel high
                     pass.width = 16 * pass.height / 4, pass.height = 1;
-                    made = film_of_pass(film, pass, false);
+                    made = film_of_pass(film, pass);
                   }),
                   SceneError);
-  CHECK_THROWS_AS(forge([](GrowingFilm& film, Pass& pass, Film& made) {  // the image on its side
+  CHECK_THROWS_AS(forge([](Film& film, Pass& pass, Film& made) {  // the image on its side
                     pass.width = height, pass.height = width;
                     pass.pixels.clear();
-                    made = film_of_pass(film, pass, false);
+                    made = film_of_pass(film, pass);
                   }),
                   SceneError);
-  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.first_sample = 31, pass.sample_count = 2; }));
-  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.sample_count = 0; }));
-  CHECK_FALSE(forge([](GrowingFilm&, Pass& pass, Film&) { pass.first_sample = 3, pass.sample_count = ~0u; }));
+  CHECK_THROWS_AS(forge([](Film& film, Pass&, Film&) { film = growing(true); }),
+                  SceneError);                                    // sums are missing
+  CHECK_THROWS_AS(forge([](Film& film, Pass& pass, Film& made) {  // complete before the first pass
+                    film = growing(true), pass = {}, made = {};
+                  }),
+                  SceneError);
+  CHECK_FALSE(forge([](Film&, Pass& pass, Film&) { pass.first_sample = 31, pass.sample_count = 2; }));
+  CHECK_FALSE(forge([](Film&, Pass& pass, Film&) { pass.sample_count = 0; }));
+  CHECK_FALSE(forge([](Film&, Pass& pass, Film&) { pass.first_sample = 3, pass.sample_count = ~0u; }));
 }
 
 TEST_CASE("a short checkpoint of many pixels is refused by its length, before memory is taken") {
   const TemporaryFolder folder;
   const auto file = folder / "short";
-  GrowingFilm film(width, height, false), back(width, height, false);
+  Film film = growing(false), back = growing(false);
   Pass pass, read;
   pass.width = 10000, pass.height = 9000, pass.sample_count = 1;
-  write_growing_checkpoint(file, film, pass, {}, 42);
+  write_checkpoint(file, film, pass, {}, 42);
   Film part;
-  CHECK_THROWS_WITH(read_growing_checkpoint(file, back, read, part, 42),
-                    ContainsSubstring("10000x9000 pixels in"));
+  CHECK_THROWS_WITH(read_checkpoint(file, back, read, part, 42), ContainsSubstring("10000x9000 pixels in"));
   CHECK(part.sums.empty());
   std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // sparse: it takes no room
-  CHECK_THROWS_AS(read_growing_checkpoint(file, back, read, part, 42), UsageError);
-  CHECK_THROWS_AS(read_checkpoint(file, back.film, 42), UsageError);
+  CHECK_THROWS_AS(read_checkpoint(file, back, read, part, 42), UsageError);
 }
 
-TEST_CASE("a checkpoint with pixels that are neither done nor not is refused") {
+TEST_CASE("the checkpoint of a plain frame has its one pass, or the complete film") {
   const TemporaryFolder folder;
-  Film film(width, height, false), back(width, height, false);
-  film.done[5] = 3;
-  write_checkpoint(folder / "forged", film, 42);
-  CHECK_THROWS_AS(read_checkpoint(folder / "forged", back, 42), SceneError);
+  const auto file = folder / "state";
+  const SamplingPlan plan{{}, 4};
+  const FilmNeeds plain{.layout = {}};
+  Film film(width, height, plain);
+  Pass pass = *next_pass(film, plan);
+  CHECK(pass.sample_count == 4);
+  const auto may_continue = [&](const Film& of, const Pass& in_hand, const Film& made) {
+    write_checkpoint(file, of, in_hand, made, 42);
+    Film back(width, height, plain), part;
+    Pass read;
+    read_checkpoint(file, back, read, part, 42);
+    CHECK(back.sums.size() + part.sums.size() == film.pixels());
+    return read.is_none() || may_be_of(plan, read);
+  };
+  Film made = film_of_pass(film, pass);
+  CHECK(may_continue(film, pass, made));
+  Pass fewer = pass;
+  fewer.sample_count = 3;
+  CHECK_FALSE(may_continue(film, fewer, made));
+  fewer = pass, fewer.first_sample = 1;
+  CHECK_THROWS_AS(may_continue(film, fewer, made), SceneError);
+  made.done[5] = 3;
+  CHECK_THROWS_AS(may_continue(film, pass, made), SceneError);
+  add_pass(film, pass, film_of_pass(film, pass), true);
+  CHECK_FALSE(next_pass(film, plan, pass));
+  CHECK(may_continue(film, {}, {}));
+  CHECK_THROWS_AS(may_continue(film, pass, film_of_pass(film, pass)), SceneError);  // it has no second pass
+}
+
+TEST_CASE("a checkpoint of another version is refused by its name") {
+  const TemporaryFolder folder;
+  for (const char* version : {"C1", "P3", "F9"}) {
+    std::ofstream(folder / "old") << "SUNDOG" << version << std::string(200, '\0');
+    Film film = growing(false), part;
+    Pass pass;
+    CHECK_THROWS_WITH(read_checkpoint(folder / "old", film, pass, part, 42),
+                      ContainsSubstring("is a checkpoint of another version of sundog; finish"));
+  }
 }
 
 TEST_CASE("the variance of pixels with one sample is that of the colours around") {
   const auto step = [](int x, int, u32) { return MadeUpPixel{x < 10 ? 0.25f : 0.75f, 1}; };
-  GrowingFilm film(width, height, false);
+  Film film = growing(false);
   SamplingPlan plan = adaptive_plan(100, 64);
   run(film, plan, step);
   const Image variance = develop_variance(film);

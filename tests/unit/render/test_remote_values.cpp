@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "catch.h"
-#include "render/remote/remote_server.h"
+#include "render/remote/remote_worker.h"
 
 using namespace sundog;
 using nlohmann::json;
@@ -59,9 +59,11 @@ TEST_CASE("a tile from a worker is the one that was asked for, or its first rows
 
 TEST_CASE("a tile from a worker has the arrays that its frame wants, for all pixels or none") {
   CHECK_THROWS_AS(sent(made_of({8, 4, 4, 4}, 3), asked_for()), DeviceError);  // the frame has no AOVs
-  CHECK(sent(made_of({8, 4, 4, 4}, 3), asked_for(), {"depth"}).aovs.size() == 48);
-  CHECK_THROWS_AS(sent(made_of({8, 4, 4, 4}, 9), asked_for(), {"depth"}), DeviceError);
-  CHECK_THROWS_AS(sent(made_of({8, 4, 4, 4}, 3), asked_for(), {"uv"}), DeviceError);
+  TileRequest surfaces = asked_for();
+  surfaces.surfaces = true;
+  CHECK(sent(made_of({8, 4, 4, 4}, 3), surfaces, {"depth"}).aovs.size() == 48);
+  CHECK_THROWS_AS(sent(made_of({8, 4, 4, 4}, 9), surfaces, {"depth"}), DeviceError);
+  CHECK_THROWS_AS(sent(made_of({8, 4, 4, 4}, 3), surfaces, {"uv"}), DeviceError);
   TileResult with_rays = made_of({8, 4, 4, 4});
   with_rays.rays.resize(16);
   CHECK(sent(with_rays, asked_for(), {"rays"}).rays.size() == 16);
@@ -70,7 +72,6 @@ TEST_CASE("a tile from a worker has the arrays that its frame wants, for all pix
 
 TEST_CASE("a request for a tile that no frame has, or with values for some of its pixels, is refused") {
   TileRequest request = asked_for();
-  request.in_pass = true;
   request.sums.resize(16), request.weights.resize(16);
   const PackedTile good = pack_request(request);
   CHECK(unpack_request(good.values, good.data).sums.size() == 16);
@@ -89,7 +90,7 @@ TEST_CASE("a worker's answer that makes no sense is a failure of its device") {
     RemoteDevice device;
     device.settings = {{"aovs", json::array()}};
     device.connect = [&] { return std::make_unique<Echo>(Message{Message::ready, values, {}}); };
-    RemoteServer server(device);
-    CHECK_THROWS_AS(server.open(), DeviceError);
+    RemoteWorker worker(device);
+    CHECK_THROWS_AS(worker.open(), DeviceError);
   }
 }

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "catch.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/plan/coarse.h"
 
 using namespace sundog;
@@ -20,15 +20,15 @@ constexpr int width = 40, height = 24;
 /// What a scene's pixels show: its first light's intensity, and where the pixel is; each sample the same.
 float value_of(float light, int x, int y) { return light + static_cast<float>(y * width + x); }
 
-/// A scene server that makes value_of() and counts what it is asked for.
-struct MadeUpServer : SceneServer {
+/// A scene worker that makes value_of() and counts what it is asked for.
+struct MadeUpWorker : SceneWorker {
   std::shared_ptr<const CompiledScene> scene;
   std::atomic<int> opened{0}, tiles{0}, pause_us{0};
   std::atomic<bool> fails{false}, does_not_build{false};
   bool open_ = false;
   DeviceInfo device;
 
-  explicit MadeUpServer(int index = 0) {
+  explicit MadeUpWorker(int index = 0) {
     device.estimate = 1;
     device.device = index;
   }
@@ -45,7 +45,7 @@ struct MadeUpServer : SceneServer {
   }
   bool is_open() const override { return open_; }
   void prepare_surfaces() override {}
-  ServerFigures figures() const override { return {}; }
+  WorkerFigures figures() const override { return {}; }
   void close() override { open_ = false; }
   int processor() const override { return -1; }
 
@@ -79,15 +79,15 @@ struct MadeUpServer : SceneServer {
   }
 };
 
-using Made = std::vector<std::shared_ptr<MadeUpServer>>;
+using Made = std::vector<std::shared_ptr<MadeUpWorker>>;
 
-Made servers(int count) {
+Made workers(int count) {
   Made all;
-  for (int i = 0; i < count; ++i) all.push_back(std::make_shared<MadeUpServer>(i));
+  for (int i = 0; i < count; ++i) all.push_back(std::make_shared<MadeUpWorker>(i));
   return all;
 }
 
-std::vector<std::shared_ptr<SceneServer>> given(const Made& made) { return {made.begin(), made.end()}; }
+std::vector<std::shared_ptr<SceneWorker>> given(const Made& made) { return {made.begin(), made.end()}; }
 
 std::shared_ptr<const SceneDescription> scene_of(double light, int samples = 4) {
   auto scene = std::make_shared<SceneDescription>();
@@ -119,7 +119,7 @@ void check_shows(const Snapshot& snapshot, double light) {
 }  // namespace
 
 TEST_CASE("a session draws a scene until it is settled") {
-  const Made made = servers(2);
+  const Made made = workers(2);
   RenderSession session(given(made));
   CHECK(session.snapshot().state == SessionState::idle);
   CHECK_FALSE(session.snapshot().picture);
@@ -135,8 +135,8 @@ TEST_CASE("a session draws a scene until it is settled") {
   CHECK(snapshot.counts[COUNT_PRIMARY] >= width * height);
 }
 
-TEST_CASE("servers stay open from one scene to the next") {
-  const Made made = servers(1);
+TEST_CASE("workers stay open from one scene to the next") {
+  const Made made = workers(1);
   RenderSession session(given(made));
   for (int i = 1; i <= 5; ++i) {
     CHECK(session.start(scene_of(i)) == static_cast<Generation>(i));
@@ -147,7 +147,7 @@ TEST_CASE("servers stay open from one scene to the next") {
 }
 
 TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene") {
-  const Made made = servers(3);
+  const Made made = workers(3);
   made[1]->pause_us = 300;
   made[2]->pause_us = 2000;
   RenderSession session(given(made));
@@ -191,7 +191,7 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
 }
 
 TEST_CASE("scenes that follow each other fast are seen all the same") {
-  const Made made = servers(1);
+  const Made made = workers(1);
   made[0]->pause_us = 3000;
   RenderSession session(given(made));
   SessionSettings settings;
@@ -212,7 +212,7 @@ TEST_CASE("scenes that follow each other fast are seen all the same") {
 }
 
 TEST_CASE("a cancelled scene stops, and keeps its picture") {
-  const Made made = servers(1);
+  const Made made = workers(1);
   RenderSession session(given(made));
   session.start(scene_of(5));
   session.wait();
@@ -227,7 +227,7 @@ TEST_CASE("a cancelled scene stops, and keeps its picture") {
 }
 
 TEST_CASE("errors of a scene and of a device are the session's state, and the next scene is drawn") {
-  const Made made = servers(1);
+  const Made made = workers(1);
   RenderSession session(given(made));
   SECTION("a scene that does not compile") {
     auto broken = std::make_shared<SceneDescription>(*scene_of(1));
@@ -260,7 +260,7 @@ TEST_CASE("errors of a scene and of a device are the session's state, and the ne
 }
 
 TEST_CASE("a device that fails leaves its work to the others") {
-  const Made made = servers(2);
+  const Made made = workers(2);
   made[0]->fails = true;
   RenderSession session(given(made));
   session.start(scene_of(3));
@@ -269,7 +269,7 @@ TEST_CASE("a device that fails leaves its work to the others") {
 }
 
 TEST_CASE("a pick is of the newest scene, and nothing outside the frame") {
-  const Made made = servers(1);
+  const Made made = workers(1);
   RenderSession session(given(made));
   CHECK_FALSE(session.pick(0, 0));
   session.start(scene_of(9, 64));
@@ -283,7 +283,7 @@ TEST_CASE("a pick is of the newest scene, and nothing outside the frame") {
 
 TEST_CASE("a session ends in the middle of anything") {
   for (int i = 0; i < 30; ++i) {
-    const Made made = servers(2);
+    const Made made = workers(2);
     made[0]->pause_us = 1000;
     RenderSession session(given(made));
     session.start(scene_of(1, 1000));

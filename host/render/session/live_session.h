@@ -1,24 +1,17 @@
-// What a session holds for its threads and its callers. Locks: a frame's mutex may be held when the session's
-// is taken, never the other way. Internal to the session.
+// A live session: orders of scenes, which its control thread compiles; drafts, which are drawn anew when
+// their kernels are built; picks, which are answered between tiles. Internal to the session.
 #pragma once
-#include <condition_variable>
 #include <deque>
 #include <future>
-#include <mutex>
 #include <thread>
 
-#include "base/driver_threads.h"
-#include "render/frame/frame.h"
+#include "render/session/frame_loop.h"
 #include "render/session/render_session.h"
-#include "render/session/session_frame.h"
 
 namespace sundog {
 
-using Servers = std::vector<std::shared_ptr<SceneServer>>;
-using TileServers = std::vector<std::shared_ptr<TileServer>>;
+using Workers = std::vector<std::shared_ptr<SceneWorker>>;
 
-// How often a frame in hand is looked at for drivers that hang.
-inline constexpr std::chrono::milliseconds look_again{50};
 // How often a draft is looked at for whether it can end.
 inline constexpr std::chrono::milliseconds look_for_kernels{10};
 
@@ -26,7 +19,7 @@ inline bool is_at_rest(SessionState state) {
   return state == SessionState::settled || state == SessionState::stopped || state == SessionState::failed;
 }
 
-struct RenderSession::State : std::enable_shared_from_this<RenderSession::State> {
+struct LiveSession : FrameLoop {
   struct Order {
     Generation generation = 0;
     std::shared_ptr<const SceneDescription> scene;
@@ -34,53 +27,31 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     Stopwatch clock;
     std::shared_ptr<const SessionFrame> draft{};  // whose picture it draws anew
   };
-  struct Worker {
-    std::shared_ptr<TileServer> server;
-    std::shared_ptr<SceneServer> of_scenes;  // the same; null: its scene is the only one
-    DriverThread thread;
-    std::shared_ptr<SessionFrame> seen;  // the last frame that it took part in
-    bool opening = false;                // it may be in a driver's compiler
-    bool closed = false;                 // the server, behind a frame
-    bool leave = false, gone = false;
-    bool abandoned = false;  // a frame did not wait for it, and nobody does
-    // Of the last frame that was rendered to its end; 0: it made nothing.
-    double pixels_a_second = 0, measured_pixels = 0;
-  };
   struct Pick {
     Generation generation = 0;
     int x = 0, y = 0;
     std::promise<std::optional<Picked>> answer;
   };
 
-  mutable std::mutex mutex;
-  mutable std::condition_variable changed;
-  std::uint64_t revision = 0;
   Generation newest = 0;
   SessionState state = SessionState::idle;
   std::string error;
   std::optional<Order> pending;
-  std::shared_ptr<SessionFrame> current, shown;
-  std::vector<std::shared_ptr<Worker>> workers;
-  std::vector<std::shared_ptr<Worker>> leaving;
+  std::shared_ptr<SessionFrame> shown;
   std::deque<Pick> picks;
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
-  Generation rested = 0;  // the last for which a server has prepared for what comes
-  bool closing = false;
+  Generation rested = 0;  // the last for which a worker has prepared for what comes
   std::thread control;
   SceneCompiler compiler;       // the control thread's
   std::mutex rendering;         // taken before `mutex`: one frame at a time is rendered to its end
-  const void* rated = nullptr;  // the scene of the last such frame, by which workers' speeds are known
+  const void* rated = nullptr;  // the scene of the last such frame, by which threads' speeds are known
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
   mutable std::weak_ptr<const Frame> picture_frame;
   mutable std::uint64_t picture_passes = 0, picture_pixels = 0;
 
-  void note() {
-    ++revision;
-    changed.notify_all();
-  }
   void set_state(SessionState next) {
     state = next;
     note();
@@ -102,27 +73,25 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
     pending = std::move(next);
   }
 
-  void add_worker(std::shared_ptr<TileServer> server);
-  void begin(const TileServers& servers);
+  void begin(const Workers& workers);
   void end();
-  /// Renders a frame of the workers' servers to its end, in place of what is drawn.
-  void run(const std::shared_ptr<SessionFrame>& mine, bool wait);
+  /// Renders a frame to its end in place of what is drawn.
+  void run_final(const std::shared_ptr<SessionFrame>& mine);
   void run_control();
   void free_retired(std::unique_lock<std::mutex>& lock);
   void take_order(std::unique_lock<std::mutex>& lock);
-  std::shared_ptr<SessionFrame> prepare(const Order& order, Servers servers,
+  std::shared_ptr<SessionFrame> prepare(const Order& order, Workers workers,
                                         const std::shared_ptr<const CompiledScene>& before, double speed);
   void look_at(std::unique_lock<std::mutex>& lock);
-  void run_worker(Worker& worker);
-  void serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index);
-  void serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker);
-  bool may_pick(const Worker& worker) const {
-    return !picks.empty() && worker.of_scenes && worker.seen == current && worker.of_scenes->is_open();
+  bool has_errand(const DeviceThread& thread) const override {
+    return !picks.empty() && thread.of_scenes && thread.seen == current && thread.of_scenes->is_open();
   }
-  std::optional<std::size_t> index_of(const Worker& worker) const;
+  void run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) override;
+  void after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
+                   const std::shared_ptr<SessionFrame>& mine) override;
   void note_progress(const std::shared_ptr<SessionFrame>& mine);
   bool is_draft(const std::shared_ptr<SessionFrame>& frame) const;
-  void end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
+  void end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
                  const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
@@ -131,8 +100,7 @@ struct RenderSession::State : std::enable_shared_from_this<RenderSession::State>
   }
   /// A frame that is rendered to its end is let go of by its caller.
   bool is_held() const { return current && current->final; }
-  void answer_picks(const std::shared_ptr<TileServer>& server);
-  void drop_frame();
+  void answer_picks(const std::shared_ptr<DeviceWorker>& worker);
   void drop_picks();
   std::shared_ptr<const Image> picture_so_far(const Frame& frame) const;
 };

@@ -1,4 +1,4 @@
-#include "render/device/device_server.h"
+#include "render/device/local_worker.h"
 
 #include <utility>
 
@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-void add(ServerFigures& sum, const ServerFigures& more) {
+void add(WorkerFigures& sum, const WorkerFigures& more) {
   for (const auto& [name, times] : more.kernels) {
     KernelTimes& total = sum.kernels[name];
     total.launches += times.launches;
@@ -26,23 +26,23 @@ void add(ServerFigures& sum, const ServerFigures& more) {
 
 }  // namespace
 
-DeviceServer::DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene,
-                           const RenderOptions& options)
-    : info_(std::move(info)), scene_(std::move(scene)), options_(&options), builder_(info_) {}
+LocalWorker::LocalWorker(DeviceInfo info, std::shared_ptr<const CompiledScene> scene,
+                         const RenderOptions& options)
+    : info_(std::move(info)), scene_(std::move(scene)), options_(&options), store_(info_) {}
 
-void DeviceServer::show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) {
+void LocalWorker::show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) {
   scene_ = std::move(scene);
   options_ = &options;
   other_scene_ = true;
   draws_draft_ = false;
-  builder_.may_wait();
-  builder_.forget_later();  // until the next rest
+  store_.builder().may_wait();
+  store_.builder().forget_later();  // until the next rest
   closed_ = {};
   readback_before_ = renderer_ ? renderer_->readback_seconds() : 0;
   if (device_) device_->forget_times();
 }
 
-void DeviceServer::change_scene(RenderTimes& times) {
+void LocalWorker::change_scene(RenderTimes& times) {
   try {
     renderer_->change_scene(*scene_, *options_, times);
   } catch (const NotWantedAnyMore&) {
@@ -51,7 +51,7 @@ void DeviceServer::change_scene(RenderTimes& times) {
   }
 }
 
-RenderTimes DeviceServer::open() {
+RenderTimes LocalWorker::open() {
   RenderTimes times;
   if (std::exchange(other_scene_, false) && works_) {
     works_ = false;
@@ -60,36 +60,34 @@ RenderTimes DeviceServer::open() {
     close();
     readback_before_ = 0;
     device_ = std::make_unique<Device>(info_);
-    renderer_.emplace(*device_, *scene_, *options_, times, watch_, &builder_);
+    renderer_.emplace(*device_, *scene_, *options_, times, watch_, &store_);
   }
   works_ = true;
   draws_draft_ = renderer_->draws_draft();
   return times;
 }
 
-void DeviceServer::be_nice() {
+void LocalWorker::be_nice() {
   if (const auto& step_back = value_of(info_.environment).step_back) step_back();
 }
 
-TileResult DeviceServer::render(const TileRequest& request, const StopFlags& flags) {
+TileResult LocalWorker::render(const TileRequest& request, const StopFlags& flags) {
   works_ = false;
   TileResult result = renderer_->render(request, flags);
   works_ = true;
   return result;
 }
 
-bool DeviceServer::may_end_draft() const { return draws_draft_ && renderer_ && renderer_->may_end_draft(); }
-
-void DeviceServer::rest() {
+void LocalWorker::rest() {
   if (works_) renderer_->rest();
 }
 
-void DeviceServer::keep_programs() {
+void LocalWorker::keep_programs() {
   if (works_) renderer_->keep_programs();
 }
 
-ServerFigures DeviceServer::figures() const {
-  ServerFigures sum = closed_;
+WorkerFigures LocalWorker::figures() const {
+  WorkerFigures sum = closed_;
   if (!renderer_) return sum;
   const KernelUpdate& made = renderer_->update();
   add(sum, {device_->times(), renderer_->readback_seconds() - readback_before_, renderer_->notes(),
@@ -97,7 +95,7 @@ ServerFigures DeviceServer::figures() const {
   return sum;
 }
 
-void DeviceServer::close() {
+void LocalWorker::close() {
   closed_ = figures();
   renderer_.reset();
   device_.reset();

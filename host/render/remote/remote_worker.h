@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 #include "render/remote/channel.h"
 
 namespace sundog {
@@ -16,17 +16,17 @@ struct RemoteDevice {
   nlohmann::json settings;                            // of Message::open
   std::uint64_t scene = 0;                            // expected hash_scene()
   unsigned restarts = 0;                              // maximum number of reconnections
-  unsigned failures = 3;                              // TileServer::failures_allowed()
+  unsigned failures = 3;                              // DeviceWorker::failures_allowed()
 };
 
-class RemoteServer : public TileServer {
+class RemoteWorker : public DeviceWorker {
  public:
-  explicit RemoteServer(RemoteDevice device) : device_(std::move(device)) {}
+  explicit RemoteWorker(RemoteDevice device) : device_(std::move(device)) {}
 
   const DeviceInfo& info() const override { return device_.info; }
   RenderTimes open() override;
   TileResult render(const TileRequest& request, const StopFlags& flags) override;
-  ServerFigures figures() const override;
+  WorkerFigures figures() const override;
   void close() override;
   void be_nice() override { device_.settings["nice"] = true; }
   unsigned failures_allowed() const override { return device_.failures; }
@@ -40,7 +40,7 @@ class RemoteServer : public TileServer {
   RemoteDevice device_;
   std::unique_ptr<Channel> channel_;
   std::uint64_t job_ = 0;
-  ServerFigures figures_;           // at the last tile
+  WorkerFigures figures_;           // at the last tile
   std::vector<std::string> notes_;  // from this side
   unsigned restarts_ = 0;
   std::string hangs_;  // the message when its driver was found hanging

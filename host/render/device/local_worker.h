@@ -6,31 +6,31 @@
 
 #include "render/device/launch_watch.h"
 #include "render/device/tile_renderer.h"
-#include "render/frame/tile_server.h"
+#include "render/frame/device_worker.h"
 
 namespace sundog {
 
-class DeviceServer : public SceneServer {
+class LocalWorker : public SceneWorker {
  public:
   /// `options` must outlive this. Does not open the device.
-  DeviceServer(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
+  LocalWorker(DeviceInfo info, std::shared_ptr<const CompiledScene> scene, const RenderOptions& options);
 
   void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) override;
   void prepare_surfaces() override { renderer_->prepare_surfaces(); }
   bool is_open() const override { return works_ && !other_scene_; }
-  void hurry() override { builder_.wants_no_more(); }
+  void hurry() override { store_.builder().wants_no_more(); }
   bool draws_draft() const override { return draws_draft_; }
-  bool may_end_draft() const override;
+  bool may_end_draft() const override { return draws_draft_ && store_.may_end_draft(); }
   void rest() override;
   void keep_programs() override;
   /// Maximum work-group size of its kernels; 0: unknown, or not open.
   std::size_t greatest_group() const { return renderer_ ? renderer_->greatest_group() : 0; }
-  std::size_t kernels_waiting() const override { return builder_.waiting(); }
+  std::size_t kernels_waiting() const override { return store_.builder().waiting(); }
 
   const DeviceInfo& info() const override { return info_; }
   RenderTimes open() override;
   TileResult render(const TileRequest& request, const StopFlags& flags) override;
-  ServerFigures figures() const override;
+  WorkerFigures figures() const override;
   void close() override;
   double overdue() const override { return watch_.overdue(); }
   bool compiles() const override { return watch_.compiles(); }
@@ -44,14 +44,14 @@ class DeviceServer : public SceneServer {
   std::shared_ptr<const CompiledScene> scene_;
   const RenderOptions* options_;
   LaunchWatch watch_;
-  KernelBuilder builder_;
+  KernelStore store_;
   std::unique_ptr<Device> device_;
   std::optional<TileRenderer> renderer_;
   std::atomic<bool> draws_draft_{false};
   bool works_ = false;          // no failure since it was opened: usable for another scene
   bool other_scene_ = false;    // open() may keep kernels and tables
   double readback_before_ = 0;  // from previous scenes
-  ServerFigures closed_;        // from previously opened renderers
+  WorkerFigures closed_;        // from previously opened renderers
 };
 
 }  // namespace sundog

@@ -13,11 +13,9 @@
 
 namespace sundog {
 
-/// The work of one tile: in a plain frame all samples and AOVs; in a pass the pixels of the pass.
+/// The work of one tile of a pass.
 struct TileRequest {
   Tile tile;
-  bool in_pass = false;
-  // Of a pass:
   std::vector<u32> pixels;                 // each pixel's of the image (Pass::pixels); empty: its own
   u32 first_sample = 0, sample_count = 0;  // samples to add to what follows
   bool surfaces = false;                   // AOVs
@@ -46,8 +44,8 @@ struct StopFlags {
   bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
 };
 
-/// What a server did, told when it is asked for and at the end.
-struct ServerFigures {
+/// What a worker did, told when it is asked for and at the end.
+struct WorkerFigures {
   std::map<std::string, KernelTimes> kernels;
   double readback_seconds = 0;
   std::vector<std::string> notes;  // what did not stop it: smaller launches, a cache that could not be used
@@ -56,16 +54,16 @@ struct ServerFigures {
 };
 
 /// Used by one thread, overdue() and compiles() by any.
-class TileServer {
+class DeviceWorker {
  public:
-  virtual ~TileServer() = default;
+  virtual ~DeviceWorker() = default;
   virtual const DeviceInfo& info() const = 0;
   /// Makes it ready: kernels built, scene uploaded. Called again after a failure, to begin afresh. Throws
   /// DeviceError, BuildError.
   virtual RenderTimes open() = 0;
   /// Makes what is asked for. Throws DeviceError; then it must be opened again.
   virtual TileResult render(const TileRequest& request, const StopFlags& flags) = 0;
-  virtual ServerFigures figures() const = 0;
+  virtual WorkerFigures figures() const = 0;
   /// Writes compiled kernels to the cache and stays open.
   virtual void keep_programs() {}
   /// Lets go of the device, and keeps its compiled kernels for the next time.
@@ -82,8 +80,8 @@ class TileServer {
   virtual int processor() const { return info().type == "cpu" ? 0 : -1; }
 };
 
-/// A server that stays open from one scene to the next.
-class SceneServer : public TileServer {
+/// A worker that stays open from one scene to the next.
+class SceneWorker : public DeviceWorker {
  public:
   /// From the next open() on: another scene, for which it keeps what suits it. Its figures begin anew.
   /// `options` must outlive their use.
@@ -100,7 +98,7 @@ class SceneServer : public TileServer {
   /// may ask the first.
   virtual bool draws_draft() const { return false; }
   virtual bool may_end_draft() const { return false; }
-  /// Nothing has to be drawn now. The server may prepare for later work, as long as it delays none.
+  /// Nothing has to be drawn now. The worker may prepare for later work, as long as it delays none.
   virtual void rest() {}
   /// Kernels that are being built beside the work. Any thread.
   virtual std::size_t kernels_waiting() const { return 0; }

@@ -1,4 +1,4 @@
-#include "render/remote/remote_server.h"
+#include "render/remote/remote_worker.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,7 @@ constexpr double between_flags = 0.005;  // seconds between checks of the flags 
 }  // namespace
 
 /// Rethrows a failure of the other side as the original exception type.
-void RemoteServer::fail(const nlohmann::json& failure) {
+void RemoteWorker::fail(const nlohmann::json& failure) {
   std::string what = failure.at("what");
   const std::string where = fmt::format("rank {} on {}", device_.info.rank, device_.info.host);
   if (!device_.info.host.empty() && what.find(where) == std::string::npos)
@@ -26,7 +26,7 @@ void RemoteServer::fail(const nlohmann::json& failure) {
   throw DeviceError(what, failure.value("status", 0));
 }
 
-Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
+Message RemoteWorker::answer(Message::Kind expected, const StopFlags& flags) {
   bool stopped = false;
   while (true) {
     if (!stopped && flags.set()) {
@@ -40,7 +40,7 @@ Message RemoteServer::answer(Message::Kind expected, const StopFlags& flags) {
   }
 }
 
-RenderTimes RemoteServer::try_open() {
+RenderTimes RemoteWorker::try_open() {
   if (!channel_) channel_ = device_.connect();
   channel_->send({Message::open, device_.settings, {}});
   return understood(device_.info.label(), [&] {
@@ -53,7 +53,7 @@ RenderTimes RemoteServer::try_open() {
   });
 }
 
-RenderTimes RemoteServer::open() {
+RenderTimes RemoteWorker::open() {
   while (true) {
     if (!hangs_.empty()) throw DeviceError(hangs_);
     try {
@@ -66,7 +66,7 @@ RenderTimes RemoteServer::open() {
   }
 }
 
-TileResult RemoteServer::render(const TileRequest& request, const StopFlags& flags) {
+TileResult RemoteWorker::render(const TileRequest& request, const StopFlags& flags) {
   try {
     ++job_;
     PackedTile packed = pack_request(request);
@@ -74,7 +74,7 @@ TileResult RemoteServer::render(const TileRequest& request, const StopFlags& fla
     channel_->send({Message::render, std::move(packed.values), std::move(packed.data)});
     return understood(device_.info.label(), [&] {
       const Message made = answer(Message::tile, flags);
-      figures_ = made.values.at("figures").get<ServerFigures>();
+      figures_ = made.values.at("figures").get<WorkerFigures>();
       const auto aovs = device_.settings.at("aovs").get<std::vector<std::string>>();
       return unpack_tile(made.values, made.data, request, aovs);
     });
@@ -84,13 +84,13 @@ TileResult RemoteServer::render(const TileRequest& request, const StopFlags& fla
   }
 }
 
-ServerFigures RemoteServer::figures() const {
-  ServerFigures all = figures_;
+WorkerFigures RemoteWorker::figures() const {
+  WorkerFigures all = figures_;
   all.notes.insert(all.notes.begin(), notes_.begin(), notes_.end());
   return all;
 }
 
-void RemoteServer::close() {
+void RemoteWorker::close() {
   if (channel_) channel_->send({Message::close, {}, {}});
   channel_.reset();
 }

@@ -1,8 +1,7 @@
-// A frame that is made in passes: some of its pixels, some of their samples at a time. Between two passes the
-// film is whole, and what comes next follows from it alone.
+// A frame is made in passes: some of its pixels, some of their samples at a time; a plain frame in one.
+// Between two passes the film is whole, and what comes next follows from it alone.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "render/film/film.h"
@@ -18,6 +17,7 @@ struct Pass {
   std::vector<u32> pixels;  // of the image, x | y << 16, or NO_PIXEL; empty: the image's own
   u32 first_sample = 0, sample_count = 0;
   bool surfaces = false, costs = false;  // `surfaces`: AOVs, of which first samples look for the surfaces
+  bool is_none() const { return width == 0 && height == 0; }
 };
 
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
@@ -37,11 +37,6 @@ bool is_list_size(int width, int height);
 /// The pixels of a pass in that order.
 std::vector<u32> pixels_of(const Pass& pass);
 
-/// What a pixel shows, for its neighbours' expected errors: red, green and blue, to which what is missing of
-/// alpha is added (red) and from which it is taken (green), and the sum of their squares. They are added up
-/// at once.
-using Seen [[gnu::vector_size(16)]] = float;
-
 /// The edge of the blocks of pixels whose rays a pass with `costs` counts: no device takes pixels of two of
 /// them together.
 constexpr int cost_block = 4;
@@ -53,49 +48,28 @@ inline std::size_t cost_blocks(int width, int height) {
 /// Pixels that a thread takes at once: below, waking another costs more than it saves.
 constexpr std::size_t pixels_at_once = 1 << 17;
 
-/// What has become of a pixel. The film's own weights say how many samples count.
-enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
-
-struct GrowingFilm {
-  Film film;                       // done: a sample or more
-  std::vector<u32> taken;          // samples of each pixel
-  std::vector<PixelState> states;  // of each pixel
-  std::vector<float4> earlier;     // the sums before a pixel's last pass; w = weight; empty: not wanted
-  std::vector<float> moved;        // squares of how far doublings moved it, the last for half
-  std::vector<u32> block_rays;     // of each block of 4x4 pixels in a pass with `costs`; empty: not counted
-  // Follow from sums, weights, taken and moved:
-  std::vector<Seen> seen;
-  std::vector<float> moved_by_one;  // `moved`, scaled to one sample; 0 with one
-  u32 stage = 0;                    // passes that are complete
-  u32 step = 0;                     // of the planner
-  std::uint64_t surfaces_seen = 0;  // pixels looked at by a ray of their own, for the surface alone
-
-  GrowingFilm() = default;
-  /// `with_earlier`: for pixel_errors(), develop_variance() and checkpoints.
-  GrowingFilm(int width, int height, bool with_aovs, AovLayout layout = {}, bool with_earlier = true);
-};
-
-/// An empty film of the pass's size, which holds what the frame's does.
-Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces);
+/// A film of the pass's size whose pixels are not done.
+Film film_of_pass(const Film& film, const Pass& pass);
 
 /// The image's pixel (y * width + x) that pixel `i` of the pass stands for; -1: none.
-std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i);
+std::int64_t image_index(const Film& film, const Pass& pass, std::size_t i);
 
 /// The memory of a list's pixels lies about: that of one so many later is asked for in time.
 constexpr std::size_t pixels_ahead = 24;
 
 /// Asks for sums and weights of pixel `i` of the pass, if there is one.
-void prefetch_sums(const GrowingFilm& film, const Pass& pass, std::size_t i);
+void prefetch_sums(const Film& film, const Pass& pass, std::size_t i);
 
 /// Puts the pixels of a pass that are done in their places. `complete`: all are, and the next pass may be
-/// planned; else the film is good to be looked at only.
-void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete);
+/// planned; else the film is good to be looked at only. A film without pixels takes the arrays of a pass over
+/// all of them.
+void add_pass(Film& film, const Pass& pass, Film made, bool complete);
 
 /// The estimated standard error of each pixel's colour: by how far a pass that doubled the samples moved it
 /// (Dammertz and others 2010). Summed over the channels and divided by the fourth root of their sum, which
 /// lies between the errors that are measured and those that are seen. Infinite where nothing is known, 0
 /// where no sample is.
-std::vector<float> pixel_errors(const GrowingFilm& film);
+std::vector<float> pixel_errors(const Film& film);
 
 /// The squared error of twice as many samples is this share of that of so many: edges and smooth surfaces
 /// under a Sobol sequence, by trial. Earlier doublings speak of a pixel's `moved` in this measure.
@@ -105,24 +79,11 @@ constexpr float squares_of_doubling = 0.27f;
 float share_of_squares(u32 samples);
 
 /// Sets the pixel's `seen` and `moved_by_one` by its sums, weight, samples and movement.
-void see(GrowingFilm& film, std::size_t pixel);
+void see(Film& film, std::size_t pixel);
 
 /// The variance of each pixel's colour, by the same difference: unbiased, of each channel. Of a pixel with
 /// one sample, that of the colours of the 3x3 pixels around. 0 where no sample is, infinite where nothing is
 /// known.
-Image develop_variance(const GrowingFilm& film);
-
-/// The samples of each pixel: `taken`, or those that count in a frame without passes.
-Image develop_samples(const Film& film, const std::vector<u32>& taken);
-
-/// The state of an unfinished frame: the film before the pass in hand, and as much of it as is made.
-void write_growing_checkpoint(const std::filesystem::path& path, const GrowingFilm& film, const Pass& pass,
-                              const Film& made, std::uint64_t key,
-                              const std::shared_ptr<Faults>& faults = nullptr);
-
-/// Reads one into `film`, which has the frame's size, `pass` and `made`, all of them checked but for the
-/// pass's samples, which the plan knows (may_be_of()). Throws as read_checkpoint() does.
-void read_growing_checkpoint(const std::filesystem::path& path, GrowingFilm& film, Pass& pass, Film& made,
-                             std::uint64_t key);
+Image develop_variance(const Film& film);
 
 }  // namespace sundog

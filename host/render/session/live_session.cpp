@@ -1,8 +1,7 @@
-// A session's threads: one that compiles scenes and watches the current frame, and one per device.
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/session/session_state.h"
+#include "render/session/live_session.h"
 
 namespace sundog {
 namespace {
@@ -25,62 +24,72 @@ Picked picked_from(const TileResult& made) {
 }
 
 /// Casts one ray through a pixel's centre.
-Picked pick_on(SceneServer& server, int x, int y) {
+Picked pick_on(SceneWorker& worker, int x, int y) {
   TileRequest request;
   request.tile = {x, y, 1, 1};
-  request.in_pass = request.surfaces = true;
-  server.prepare_surfaces();
-  return picked_from(server.render(request, {}));
+  request.surfaces = true;
+  worker.prepare_surfaces();
+  return picked_from(worker.render(request, {}));
 }
 
 /// Ends a draft frame as soon as its own kernels are ready.
 void leave_draft(Frame& frame, std::size_t index) {
-  const auto* server = dynamic_cast<const SceneServer*>(frame.servers[index].server.get());
-  if (!server || !server->may_end_draft()) return;
+  const auto* worker = dynamic_cast<const SceneWorker*>(frame.workers[index].device.get());
+  if (!worker || !worker->may_end_draft()) return;
   frame.stop = true;
   frame.queue.close();
 }
 
 }  // namespace
 
-void RenderSession::State::add_worker(std::shared_ptr<TileServer> server) {
-  auto worker = std::make_shared<Worker>();
-  worker->of_scenes = std::dynamic_pointer_cast<SceneServer>(server);
-  worker->server = std::move(server);
-  workers.push_back(worker);
-  worker->thread = start_thread([self = shared_from_this(), worker]() mutable {
-    self->run_worker(*worker);
-    worker.reset();
-    self.reset();
-  });
+void LiveSession::begin(const Workers& workers) {
+  const std::lock_guard lock(mutex);
+  for (const auto& worker : workers) add_thread(worker);
+  control = std::thread([this, self = shared_from_this()] { run_control(); });
 }
 
-/// Abandons the current frame. The caller holds the mutex.
-void RenderSession::State::drop_frame() {
-  if (!current) return;
-  current->frame->stop = true;
-  current->frame->queue.close();
-  for (const auto* list : {&workers, &leaving})
-    for (const auto& worker : *list)
-      if (worker->of_scenes) worker->of_scenes->hurry();
+void LiveSession::end() {
+  {
+    const std::lock_guard lock(mutex);
+    closing = true;
+    drop_frame();
+    drop_picks();
+    note();
+  }
+  control.join();
+  FrameLoop::end();
 }
 
-void RenderSession::State::drop_picks() {
+void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {
+  look_for_stop(*mine->frame);
+  {
+    const std::lock_guard lock(mutex);
+    drop_frame();
+    drop_picks();
+    set_pending(std::nullopt);
+    error.clear();
+    mine->generation = ++newest;
+    retire(std::exchange(current, mine));
+    set_state(SessionState::drawing);
+  }
+  watch_frame(*mine->frame, false);
+  const bool complete = mine->frame->queue.complete();
+  const std::lock_guard lock(mutex);
+  drop_picks();
+  current.reset();
+  if (mine->generation == newest && state == SessionState::drawing)
+    set_state(complete ? SessionState::settled : SessionState::stopped);
+  note();  // a start() may have come meanwhile
+}
+
+void LiveSession::drop_picks() {
   for (Pick& pick : picks) pick.answer.set_value(std::nullopt);
   picks.clear();
 }
 
-std::optional<std::size_t> RenderSession::State::index_of(const Worker& worker) const {
-  if (!current) return std::nullopt;
-  const auto& servers = current->frame->servers;
-  for (std::size_t i = 0; i < servers.size(); ++i)
-    if (servers[i].server == worker.server) return i;
-  return std::nullopt;
-}
-
 // The control thread: compiles the newest scene and watches the current frame.
 
-void RenderSession::State::run_control() {
+void LiveSession::run_control() {
   std::unique_lock lock(mutex);
   while (!closing) {
     const auto has_order = [&] { return pending && !is_awaited() && !is_held(); };
@@ -98,7 +107,7 @@ void RenderSession::State::run_control() {
   }
 }
 
-void RenderSession::State::free_retired(std::unique_lock<std::mutex>& lock) {
+void LiveSession::free_retired(std::unique_lock<std::mutex>& lock) {
   while (!retired.empty()) {
     std::vector<std::shared_ptr<const void>> old = std::exchange(retired, {});
     lock.unlock();
@@ -107,12 +116,12 @@ void RenderSession::State::free_retired(std::unique_lock<std::mutex>& lock) {
   }
 }
 
-void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
+void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   Order order = std::move(*pending);
   pending.reset();
   drop_frame();
-  Servers servers;
-  for (const auto& worker : workers) servers.push_back(worker->of_scenes);
+  Workers workers;
+  for (const auto& thread : threads) workers.push_back(thread->of_scenes);
   const double speed = pixel_seconds;
   const bool draft = order.draft != nullptr;
   std::shared_ptr<const CompiledScene> before = current ? current->flat : nullptr;
@@ -120,7 +129,7 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   std::shared_ptr<SessionFrame> made;
   std::string failure;
   try {
-    made = prepare(order, std::move(servers), before, speed);
+    made = prepare(order, std::move(workers), before, speed);
   } catch (const std::exception& thrown) {
     failure = thrown.what();
   }
@@ -142,8 +151,9 @@ void RenderSession::State::take_order(std::unique_lock<std::mutex>& lock) {
   set_state(SessionState::preparing);
 }
 
-std::shared_ptr<SessionFrame> RenderSession::State::prepare(
-    const Order& order, Servers servers, const std::shared_ptr<const CompiledScene>& before, double speed) {
+std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers workers,
+                                                   const std::shared_ptr<const CompiledScene>& before,
+                                                   double speed) {
   auto made = std::make_shared<SessionFrame>();
   made->generation = order.generation;
   made->scene = order.scene;
@@ -158,12 +168,12 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
     made->times = order.draft->times;
     settings.coarse = settings.coarse && made->times.full < 0;
   }
-  const std::weak_ptr<State> session = weak_from_this();
+  const std::weak_ptr<LiveSession> session = std::static_pointer_cast<LiveSession>(shared_from_this());
   const std::weak_ptr<SessionFrame> frame = made;
   // Other kernels may be far slower.
   const bool known =
       before && before->features == made->flat->features && before->field_source == made->flat->field_source;
-  made->frame = make_session_frame({made->flat, settings, std::move(servers), known ? speed : 0},
+  made->frame = make_session_frame({made->flat, settings, std::move(workers), known ? speed : 0},
                                    [session, frame](const RenderProgress&) {
                                      const auto self = session.lock();
                                      const auto mine = frame.lock();
@@ -173,41 +183,41 @@ std::shared_ptr<SessionFrame> RenderSession::State::prepare(
     const auto self = session.lock();
     const auto mine = frame.lock();
     if (!self || !mine) return;
-    self->answer_picks(mine->frame->servers[i].server);
+    self->answer_picks(mine->frame->workers[i].device);
     leave_draft(*mine->frame, i);
   };
   return made;
 }
 
 /// Workers call this between two tiles.
-void RenderSession::State::answer_picks(const std::shared_ptr<TileServer>& server) {
+void LiveSession::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
   std::unique_lock lock(mutex);
   if (picks.empty()) return;
   const auto found =
-      std::ranges::find_if(workers, [&](const auto& worker) { return worker->server == server; });
-  if (found == workers.end()) return;
-  // A copy: serve_pick unlocks, and then the list of workers may change.
-  const std::shared_ptr<Worker> worker = *found;  // NOLINT(performance-unnecessary-copy-initialization)
-  if (may_pick(*worker)) serve_pick(lock, *worker);
+      std::ranges::find_if(threads, [&](const auto& thread) { return thread->worker == worker; });
+  if (found == threads.end()) return;
+  // A copy: run_errand unlocks, and then the list of threads may change.
+  const std::shared_ptr<DeviceThread> thread = *found;  // NOLINT(performance-unnecessary-copy-initialization)
+  if (has_errand(*thread)) run_errand(lock, *thread);
 }
 
 /// Ends the generation if nobody is left to draw it.
-void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
+void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
   const std::shared_ptr<SessionFrame> mine = current;
   lock.unlock();
   Frame& frame = *mine->frame;
-  for (std::size_t i = 0; i < frame.servers.size(); ++i)
-    if (const double seconds = frame.servers[i].server->overdue(); seconds > 0) {
-      const std::string why = frame.servers[i].server->info().label() +
+  for (std::size_t i = 0; i < frame.workers.size(); ++i)
+    if (const double seconds = frame.workers[i].device->overdue(); seconds > 0) {
+      const std::string why = frame.workers[i].device->info().label() +
                               ": a launch has not come back for too long: the driver hangs";
-      retire_server(frame, i, why, std::make_exception_ptr(DeviceError(why)));
+      retire_worker(frame, i, why, std::make_exception_ptr(DeviceError(why)));
     }
   std::string failure;
   {
     const std::lock_guard frame_lock(frame.mutex);
-    if (!frame.servers.empty() && std::ranges::all_of(frame.servers, &Frame::Server::failed))
-      for (const Frame::Server& server : frame.servers)
-        failure += (failure.empty() ? "" : "; ") + server.report.messages.back();
+    if (!frame.workers.empty() && std::ranges::all_of(frame.workers, &Frame::Worker::failed))
+      for (const Frame::Worker& worker : frame.workers)
+        failure += (failure.empty() ? "" : "; ") + worker.report.messages.back();
   }
   lock.lock();
   if (failure.empty() || mine != current || mine->generation != newest || is_at_rest(state)) return;
@@ -216,100 +226,64 @@ void RenderSession::State::look_at(std::unique_lock<std::mutex>& lock) {
   set_state(SessionState::failed);
 }
 
-// The workers' threads.
+// The device threads.
 
-void RenderSession::State::run_worker(Worker& worker) {
-  std::unique_lock lock(mutex);
-  while (true) {
-    const auto wanted = [&] {
-      return closing || worker.leave || (current && current != worker.seen && index_of(worker)) ||
-             may_pick(worker);
-    };
-    changed.wait(lock, wanted);
-    if (closing || worker.leave) break;
-    const std::optional<std::size_t> index = index_of(worker);
-    if (current != worker.seen && index)
-      serve(lock, worker, *index);
-    else
-      serve_pick(lock, worker);
-  }
-  worker.opening = false;
-  lock.unlock();
-  try {
-    if (!worker.closed) worker.server->close();
-  } catch (const std::exception&) {
-    // Released as well as possible.
-  }
-  lock.lock();
-  worker.gone = true;
-  changed.notify_all();
-}
-
-void RenderSession::State::serve(std::unique_lock<std::mutex>& lock, Worker& worker, std::size_t index) {
-  const std::shared_ptr<SessionFrame> mine = current;
-  std::shared_ptr<SessionFrame> before = std::exchange(worker.seen, mine);
-  worker.opening = true;
+void LiveSession::after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
+                              const std::shared_ptr<SessionFrame>& mine) {
   lock.unlock();
   Frame& frame = *mine->frame;
-  if (mine->flat && worker.of_scenes) worker.of_scenes->show(mine->flat, frame.options);
-  before.reset();  // outside the lock
-  serve_frame(frame, index);
-  if (mine->final) leave_frame(frame, index, mine->closes);
+  const bool draft = thread.of_scenes->draws_draft();
   double speed = 0;
-  const bool draft = !mine->final && worker.of_scenes->draws_draft();
-  if (!mine->final) {
+  {
     const std::lock_guard frame_lock(frame.mutex);
-    if (!draft) speed = frame.passes->pixel_seconds;
+    if (!draft) speed = frame.coarse.pixel_seconds;
     if (progress_of(frame).settled) note_progress(mine);
   }
   lock.lock();
-  worker.opening = false;
-  worker.closed = mine->closes;
   if (speed > 0) pixel_seconds = speed;
   note();
-  if (draft) return end_draft(lock, worker, mine);
-  if (mine != current || mine->final || state != SessionState::settled || !worker.of_scenes->is_open())
-    return;
+  if (draft) return end_draft(lock, thread, mine);
+  if (mine != current || state != SessionState::settled || !thread.of_scenes->is_open()) return;
   lock.unlock();
-  worker.of_scenes->rest();
+  thread.of_scenes->rest();
   lock.lock();
   rested = mine->generation;
   note();
 }
 
-/// Whether a server has drawn part of the frame as a draft. The caller holds the mutex.
-bool RenderSession::State::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
-  return std::ranges::any_of(workers, [&](const auto& worker) {
-    return worker->seen == frame && worker->of_scenes && worker->of_scenes->draws_draft();
+/// Whether a worker has drawn part of the frame as a draft. The caller holds the mutex.
+bool LiveSession::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
+  return std::ranges::any_of(threads, [&](const auto& thread) {
+    return thread->seen == frame && thread->of_scenes && thread->of_scenes->draws_draft();
   });
 }
 
 /// Waits for the frame's final kernels and restarts it, unless interrupted.
-void RenderSession::State::end_draft(std::unique_lock<std::mutex>& lock, const Worker& worker,
-                                     const std::shared_ptr<SessionFrame>& mine) {
+void LiveSession::end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
+                            const std::shared_ptr<SessionFrame>& mine) {
   const auto over = [&] {
-    return closing || worker.leave || pending || mine != current || is_at_rest(state);
+    return closing || thread.leave || pending || mine != current || is_at_rest(state);
   };
-  while (!over() && !worker.of_scenes->may_end_draft()) changed.wait_for(lock, look_for_kernels, over);
+  while (!over() && !thread.of_scenes->may_end_draft()) changed.wait_for(lock, look_for_kernels, over);
   if (over()) return;
   pending = Order{mine->generation, mine->scene, mine->settings, mine->clock, mine};
   note();
 }
 
-void RenderSession::State::serve_pick(std::unique_lock<std::mutex>& lock, Worker& worker) {
+void LiveSession::run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) {
   Pick pick = std::move(picks.front());
   picks.pop_front();
   lock.unlock();
   try {
-    pick.answer.set_value(pick_on(*worker.of_scenes, pick.x, pick.y));
+    pick.answer.set_value(pick_on(*thread.of_scenes, pick.x, pick.y));
   } catch (const std::exception&) {
     pick.answer.set_exception(std::current_exception());
   }
   lock.lock();
 }
 
-/// Called by a worker that has added a tile to the frame, whose mutex it holds.
-void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mine) {
+/// Called by a thread that has added a tile to the frame, whose mutex it holds.
+void LiveSession::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
   if (mine != current || is_at_rest(state)) return;
@@ -329,10 +303,9 @@ void RenderSession::State::note_progress(const std::shared_ptr<SessionFrame>& mi
 }
 
 /// Developed once for all callers, who hold the frame's mutex.
-std::shared_ptr<const Image> RenderSession::State::picture_so_far(const Frame& frame) const {
+std::shared_ptr<const Image> LiveSession::picture_so_far(const Frame& frame) const {
   const std::lock_guard lock(picture_mutex);
-  const FramePasses& passes = *frame.passes;
-  const std::uint64_t count = passes.coarse_passes + std::uint64_t{passes.film.stage};
+  const std::uint64_t count = frame.coarse.count + std::uint64_t{frame.film.stage};
   const bool same = picture && picture_frame.lock().get() == &frame && picture_passes == count &&
                     picture_pixels == frame.pixels_done;
   if (same) return picture;

@@ -1,4 +1,4 @@
-#include "render/film/growing_film.h"
+#include "render/film/pass.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -28,11 +28,11 @@ float squared_error(const Color& now, const Color& then) {
   return moved * moved / std::sqrt(seen_light(now));
 }
 
-float squared_error(const GrowingFilm& film, std::size_t p) {
-  const float weight = film.film.weights[p];
+float squared_error(const Film& film, std::size_t p) {
+  const float weight = film.weights[p];
   const float4& before = film.earlier[p];
   if (!(weight > 0 && before.w > 0)) return std::numeric_limits<float>::infinity();
-  return squared_error(mean_of(film.film.sums[p], weight), mean_of(before, before.w));
+  return squared_error(mean_of(film.sums[p], weight), mean_of(before, before.w));
 }
 
 Seen seen_of(const Color& color) {
@@ -42,10 +42,9 @@ Seen seen_of(const Color& color) {
 float moved_by_one(float moved, u32 taken) { return taken > 1 ? moved / share_of_squares(taken) : 0; }
 
 /// Puts the samples of pixel `i` of a pass into its place `p`.
-void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
-  Film& whole = film.film;
-  const float4 sum = made.sums[i], before = whole.sums[p];
-  const float weight = made.weights[i], weight_before = whole.weights[p];
+void add_samples(Film& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
+  const float4 sum = made.sums[i], before = film.sums[p];
+  const float weight = made.weights[i], weight_before = film.weights[p];
   const u32 taken = pass.first_sample + pass.sample_count;
   const Color color = watched(sum, weight);
   if (weight > 0 && weight_before > 0) {
@@ -59,29 +58,28 @@ void add_samples(GrowingFilm& film, const Pass& pass, const Film& made, std::siz
     film.earlier[p] = {before.x, before.y, before.z, weight_before};
   film.seen[p] = seen_of(color);
   film.moved_by_one[p] = moved_by_one(film.moved[p], taken);
-  whole.sums[p] = sum;
-  whole.weights[p] = weight;
-  if (!whole.rays.empty()) whole.rays[p] = made.rays[i];
+  film.sums[p] = sum;
+  film.weights[p] = weight;
+  if (!film.rays.empty()) film.rays[p] = made.rays[i];
   film.taken[p] = taken;
   if (pass.first_sample > 0) return;
-  whole.done[p] = 1;
+  film.done[p] = 1;
   film.states[p] = PixelState::sampled;
 }
 
 /// Puts pixel `i` of a pass into its place `p`.
-void add_pixel(GrowingFilm& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
-  Film& whole = film.film;
-  const std::size_t vectors = whole.layout.vectors();
-  if (pass.surfaces && !whole.aovs.empty())
+void add_pixel(Film& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
+  const std::size_t vectors = film.layout.vectors();
+  if (pass.surfaces && !film.aovs.empty())
     std::copy_n(made.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * i), vectors,
-                whole.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p));
+                film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p));
   if (pass.sample_count > 0)
     add_samples(film, pass, made, i, p);
   else if (film.states[p] == PixelState::empty)
     film.states[p] = PixelState::looked_at;
 }
 
-void prefetch(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+void prefetch(const Film& film, const Pass& pass, std::size_t i) {
   if (pass.pixels.empty() || i >= pass.pixels.size() || pass.pixels[i] == NO_PIXEL) return;
   prefetch_sums(film, pass, i);
   const auto p = static_cast<std::size_t>(image_index(film, pass, i));
@@ -104,43 +102,36 @@ std::vector<u32> add_up_blocks(const std::vector<u32>& rays, int width, int heig
   return sums;
 }
 
-/// Whether a film without samples gets some for each of its pixels.
-bool begins(const GrowingFilm& film, const Pass& pass) {
-  return film.stage == 0 && pass.pixels.empty() && pass.sample_count > 0;
-}
-
-/// The arrays of a complete pass become those of the film.
-void begin(GrowingFilm& film, const Pass& pass, Film made) {
-  const u32 taken = pass.first_sample + pass.sample_count;
-  Film& whole = film.film;
-  whole.sums = std::move(made.sums), whole.weights = std::move(made.weights);
-  whole.done = std::move(made.done);
-  if (pass.costs) film.block_rays = add_up_blocks(made.rays, whole.width, whole.height);
-  if (!whole.rays.empty()) whole.rays = std::move(made.rays);
-  if (pass.surfaces && !whole.aovs.empty()) whole.aovs = std::move(made.aovs);
-  if (pass.surfaces) film.surfaces_seen += whole.done.size();
-  film.taken.assign(film.taken.size(), taken);
-  film.states.assign(film.states.size(), PixelState::sampled);
-  for (std::size_t p = 0; p < film.seen.size(); ++p)
-    film.seen[p] = seen_of(watched(whole.sums[p], whole.weights[p]));
-  std::ranges::transform(film.moved, film.moved_by_one.begin(),
-                         [&](float moved) { return moved_by_one(moved, taken); });
-  ++film.stage;
+/// Gives a film without pixels those of a pass over all of them.
+void take_pixels(Film& film, const Pass& pass, Film made) {
+  film.sums = std::move(made.sums), film.weights = std::move(made.weights), film.done = std::move(made.done);
+  if (pass.costs) film.block_rays = add_up_blocks(made.rays, film.width, film.height);
+  if (film.counts_rays) film.rays = std::move(made.rays);
+  if (pass.surfaces && film.shows_surfaces) film.aovs = std::move(made.aovs);
+  film.allocate();
+  if (!film.grows) return;
+  if (pass.surfaces)
+    film.surfaces_seen += static_cast<std::uint64_t>(std::ranges::count(film.done, std::uint8_t{1}));
+  for (std::size_t p = 0; p < film.done.size(); ++p) {
+    if (!film.done[p]) continue;
+    film.taken[p] = pass.sample_count;
+    film.states[p] = PixelState::sampled;
+    see(film, p);
+  }
 }
 
 /// Of a pixel with one sample, which tells nothing of its error: how much the colours of the 3x3 pixels
 /// around vary. Infinite where no other pixel is known.
-void write_variance_around(const GrowingFilm& film, std::size_t p, float* variance) {
-  const Film& whole = film.film;
-  const int width = whole.width, x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
+void write_variance_around(const Film& film, std::size_t p, float* variance) {
+  const int width = film.width, x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
   float count = 0, sums[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
-  for (int v = std::max(0, y - 1); v <= std::min(whole.height - 1, y + 1); ++v)
+  for (int v = std::max(0, y - 1); v <= std::min(film.height - 1, y + 1); ++v)
     for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
       const auto q =
           static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
-      if (!(whole.weights[q] > 0)) continue;
-      const float4& sum = whole.sums[q];
-      const float color[3] = {sum.x / whole.weights[q], sum.y / whole.weights[q], sum.z / whole.weights[q]};
+      if (!(film.weights[q] > 0)) continue;
+      const float4& sum = film.sums[q];
+      const float color[3] = {sum.x / film.weights[q], sum.y / film.weights[q], sum.z / film.weights[q]};
       for (int c = 0; c < 3; ++c) sums[c] += color[c], squares[c] += color[c] * color[c];
       ++count;
     }
@@ -151,36 +142,28 @@ void write_variance_around(const GrowingFilm& film, std::size_t p, float* varian
 
 }  // namespace
 
-GrowingFilm::GrowingFilm(int width, int height, bool with_aovs, AovLayout layout, bool with_earlier)
-    : film(width, height, with_aovs, layout) {
-  taken.resize(film.done.size());
-  states.resize(film.done.size());
-  earlier.resize(with_earlier ? film.done.size() : 0);
-  moved.assign(film.done.size(), std::numeric_limits<float>::infinity());
-  seen.resize(film.done.size());
-  moved_by_one.resize(film.done.size());
-}
-
-Film film_of_pass(const GrowingFilm& film, const Pass& pass, bool surfaces) {
-  Film made(pass.width, pass.height, surfaces, film.film.layout);
-  if (!film.film.rays.empty() || pass.costs) made.rays.resize(made.done.size());
+Film film_of_pass(const Film& film, const Pass& pass) {
+  Film made(pass.width, pass.height,
+            {.layout = film.layout,
+             .shows_surfaces = pass.surfaces,
+             .counts_rays = film.counts_rays || pass.costs});
+  made.allocate();
   return made;
 }
 
-void prefetch_sums(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+void prefetch_sums(const Film& film, const Pass& pass, std::size_t i) {
   if (pass.pixels.empty() || i >= pass.pixels.size()) return;  // the rows of an image lie in order
   const std::int64_t p = image_index(film, pass, i);
   if (p < 0) return;
-  __builtin_prefetch(&film.film.sums[static_cast<std::size_t>(p)], 1);
-  __builtin_prefetch(&film.film.weights[static_cast<std::size_t>(p)], 1);
+  __builtin_prefetch(&film.sums[static_cast<std::size_t>(p)], 1);
+  __builtin_prefetch(&film.weights[static_cast<std::size_t>(p)], 1);
 }
 
-std::int64_t image_index(const GrowingFilm& film, const Pass& pass, std::size_t i) {
+std::int64_t image_index(const Film& film, const Pass& pass, std::size_t i) {
   if (pass.pixels.empty()) return static_cast<std::int64_t>(i);
   const u32 pixel = pass.pixels[i];
   if (pixel == NO_PIXEL) return -1;
-  return static_cast<std::int64_t>(pixel >> 16) * film.film.width +
-         static_cast<std::int64_t>(pixel & 0xffffu);
+  return static_cast<std::int64_t>(pixel >> 16) * film.width + static_cast<std::int64_t>(pixel & 0xffffu);
 }
 
 float share_of_squares(u32 samples) {
@@ -193,13 +176,17 @@ float share_of_squares(u32 samples) {
   return powers[static_cast<std::size_t>(std::bit_width(samples) - 1)];
 }
 
-void see(GrowingFilm& film, std::size_t pixel) {
-  film.seen[pixel] = seen_of(watched(film.film.sums[pixel], film.film.weights[pixel]));
+void see(Film& film, std::size_t pixel) {
+  film.seen[pixel] = seen_of(watched(film.sums[pixel], film.weights[pixel]));
   film.moved_by_one[pixel] = moved_by_one(film.moved[pixel], film.taken[pixel]);
 }
 
-void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
-  if (complete && begins(film, pass)) return begin(film, pass, std::move(made));
+void add_pass(Film& film, const Pass& pass, Film made, bool complete) {
+  film.stage += complete;
+  if (film.sums.empty()) {
+    if (pass.pixels.empty() && pass.sample_count > 0) return take_pixels(film, pass, std::move(made));
+    film.allocate();
+  }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, made.done.size(), pixels_at_once),
                     [&](const auto& pixels) {
                       for (std::size_t i = pixels.begin(); i != pixels.end(); ++i) {
@@ -211,22 +198,21 @@ void add_pass(GrowingFilm& film, const Pass& pass, Film made, bool complete) {
   if (pass.surfaces && pass.first_sample == 0)
     for (std::size_t i = 0; i < made.done.size(); ++i)
       film.surfaces_seen += made.done[i] && image_index(film, pass, i) >= 0;
-  film.stage += complete;
 }
 
-std::vector<float> pixel_errors(const GrowingFilm& film) {
+std::vector<float> pixel_errors(const Film& film) {
   std::vector<float> errors(film.taken.size());
   for (std::size_t p = 0; p < errors.size(); ++p)
     if (film.states[p] == PixelState::sampled) errors[p] = std::sqrt(squared_error(film, p));
   return errors;
 }
 
-Image develop_variance(const GrowingFilm& film) {
-  Image image(film.film.width, film.film.height, 3);
+Image develop_variance(const Film& film) {
+  Image image(film.width, film.height, 3);
   for (std::size_t p = 0; p < film.taken.size(); ++p) {
     if (film.states[p] != PixelState::sampled) continue;
-    const float4 &sum = film.film.sums[p], &before = film.earlier[p];
-    const float weight = film.film.weights[p];
+    const float4 &sum = film.sums[p], &before = film.earlier[p];
+    const float weight = film.weights[p];
     if (!(weight > 0 && before.w > 0)) {
       write_variance_around(film, p, &image.data[3 * p]);
       continue;
@@ -235,13 +221,6 @@ Image develop_variance(const GrowingFilm& film) {
     const float then[3] = {before.x / before.w, before.y / before.w, before.z / before.w};
     for (std::size_t c = 0; c < 3; ++c) image.data[3 * p + c] = (now[c] - then[c]) * (now[c] - then[c]);
   }
-  return image;
-}
-
-Image develop_samples(const Film& film, const std::vector<u32>& taken) {
-  Image image(film.width, film.height, 1);
-  for (std::size_t p = 0; p < film.done.size(); ++p)
-    if (film.done[p]) image.data[p] = taken.empty() ? film.weights[p] : static_cast<float>(taken[p]);
   return image;
 }
 

@@ -1,0 +1,132 @@
+#include "render/frame/frame_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "render/film/hash.h"
+#include "render/plan/frame_tiles.h"
+
+namespace sundog {
+namespace {
+
+void check_aovs(const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (std::find(aov_names().begin(), aov_names().end(), name) == aov_names().end())
+      throw UsageError(
+          fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
+}
+
+/// A variance is known where samples were doubled.
+void check_variance(const std::vector<std::string>& names, const Sampling& sampling) {
+  if (std::ranges::count(names, "variance") > 0 && !in_passes(sampling))
+    throw UsageError(
+        "the AOV 'variance' wants a frame in passes: make it adaptive, or set /render/progressive to true");
+}
+
+/// Only the path tracer knows which lobes light has come by.
+void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
+  for (const std::string& name : names)
+    if (is_light(name) && scene.integrator != "path")
+      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
+}
+
+void check_shares(const Split& split, const std::vector<WorkerPlan>& devices) {
+  if (split.shares.empty() || split.shares.size() == devices.size()) return;
+  std::vector<std::string> labels;
+  for (const WorkerPlan& device : devices) labels.push_back(device.info.label());
+  throw UsageError(fmt::format("the fixed split {}: {} share{} for {} device{} ({}): give one share a device",
+                               fmt::join(split.shares, ","), split.shares.size(),
+                               split.shares.size() == 1 ? "" : "s", devices.size(),
+                               devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
+}
+
+/// Of a checkpoint: the scene and the region; 0 without one.
+std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options) {
+  if (checkpoint_path(options).empty()) return 0;
+  const std::uint64_t key = hash_scene(scene);
+  return options.region ? hash_bytes(&*options.region, sizeof *options.region, key) : key;
+}
+
+std::vector<double> estimates(const std::vector<WorkerPlan>& devices) {
+  std::vector<double> result;
+  for (const WorkerPlan& device : devices) result.push_back(device.info.estimate);
+  return result;
+}
+
+Tile area_of(const CompiledScene& scene, const RenderOptions& options) {
+  return frame_area(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
+}
+
+SamplingPlan plan_of(const CompiledScene& scene, const RenderOptions& options) {
+  return {scene.sampling,
+          scene.info.samples,
+          options.noise,
+          show_surfaces(options.aovs),
+          aov_layout(options.aovs).sums() > 0,
+          clear_materials(scene)};
+}
+
+FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
+  FilmNeeds needs = film_needs(options.aovs);
+  needs.shows_surfaces |= needs_surfaces(scene.sampling);
+  needs.grows = in_passes(scene.sampling);
+  needs.keeps_earlier =
+      needs.grows && (options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
+                      !checkpoint_path(options).empty());
+  return needs;
+}
+
+std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const RenderOptions& options) {
+  std::vector<DeviceSpeed> speeds(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    speeds[i].estimate = devices[i].info.estimate;
+    speeds[i].processor = devices[i].processor;
+    speeds[i].measured = devices[i].pixels_a_second;
+    speeds[i].sample = devices[i].measured_pixels;
+    if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
+  }
+  return speeds;
+}
+
+}  // namespace
+
+void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                 const RenderOptions& options) {
+  check_aovs(options.aovs);
+  check_variance(options.aovs, scene.sampling);
+  check_light(options.aovs, scene);
+  if (devices.empty()) throw DeviceError("no device to render on");
+  check_shares(options.split, devices);
+  check_region(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
+  if (in_passes(scene.sampling) && options.part.count > 1)
+    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
+  if (options.region && options.part.count > 1)
+    throw UsageError("a region is made whole: leave the part out");
+}
+
+std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                  const RenderOptions& options) {
+  const Tile area = area_of(scene, options);
+  auto frame = std::make_shared<Frame>(options, plan_of(scene, options),
+                                       Film(area.width, area.height, needs_of(scene, options)),
+                                       speeds_of(devices, options));
+  frame->tiles = [options, shares = estimates(devices)](const Film& made) {
+    return plan_tiles(options, made, shares);
+  };
+  for (const WorkerPlan& device : devices) {
+    Frame::Worker worker;
+    worker.device = device.make(frame->options);
+    worker.report.info = device.info;
+    frame->workers.push_back(std::move(worker));
+  }
+  frame->area = area;
+  frame->inner = options.region.value_or(area);
+  frame->inner.x -= area.x, frame->inner.y -= area.y;
+  frame->key = frame_key(scene, options);
+  return frame;
+}
+
+}  // namespace sundog

@@ -1,0 +1,20 @@
+// What a frame is to be, before a device works on it. Internal to the render layer.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "compile/compiled_scene.h"
+#include "render/frame/frame.h"
+#include "render/frame/result.h"
+
+namespace sundog {
+
+/// Throws UsageError for options that no frame of the scene can have, DeviceError without devices.
+void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                 const RenderOptions& options);
+
+/// A frame with its plan of passes and tiles and its workers. No pass has begun.
+std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                  const RenderOptions& options);
+
+}  // namespace sundog
