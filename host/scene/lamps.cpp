@@ -106,6 +106,27 @@ LampAxes lamp_axes(const LightDescription& light) {
   return axes;
 }
 
+double power_of_intensity(const LightDescription& light) {
+  constexpr double pi = std::numbers::pi;
+  const double outer = cosine(light.outer_angle), inner = cosine(light.inner_angle);
+  switch (light.type) {
+    case LightType::point:
+      return 4 * pi * pi;
+    case LightType::spot:  // the soft edge has the mean 1/2 over the cosine, its square 1/3
+      return 2 * pi * pi * (1 - inner + (inner - outer) * (light.square_edge ? 1.0 / 3 : 0.5));
+    case LightType::rectangle:
+      return pi * light.size.x * light.size.y;
+    case LightType::disk:
+      return pi * pi * light.radius * light.radius;
+    case LightType::sphere:
+      return 4 * pi * pi * light.radius * light.radius;
+    case LightType::ambient:
+    case LightType::directional:
+      break;
+  }
+  throw std::logic_error("a light from everywhere has no power");
+}
+
 Light pack_light(const NamedLight& named, const dvec3& origin) {
   const LightDescription& light = named.light;
   Light packed{};

@@ -42,6 +42,7 @@
   FEATURE(bool, HAS_FUZZ_MAPS, fuzz_maps)           /* some has a fuzz color texture */                 \
   FEATURE(bool, HAS_LAYER_FILTERS, layer_filters)   /* paths: shadow rays go through fuzz or coats */   \
   FEATURE(bool, HAS_LENS, lens)                     /* the camera has a lens */                         \
+  FEATURE(bool, HAS_ORTHOGRAPHIC, orthographic)     /* the camera's rays are parallel */                 \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion)   /* the camera moves while the shutter is open */    \
   FEATURE(bool, HAS_OBJECT_MOTION, object_motion)   /* some object does */                              \
   FEATURE(bool, HAS_TURNS, turns)                   /* some object turns or grows meanwhile */          \

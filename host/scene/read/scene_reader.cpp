@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/image_io.h"
@@ -19,6 +20,7 @@
 #include "scene/procedural/procedural.h"
 #include "scene/read/dark_world.h"
 #include "scene/read/fields.h"
+#include "scene/read/focus.h"
 #include "scene/read/frame_cache.h"
 #include "scene/read/library.h"
 #include "scene/read/motion.h"
@@ -57,9 +59,11 @@ class SceneReader {
     if (animate) read_tracks(*animate);  // animate.cpp has applied them
     object.read("frames_per_second", scene_.frames_per_second, "unit", scene_.unit);
     bool placed = false;
-    if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
+    if (const auto camera = object.find("camera"))
+      scene_.camera = read_camera(*camera, scene_.image, scene_.unit, placed);
     if (const auto lights = object.find("lights"))
-      for (const JsonValue& light : lights->items("lights")) scene_.lights.push_back(read_light(light));
+      for (const JsonValue& light : lights->items("lights"))
+        scene_.lights.push_back(read_light(light, scene_.unit));
     if (const auto environment = object.find("environment"))
       scene_.environment =
           read_environment(*environment, [&](const JsonValue& file) { return read_picture(file); });
@@ -71,6 +75,7 @@ class SceneReader {
     if (!placed)
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
+    if (!scene_.camera.lens.focus_on.empty()) focus_on_object(scene_, in_focus_);
     add_lamps(scene_);
     warn_of_dark_world(scene_);
   }
@@ -173,7 +178,8 @@ class SceneReader {
   }
 
   void read_object(const JsonValue& value, const Placement& parent) {
-    const std::string type = value.type();
+    const std::string type = value.type(), &wanted = scene_.camera.lens.focus_on;
+    const std::size_t first = scene_.objects.size();
     const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
     value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
       const Placement placement = read_placement(object, parent);
@@ -193,6 +199,10 @@ class SceneReader {
         place_solid(object, type, placement);
       }
     });
+    if (const auto name = value.json().find("name"); !wanted.empty() && name != value.json().end())
+      if (*name == wanted)
+        in_focus_.insert(in_focus_.end(), scene_.objects.begin() + std::ptrdiff_t(first),
+                         scene_.objects.end());
   }
 
   const ModelLibrary::Parts& find_mesh(const JsonValue& name) const {
@@ -243,6 +253,7 @@ class SceneReader {
   TextureLibrary textures_{scene_};
   SurfaceNames names_;
   NameTable fields_;
+  std::vector<Object> in_focus_;  // those in the object of the name that the camera focuses on
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };
 

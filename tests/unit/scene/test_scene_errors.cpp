@@ -134,6 +134,13 @@ TEST_CASE("bad lights are refused with their place") {
       light(R"({"type": "sphere", "position": [0, 1, 0], "radius": 0})", "/radius", {"1e-15", "found 0"}),
       light(R"({"type": "sphere", "position": [0, 1, 0], "samples": 0})", "/samples", {"1", "found 0"}),
       light(R"({"type": "sphere", "position": [0, 1, 0], "falloff": {}})", "/falloff", {"unknown key"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "watts": -1})", "/watts", {"found -1"}),
+      light(R"({"type": "sphere", "position": [0, 1, 0], "watts": 1, "intensity": 1})", "",
+            {"\"intensity\" or \"watts\"", "found both"}),
+      light(R"({"type": "point", "position": [0, 1, 0], "lumens": 1, "falloff": {}})", "",
+            {"\"falloff\" or \"lumens\""}),
+      light(R"({"type": "point", "position": [0, 1, 0], "lumens": 1, "watts": 1})", "", {"found both"}),
+      light(R"({"type": "directional", "direction": [0, -1, 0], "watts": 1})", "/watts", {"unknown key"}),
   });
 }
 
@@ -179,6 +186,17 @@ TEST_CASE("bad environments, lenses and moving cameras are refused with their pl
       {camera(R"("lens": {"radius": -1})"), "/camera/lens/radius", {"not below 0", "found -1"}},
       {camera(R"("lens": {"blades": 2})"), "/camera/lens/blades", {"3 or more", "found 2"}, false},
       {camera(R"("lens": {"focus": 0})"), "/camera/lens/focus", {"found 0"}},
+      {camera(R"("fov": 30, "focal_length": 50)"), "/camera", {"\"fov\" or \"focal_length\"", "found both"}},
+      {camera(R"("fov": 30, "orthographic": 2)"), "/camera", {"\"fov\" or \"orthographic\""}},
+      {camera(R"("focal_length": 50, "orthographic": 2)"), "/camera", {"found both"}},
+      {camera(R"("focal_length": 0)"), "/camera/focal_length", {"0.1", "found 0"}},
+      {camera(R"("lens": {"f_number": 2})"), "/camera/lens/f_number", {"\"focal_length\""}, false},
+      {camera(R"("lens": {"f_number": 2, "radius": 1})"), "/camera/lens", {"\"radius\" or \"f_number\""}},
+      {camera(R"("lens": {"focus": 2, "focus_on": "a"})"), "/camera/lens", {"\"focus\" or \"focus_on\""}},
+      {camera(R"("lens": {"focus_on": "a"})"),
+       "/camera/lens/focus_on",
+       {"no object has the name \"a\""},
+       false},
       {camera(R"("moves_to": {"target": [0, 0, 5]})"), "/camera/moves_to", {"same point"}, false},
       {scene_with(R"("camera": {"moves_to": {}})"), "/camera/moves_to", {"\"position\" and \"target\""}},
   });

@@ -64,18 +64,22 @@ export function turnAbout(camera, axis, degrees, about) {
           up: tidy(turn(camera.up, axis, degrees))};
 }
 
+/** What a pixel shows, in world units at that depth. */
+const pixelAt = (camera, height, depth) =>
+  camera.orthographic > 0 ? camera.orthographic / height : (2 * depth * Math.tan((camera.fov * Math.PI) / 360)) / height;
+
 /** Where a point is in a picture of that size: {x, y, depth}; null behind the camera. */
 export function project(camera, width, height, point) {
   const f = frame(camera), d = sub(point, camera.position), depth = dot(d, f.forward);
   if (depth <= 1e-9) return null;
-  const pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
-  return {x: width / 2 + dot(d, f.right) / depth / pixel, y: height / 2 - dot(d, f.up) / depth / pixel, depth};
+  const pixel = pixelAt(camera, height, depth);
+  return {x: width / 2 + dot(d, f.right) / pixel, y: height / 2 - dot(d, f.up) / pixel, depth};
 }
 
 /** The way in the world of a way in the picture, at that depth. */
 export function unproject(camera, height, dx, dy, depth) {
-  const f = frame(camera), pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
-  return add(scale(f.right, dx * pixel * depth), scale(f.up, -dy * pixel * depth));
+  const f = frame(camera), pixel = pixelAt(camera, height, depth);
+  return add(scale(f.right, dx * pixel), scale(f.up, -dy * pixel));
 }
 
 /** The changes of the document that make `camera` its camera. */
