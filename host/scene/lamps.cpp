@@ -150,7 +150,7 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
     case LightType::spot:
       packed.kind = LIGHT_SPOT;
       packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
-      packed.color.w = static_cast<float>(cosine(light.inner_angle));
+      packed.edge_u.z = static_cast<float>(cosine(light.inner_angle));
       packed.edge_u.x = light.square_edge ? 1.0f : 3.0f;
       packed.edge_u.y = light.square_edge ? 0.0f : 2.0f;
       pack_range(light, packed);
@@ -207,6 +207,7 @@ void add_lamps(SceneDescription& scene) {
     material.emission = light.color * light.intensity;
     material.shadow_opaque = true;
     material.off_camera = !light.visible;
+    material.group = light.group;
     const Shape shape = lamp_shape(light);
     const bool aimed = facts_of(light.type).aimed;
     const dmat4 place = aimed ? placed_along(lamp_axes(light), light.position)

@@ -22,9 +22,11 @@
 #include "bench/runs/energy.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 #include "render/plan/passes.h"
+#include "scene/light_groups.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -156,8 +158,10 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
   return scene;
 }
 
-FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup,
-                    const Stopwatch& clock, TimeLedger& times) {
+FrameEnd render_one(const RenderCommand& asked, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
+                    TimeLedger& times) {
+  RenderCommand command = asked;
+  command.aovs = with_group_numbers(asked.aovs, light_groups(*scene.description));
   setup.stop.asks();
   print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})

@@ -154,7 +154,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   KernelConfig config = kernels.only_general ? general_config(scene, device.info(), tuning)
                                              : make_kernel_config(scene, device.info(), tuning);
   if (kernels.mattes) config.defines["HAS_MATTES"] = "1";
-  if (kernels.light) config.defines["HAS_LIGHT_PARTS"] = "1";
+  if (kernels.light) config.defines[kernels.groups ? "HAS_LIGHT_GROUPS" : "HAS_LIGHT_PARTS"] = "1";
   if (kernels.counts_rays) config.defines["HAS_RAY_COUNTS"] = "1";
   kernels.wanted.reset();
   kernels.fit = Fit::own;

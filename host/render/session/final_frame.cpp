@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "render/film/checkpoint_file.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 
@@ -35,6 +36,8 @@ void check_light(const std::vector<std::string>& names, const CompiledScene& sce
   for (const std::string& name : names)
     if (is_light(name) && scene.integrator != "path")
       throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
+  if (scene.features.caustics && std::ranges::any_of(names, is_light_group))
+    throw UsageError("photons do not know their groups of lights: leave caustics out, or the AOVs of groups");
 }
 
 /// Of a checkpoint: the scene and the region.

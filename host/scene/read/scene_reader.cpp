@@ -2,6 +2,7 @@
 #include "scene/read/scene_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "scene/displace.h"
 #include "scene/json/parse.h"
 #include "scene/lamps.h"
+#include "scene/light_groups.h"
 #include "scene/materials/presets.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/dark_world.h"
@@ -76,6 +78,9 @@ class SceneReader {
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
     if (!scene_.camera.lens.focus_on.empty()) focus_on_object(scene_, in_focus_);
+    if (const auto groups = light_groups(scene_); groups.size() > most_light_groups)
+      root_.fail(fmt::format("wanted at most {} groups of lights, found {}: {}", most_light_groups,
+                             groups.size(), fmt::join(groups, ", ")));
     add_lamps(scene_);
     warn_of_dark_world(scene_);
   }

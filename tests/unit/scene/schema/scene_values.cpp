@@ -12,6 +12,7 @@ namespace {
 std::string text(const dvec3& v) { return fmt::format("[{} {} {}]", v.x, v.y, v.z); }
 std::string text(const dvec2& v) { return fmt::format("[{} {}]", v.x, v.y); }
 std::string text(double v) { return fmt::format("{}", v); }
+std::string text(const std::string& v) { return v; }
 
 struct ShapeText {
   std::string operator()(const MeshShape& s) const { return fmt::format("mesh {}", s.mesh); }
