@@ -27,6 +27,7 @@
 #include "scene/read/library.h"
 #include "scene/read/motion.h"
 #include "scene/read/parts.h"
+#include "scene/read/scatter.h"
 #include "scene/read/surfaces.h"
 #include "scene/read/textures.h"
 #include "scene/read/tracks.h"
@@ -149,7 +150,11 @@ class SceneReader {
         object.read("crease_angle", options.crease_angle);
         return library_.load(object, from, file, options);
       }
-      const auto generate = [&] { return model_of(generate_mesh(from, meshes), name); };
+      const auto generate = [&] {
+        return model_of(
+            generate_mesh(from, meshes, [&](const JsonValue& picture) { return read_picture(picture); }),
+            name);
+      };
       if (!cache()) return library_.add(generate(), name);
       if (cache()->checks()) check_recipe(from, meshes);
       return library_.add(cache()->model(recipe_key(from, meshes), from.pointer(), generate), name);
@@ -190,6 +195,8 @@ class SceneReader {
       const Placement placement = read_placement(object, parent);
       if (type == "group") {
         for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, placement);
+      } else if (type == "scatter") {
+        read_scatter(object, placement);
       } else if (type == "mesh") {
         const JsonValue name = object.at("mesh");
         library_.place(find_mesh(name), placement);
@@ -208,6 +215,34 @@ class SceneReader {
       if (*name == wanted)
         in_focus_.insert(in_focus_.end(), scene_.objects.begin() + std::ptrdiff_t(first),
                          scene_.objects.end());
+  }
+
+  /// Reads each of the objects once and copies it.
+  void read_scatter(JsonObject& object, const Placement& placement) {
+    const auto [how, limit] = read_scatter_keys(object);
+    std::vector<Ground> grounds;
+    for (const Object& part : find_mesh(object.at("on")))
+      if (const auto* mesh = std::get_if<MeshShape>(&part.shape))
+        grounds.push_back({scene_.meshes[static_cast<std::size_t>(mesh->mesh)], part.world_from_object});
+    const std::size_t first = scene_.objects.size();
+    std::vector<std::vector<Object>> kinds;
+    Placement at_origin = placement;
+    at_origin.world_from_object = dmat4(1);
+    for (const JsonValue& item : object.at("objects").items("objects")) {
+      read_object(item, at_origin);
+      kinds.emplace_back(scene_.objects.begin() + std::ptrdiff_t(first), scene_.objects.end());
+      scene_.objects.erase(scene_.objects.begin() + std::ptrdiff_t(first), scene_.objects.end());
+    }
+    double wanted = 0;
+    const std::vector<ScatteredPlace> places = scatter(how, grounds, limit, wanted);
+    if (wanted > static_cast<double>(limit))
+      object.value().fail(
+          fmt::format("wanted at most the \"limit\" of {} copies, found {:.0f}: lower the "
+                      "\"density\" or raise the \"limit\"",
+                      limit, wanted));
+    for (const ScatteredPlace& place : places)
+      add_copies(kinds[static_cast<std::size_t>(place.index * static_cast<double>(kinds.size()))],
+                 placement.world_from_object * place.place, object.value(), scene_);
   }
 
   const ModelLibrary::Parts& find_mesh(const JsonValue& name) const {
