@@ -13,6 +13,7 @@
 #include "app/options/output_files.h"
 #include "app/options/picture_options.h"
 #include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/names.h"

@@ -49,7 +49,7 @@ std::vector<std::string> with_group_numbers(const std::vector<std::string>& aovs
       add(all, numbered(aov, aov == rest_aov ? 0 : static_cast<std::size_t>(group - groups.begin()) + 1));
     } else {
       throw UsageError(fmt::format(
-          "--aov {}: no light of the scene is in the group {}: it has {}", aov, aov.substr(prefix.size()),
+          "the AOV {}: no light of the scene is in the group {}: it has {}", aov, aov.substr(prefix.size()),
           groups.empty() ? "no groups" : fmt::format("{}", fmt::join(groups, ", "))));
     }
   }

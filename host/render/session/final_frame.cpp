@@ -19,7 +19,7 @@ using Scene = std::shared_ptr<const CompiledScene>;
 
 void check_aovs(const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    if (std::find(aov_names().begin(), aov_names().end(), name) == aov_names().end())
+    if (!is_light_group(name) && std::ranges::count(aov_names(), name) == 0)
       throw UsageError(
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }

@@ -72,8 +72,11 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
     set_ray_times(sampled_time(samples), &still);
     return still;
   }
-  CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
-                         all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
+  CameraPlaces camera;
+  camera.position = all3(info->camera_position.xyz);
+  camera.along = all3(info->camera_corner.xyz);
+  camera.dx = all3(info->camera_dx.xyz);
+  camera.dy = all3(info->camera_dy.xyz);
   HAVING(HAS_ORTHOGRAPHIC, camera.forward = all3(info->camera_forward.xyz);)
   if (HAS_CAMERA_MOTION) move_camera(info, sampled_time(samples), &camera);
   camera.along = along3(along3(camera.along, samples->x, camera.dx), samples->y, camera.dy);

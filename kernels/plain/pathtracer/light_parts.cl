@@ -86,8 +86,10 @@ static void add_scattered(PathState* path, const LobeShares* shares, bool direct
 HAVING(HAS_LIGHT_GROUPS)
 static inline void note_group(PathState* path, int group, SampledSpectrum light) {
   int number = 0;
-#define ADD_TO_GROUP(name)                        \
-  if (group == number) path->parts.name += light; \
+  bool here;
+#define ADD_TO_GROUP(name)             \
+  here = group == number;              \
+  if (here) path->parts.name += light; \
   ++number;
   LIGHT_PARTS(ADD_TO_GROUP)
 }

@@ -89,7 +89,7 @@ static int note_suns(UNIFORM const Scene* scene, PathState* path, float3 d) {
         SampledSpectrum light = path->throughput * spectrum_of(&path->wavelengths, seen * weight);
         if (!shown) light = (SampledSpectrum)(0.0f);
         note_group(path, (int)lamp->color.w, light);
-        note_group(path, around, -light);
+        note_group(path, around, (SampledSpectrum)(0.0f) - light);
       }
     }
   }

@@ -21,7 +21,7 @@ SceneDescription floor_under(const std::string& lamp, double unit = 1) {
     "camera": {"position": [0, 0.5, 0], "target": [0, 0, 0], "up": [0, 0, -1], "orthographic": 40},
     "image": {"width": 128, "height": 128}, "render": {"samples": 4}, "unit": )" +
                                  std::to_string(unit) + R"(,
-    "lights": [{"position": [0, 1, 0], "samples": 4, )" +
+    "lights": [{"position": [0, 1, 0], )" +
                                  lamp + R"(}],
     "materials": {"white": {"color": [1, 1, 1], "diffuse": 1, "ambient": 0}},
     "objects": [{"type": "plane", "material": "white"}]})");

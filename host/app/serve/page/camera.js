@@ -52,7 +52,8 @@ export function fly(camera, right, up, forward) {
 
 export function dolly(camera, factor) {
   const away = scale(sub(camera.position, camera.target), factor);
-  return length(away) > 1e-9 && length(away) < 1e12 ? withView(camera, add(camera.target, away), camera.target) : camera;
+  const next = {...camera, orthographic: camera.orthographic * factor};  // its picture's height; 0: perspective
+  return length(away) > 1e-9 && length(away) < 1e12 ? withView(next, add(camera.target, away), camera.target) : camera;
 }
 
 /** The camera, turned about an axis through its target or its own place. */
@@ -86,5 +87,6 @@ export function unproject(camera, height, dx, dy, depth) {
 export function cameraChanges(camera, before) {
   const changes = [{at: '/camera/position', value: camera.position}, {at: '/camera/target', value: camera.target}];
   if (camera.up.some((v, i) => v !== before.up[i])) changes.push({at: '/camera/up', value: camera.up});
+  if (camera.orthographic !== before.orthographic) changes.push({at: '/camera/orthographic', value: camera.orthographic});
   return changes;
 }
