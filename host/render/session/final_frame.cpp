@@ -35,7 +35,8 @@ void check_variance(const std::vector<std::string>& names, const Sampling& sampl
 void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
   for (const std::string& name : names)
     if (is_light(name) && scene.integrator != "path")
-      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
+      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator",
+                                   name.substr(0, name.rfind('@'))));
   if (scene.features.caustics && std::ranges::any_of(names, is_light_group))
     throw UsageError("photons do not know their groups of lights: leave caustics out, or the AOVs of groups");
 }

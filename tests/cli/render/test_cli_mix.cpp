@@ -74,6 +74,40 @@ TEST_CASE("parts of a frame merge to the same light groups") {
     CHECK(merged.at(name).data == whole.at(name).data);
 }
 
+TEST_CASE("light groups of a frame whose shutter is open are those of all its times") {
+  const CliFolder folder;
+  std::string text = two_lamps;
+  text.insert(text.rfind('}'), R"(, "animate": [{"type": "linear", "value": "/lights/0/intensity",
+    "keys": [{"frame": 0, "value": 0.5}, {"frame": 1, "value": 5}]}])");
+  text.replace(text.find("\"camera\": {"), 11, R"("camera": {"shutter": 1, "shutter_steps": 4, )");
+  folder.write("film.json", text);
+  const auto run = [&](const std::vector<std::string>& words) {
+    const CommandResult result = run_sundog(words);
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+  };
+  run({"render", folder.file("film.json"), "-o", folder.file("film.exr"), "--frames", "0", "--float", "--aov",
+       "light_groups", "--device", "0:0"});
+  run({"mix", folder.file("film_0000.exr"), "-o", folder.file("mixed.exr"), "--float"});
+  run({"render", folder.file("film.json"), "-o", folder.file("plain.exr"), "--frames", "0", "--float",
+       "--device", "0:0"});
+  const Image film = read_image(folder / "film_0000.exr"), mixed = read_image(folder / "mixed.exr"),
+              plain = read_image(folder / "plain_0000.exr");
+  for (std::size_t i = 0; i < film.data.size(); ++i) {
+    CHECK(mixed.data[i] == Approx(film.data[i]).margin(1e-6));
+    CHECK(film.data[i] == Approx(plain.data[i]).margin(1e-6));
+  }
+  // The lamp that brightens has its mean: 1 of the 4 steps 0.5, 1.625, 2.75 and 3.875 is 2.19.
+  run({"render", folder.file("film.json"), "-o", folder.file("dark.exr"), "--aov", "light_groups", "--device",
+       "0:0", "--float"});
+  const Image bright = read_aovs(folder / "film_0000.exr").at("light_key"),
+              dark = read_aovs(folder / "dark.exr").at("light_key");
+  double sums[2] = {};
+  for (std::size_t i = 0; i < dark.data.size(); ++i)
+    sums[0] += double(dark.data[i]), sums[1] += double(bright.data[i]);
+  CHECK(sums[1] / sums[0] > 3);
+}
+
 TEST_CASE("what mix cannot do is refused in one line") {
   const MixFolder folder;
   folder.run({"render", folder.file("lamps.json"), "-o", folder.file("none.exr"), "--device", "0:0"});
