@@ -54,7 +54,7 @@ for ((i = 0; i < ${1:-24}; ++i)); do
     -DSDF_TWO_SIDED=$((has[SDF] * (RANDOM % 2))) -DSDF_FLAGS=$((has[SDF] * (RANDOM % 4)))"
   options=""
   for feature in "${!has[@]}"; do options+=" -DHAS_$feature=${has[$feature]}"; done
-  options+=" -DHAS_MATTES=$((i / 4 % 2)) -DHAS_LIGHT_PARTS=$((i / 4 % 2))"
+  options+=" -DHAS_MATTES=$((i / 4 % 2)) -DHAS_LIGHT_PARTS=$((i / 4 % 2)) -DHAS_LIGHT_GROUPS=$((i / 4 % 4 == 2))"
   for entry in whitted path; do
     without=""
     if [ $entry = whitted ]; then for feature in $of_paths; do without+=" -UHAS_$feature -DHAS_$feature=0"; done; fi

@@ -161,7 +161,7 @@ LightSample sample_light(const Light& light, const vec3& p) {
   sample.radiance *= std::max(1 - part * part * part * part, 0.0f);
   if (light.kind == LIGHT_SPOT) {
     const float cosine = -glm::dot(sample.wi, rgb(light.direction)), outer = light.direction.w,
-                inner = light.color.w;
+                inner = light.edge_u.z;
     const float s =
         inner > outer ? std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f) : cosine >= outer;
     sample.radiance *= s * s * (light.edge_u.x - light.edge_u.y * s);

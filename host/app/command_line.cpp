@@ -62,7 +62,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   Command chosen;
   for (AddCommand* add :
        {add_render, add_devices, add_formulas, add_kernels, add_info, add_compare, add_check, add_tune,
-        add_merge, add_bake, add_gallery, add_halo, add_serve, add_bench, add_compile, add_worker})
+        add_merge, add_mix, add_bake, add_gallery, add_halo, add_serve, add_bench, add_compile, add_worker})
     add(arguments, chosen);
   const CommandWords words = words_of(root);
   if (argc < 2)

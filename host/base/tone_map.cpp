@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <numeric>
+#include <vector>
 
 #include "base/colors/aces.h"
 #include "base/colors/color_space.h"
 #include "base/image_io.h"
+#include "base/pixels/bloom.h"
 #include "base/pixels/dither.h"
 
 namespace sundog {
@@ -95,19 +98,56 @@ dvec3 curved(ToneCurve curve, const dvec3& c) {
   return c;
 }
 
+/// A curve over the colours as a file has them, with the slope `contrast` at the middle; black and white
+/// stay.
+dvec3 contrasted(const dvec3& c, double contrast) {
+  dvec3 shown;
+  for (int i = 0; i < 3; ++i) {
+    const double coded = double(srgb_from_linear(static_cast<float>(std::clamp(c[i], 0.0, 1.0))));
+    const double from_end = std::pow(2 * std::min(coded, 1 - coded), contrast) / 2;
+    shown[i] = double(linear_from_srgb(static_cast<float>(coded < 0.5 ? from_end : 1 - from_end)));
+  }
+  return shown;
+}
+
+/// The light that a vignette leaves, by the square of the distance from the middle, 1 in the corners.
+double vignetted(const ToneMap& map, const Image& image, std::size_t pixel) {
+  const auto width = static_cast<std::size_t>(image.width);
+  const dvec2 size(image.width, image.height), place = dvec2(pixel % width, pixel / width) + 0.5 - size / 2.0;
+  return 1 - map.vignette * glm::dot(place, place) / (glm::dot(size, size) / 4);
+}
+
 bool finite(const dvec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 }  // namespace
 
+double automatic_exposure(const Image& image) {
+  const auto channels = static_cast<std::size_t>(image.channels);
+  std::vector<double> stops;
+  for (std::size_t i = 0; i + 2 < image.data.size(); i += channels) {
+    const double light = luminance({image.data[i], image.data[i + 1], image.data[i + 2]});
+    if (light > 0 && std::isfinite(light)) stops.push_back(std::log2(light));
+  }
+  if (stops.empty()) return 0;
+  std::ranges::sort(stops);
+  const auto tenth = static_cast<std::ptrdiff_t>(stops.size() / 10);
+  const double sum = std::accumulate(stops.begin() + tenth, stops.end() - tenth, 0.0);
+  return std::clamp(std::log2(0.18) - sum / static_cast<double>(std::ssize(stops) - 2 * tenth), -32.0, 32.0);
+}
+
 void apply(const ToneMap& map, Image& image) {
-  if (map.curve == ToneCurve::none && map.exposure == 0 && map.white_balance == 0) return;
-  dmat3 linear(std::exp2(map.exposure));
+  if (map == ToneMap()) return;
+  dmat3 linear(std::exp2(map.automatic ? automatic_exposure(image) : map.exposure));
+  if (map.bloom > 0) add_bloom(image, map.bloom);
   if (map.white_balance > 0) linear = balance(map.white_balance) * linear;
   const auto channels = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i + 2 < image.data.size(); i += channels) {
     const dvec3 rendered(image.data[i], image.data[i + 1], image.data[i + 2]);
     if (!finite(rendered)) continue;
-    const dvec3 shown = curved(map.curve, glm::max(linear * rendered, dvec3(0)));
+    dvec3 shown = glm::max(linear * rendered, dvec3(0));
+    if (map.vignette > 0) shown *= vignetted(map, image, i / channels);
+    shown = curved(map.curve, shown);
+    if (map.contrast != 1) shown = contrasted(shown, map.contrast);
     for (std::size_t k = 0; k < 3; ++k) image.data[i + k] = static_cast<float>(shown[static_cast<int>(k)]);
   }
 }

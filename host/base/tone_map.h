@@ -1,5 +1,5 @@
-// Tone mapping for 8-bit files: white balance, exposure, and a curve that compresses highlights. Other files
-// keep the rendered values.
+// Tone mapping for files for screens: bloom, white balance, exposure, vignette, a curve that compresses
+// highlights, and contrast. Other files keep the rendered values.
 #pragma once
 #include <array>
 
@@ -25,9 +25,19 @@ struct ToneMap {
   ToneCurve curve = ToneCurve::none;
   double exposure = 0;       // in stops: multiplies colours by 2^exposure before the curve
   double white_balance = 0;  // kelvin, 1667..25000: light of this temperature turns white; 0: off
+  bool automatic = false;    // the exposure is automatic_exposure()
+  double contrast = 1;       // after the curve, 0.25..4: the slope at middle grey; 1: off
+  double vignette = 0;       // the share of light that corners lose, 0..1
+  double bloom = 0;          // the share of light that spreads over its surroundings, 0..1
+
+  bool operator==(const ToneMap&) const = default;
 };
 
 inline constexpr double least_white = 1667, greatest_white = 25000;
+
+/// The exposure at which the mean logarithm of the luminance is that of middle grey (0.18), of the pixels
+/// between the tenth and the ninetieth percentile of those that are not black. 0 for a black picture.
+double automatic_exposure(const Image& image);
 
 /// Applies `map` to the first three channels; alpha and non-finite values are unchanged.
 void apply(const ToneMap& map, Image& image);

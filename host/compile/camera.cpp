@@ -45,8 +45,12 @@ Frame frame_of(const SceneDescription& scene, const View& view, const std::strin
     fail(scene, "/camera/up",
          "wanted a direction across the view, found one along it: " + text(scene.camera.up));
   const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, frame.forward);
-  const double pixel = 2 * std::tan(scene.camera.fov * std::numbers::pi / 360) / image.height;
-  frame.corner = frame.forward - right * (pixel * image.width / 2) + screen_up * (pixel * image.height / 2);
+  const bool parallel = scene.camera.orthographic > 0;
+  const double height =
+      parallel ? scene.camera.orthographic : 2 * std::tan(scene.camera.fov * std::numbers::pi / 360);
+  const double pixel = height / image.height;
+  frame.corner = (parallel ? dvec3(0) : frame.forward) - right * (pixel * image.width / 2) +
+                 screen_up * (pixel * image.height / 2);
   frame.dx = right * pixel;
   frame.dy = -screen_up * pixel;
   return frame;
@@ -62,9 +66,10 @@ void set_lens(const Camera& camera, const Frame& frame, SceneInfo& info) {
 }
 
 void set_motion(const Camera& camera, const Frame& opens, const Frame& closes, SceneInfo& info) {
-  info.moved_position = pack(camera.moves_to->position - camera.position);
-  info.moved_corner = pack(closes.corner - opens.corner);
-  info.moved_dx = pack(closes.dx - opens.dx);
+  const dvec3 turned = camera.orthographic > 0 ? closes.forward - opens.forward : dvec3(0);
+  info.moved_position = pack(camera.moves_to->position - camera.position, turned.x);
+  info.moved_corner = pack(closes.corner - opens.corner, turned.y);
+  info.moved_dx = pack(closes.dx - opens.dx, turned.z);
   info.moved_dy = pack(closes.dy - opens.dy);
 }
 
@@ -85,7 +90,8 @@ SceneInfo camera_and_settings(const SceneDescription& scene, const dvec3& origin
 
   const Frame frame = frame_of(scene, {camera.position, camera.target}, "/camera");
   info.camera_position = pack(camera.position - origin);
-  info.camera_corner = pack(frame.corner);
+  const double spread = camera.orthographic > 0 ? 1 / glm::length(camera.target - camera.position) : 0;
+  info.camera_corner = pack(frame.corner, spread);
   info.camera_dx = pack(frame.dx);
   info.camera_dy = pack(frame.dy);
   info.camera_forward = pack(frame.forward, camera.near);
@@ -125,6 +131,7 @@ CompiledView compile_view(const SceneDescription& scene, const dvec3& origin) {
       view.guides.push_back(pack(guide.center - origin, guide.radius));
   view.features.clear_glass = scene.image.transparent_glass;
   view.features.lens = scene.camera.lens.radius > 0;
+  view.features.orthographic = scene.camera.orthographic > 0;
   view.features.camera_motion = scene.camera.moves_to.has_value();
   view.features.sampler = sampler_of(scene.render);
   view.features.filter = !view.filter.empty();

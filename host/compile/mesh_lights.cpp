@@ -1,6 +1,8 @@
 // See mesh_lights.h.
 #include "compile/mesh_lights.h"
 
+#include "scene/light_groups.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,6 +67,7 @@ std::vector<u32> lamps_of(const SceneDescription& scene) {
 
 MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, MeshLights out) {
   std::vector<u32> first = lamps_of(scene);
+  const std::vector<std::string> groups = light_groups(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     const auto* shape = std::get_if<MeshShape>(&object.shape);
@@ -73,9 +76,14 @@ MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, M
     if (object.moves()) continue;  // found by rays, not sampled
     if (mesh.triangles.size() > most_shining || !shines_somewhere(scene, object, mesh)) continue;
     first[i] = static_cast<u32>(out.lights.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      out.lights.push_back(light_of(object, mesh, mesh.triangles[t],
-                                    even_emission(scene, material_of(object, mesh, t)), origin));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const int material = material_of(object, mesh, t);
+      Light light = light_of(object, mesh, mesh.triangles[t], even_emission(scene, material), origin);
+      if (material >= 0)
+        light.color.w = static_cast<float>(
+            number_of_group(groups, scene.materials[static_cast<std::size_t>(material)].group));
+      out.lights.push_back(light);
+    }
     out.any = true;
   }
   if (std::ranges::all_of(first, [](u32 light) { return light == NO_LIGHT; })) return out;

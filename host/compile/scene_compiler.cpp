@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "compile/camera.h"
+#include "compile/light_groups.h"
 #include "compile/light_tree.h"
 #include "compile/lobe_energy.h"
 #include "compile/local_origin.h"
@@ -189,6 +190,7 @@ void finish(const SceneDescription& scene, const Lights& lights, const Instances
   out.lights = std::move(with_meshes.lights);
   out.instances = std::move(with_meshes.instances);
   out.features.area_lights |= with_meshes.any;
+  set_light_groups(scene, out);
   LightTree tree = make_light_tree(scene.render, out.lights, lights.light_rays);
   out.features.light_tree = !tree.nodes.empty();
   out.light_nodes = std::move(tree.nodes);

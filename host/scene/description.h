@@ -19,6 +19,7 @@
 #include "models/values/mesh.h"
 #include "models/values/object.h"
 #include "scene/halo.h"
+#include "shared/light_parts.h"
 #include "shared/sampler.h"
 #include "shared/scene.h"
 
@@ -81,6 +82,7 @@ struct EnvironmentDescription {
   int samples = 1;            // shadow rays from each surface to it, and as many to its sun
   bool visible = true;        // whether camera rays that hit nothing show it; other rays do
   bool hidden = false;        // no ray shows it
+  std::string group;          // of lights, for AOVs; empty: none
   Image picture;              // image: equirectangular, zenith in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the sine of the elevation
   // Sky, and halo, which is a sky with ice crystals:

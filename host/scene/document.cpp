@@ -11,6 +11,7 @@
 #include "scene/json/value.h"
 #include "scene/lamps.h"
 #include "scene/model_scene.h"
+#include "scene/read/focus.h"
 #include "scene/read/frame_cache.h"
 #include "scene/read/parts.h"
 #include "scene/read/scene_reader.h"
@@ -53,7 +54,7 @@ void change_lights(SceneDescription& scene, const json& after, const JsonContext
   scene.lights.clear();
   if (const auto lights = after.find("lights"); lights != after.end())
     for (const JsonValue& light : JsonObject::section("scene", "lights", *lights, context).items("lights"))
-      scene.lights.push_back(read_light(light));
+      scene.lights.push_back(read_light(light, scene.unit));
   add_lamps(scene);
 }
 
@@ -118,8 +119,13 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   };
   auto changed = std::make_shared<SceneDescription>(scene);
   bool placed = false;
-  changed->camera = read_camera(section("camera"), placed);
   changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
+  changed->camera = read_camera(section("camera"), changed->image, scene.unit, placed);
+  if (const Lens& lens = scene.camera.lens; !changed->camera.lens.focus_on.empty()) {
+    if (lens.focus_on != changed->camera.lens.focus_on) return nullptr;
+    changed->camera.lens.focus_point = lens.focus_point;
+    focus_on_point(*changed);
+  }
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
   // Images have been reduced to fit the old limit.
   if (changed->render.texture_memory != scene.render.texture_memory && !scene.images.empty()) return nullptr;

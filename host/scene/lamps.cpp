@@ -106,6 +106,27 @@ LampAxes lamp_axes(const LightDescription& light) {
   return axes;
 }
 
+double power_of_intensity(const LightDescription& light) {
+  constexpr double pi = std::numbers::pi;
+  const double outer = cosine(light.outer_angle), inner = cosine(light.inner_angle);
+  switch (light.type) {
+    case LightType::point:
+      return 4 * pi * pi;
+    case LightType::spot:  // the soft edge has the mean 1/2 over the cosine, its square 1/3
+      return 2 * pi * pi * (1 - inner + (inner - outer) * (light.square_edge ? 1.0 / 3 : 0.5));
+    case LightType::rectangle:
+      return pi * light.size.x * light.size.y;
+    case LightType::disk:
+      return pi * pi * light.radius * light.radius;
+    case LightType::sphere:
+      return 4 * pi * pi * light.radius * light.radius;
+    case LightType::ambient:
+    case LightType::directional:
+      break;
+  }
+  throw std::logic_error("a light from everywhere has no power");
+}
+
 Light pack_light(const NamedLight& named, const dvec3& origin) {
   const LightDescription& light = named.light;
   Light packed{};
@@ -129,7 +150,7 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
     case LightType::spot:
       packed.kind = LIGHT_SPOT;
       packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
-      packed.color.w = static_cast<float>(cosine(light.inner_angle));
+      packed.edge_u.z = static_cast<float>(cosine(light.inner_angle));
       packed.edge_u.x = light.square_edge ? 1.0f : 3.0f;
       packed.edge_u.y = light.square_edge ? 0.0f : 2.0f;
       pack_range(light, packed);
@@ -186,6 +207,7 @@ void add_lamps(SceneDescription& scene) {
     material.emission = light.color * light.intensity;
     material.shadow_opaque = true;
     material.off_camera = !light.visible;
+    material.group = light.group;
     const Shape shape = lamp_shape(light);
     const bool aimed = facts_of(light.type).aimed;
     const dmat4 place = aimed ? placed_along(lamp_axes(light), light.position)

@@ -21,6 +21,11 @@ struct LampAxes {
 };
 LampAxes lamp_axes(const LightDescription& light);
 
+/// The power that leaves a light of intensity 1 and white colour, over the square of a scene unit. For a
+/// point and a spot, which fade by the square of the distance, `intensity` is 1/pi of the irradiance at
+/// distance 1, as kernels have it.
+double power_of_intensity(const LightDescription& light);
+
 /// The light's table row, with positions relative to `origin`. Throws SceneError for a zero direction.
 Light pack_light(const NamedLight& named, const dvec3& origin);
 

@@ -18,13 +18,17 @@ Shot shot_of(const SceneDescription& scene, std::optional<double> frame) {
               right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
   const glm::dvec4 x = row(right, camera.position), y = row(up, camera.position),
                    z = row(forward, camera.position), w{0, 0, 0, 1};
-  const double height = 2 * std::tan(camera.fov * std::numbers::pi / 360),
+  const bool parallel = camera.orthographic > 0;
+  const double height = parallel ? camera.orthographic : 2 * std::tan(camera.fov * std::numbers::pi / 360),
                width = height * scene.image.width / scene.image.height,
                near = camera.near > 0 ? camera.near : 1;
   Shot shot;
   shot.world_to_camera = glm::transpose(glm::dmat4(x, y, z, w));
   // Readers discard NDC's z; 1 - near / z makes the matrix one that can be inverted.
-  shot.world_to_ndc = glm::transpose(glm::dmat4(0.5 * z + x / width, 0.5 * z - y / height, z - near * w, z));
+  // Parallel rays have no such division.
+  const glm::dvec4 divisor = parallel ? w : z, middle = 0.5 * divisor;
+  shot.world_to_ndc = glm::transpose(
+      glm::dmat4(middle + x / width, middle - y / height, parallel ? z : z - near * w, divisor));
   shot.window_width = width;
   const double depth = camera.lens.focus ? *camera.lens.focus : glm::length(camera.target - camera.position);
   if (camera.lens.radius > 0) shot.focus = depth * scene.unit;

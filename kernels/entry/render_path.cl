@@ -85,7 +85,7 @@ static inline void add_mattes(const Scene* scene, const Launch* launch, const La
 #endif
 
 // Adds the parts of the light `all` of samples that have ended, as store_sample() adds that.
-#if HAS_LIGHT_PARTS
+#if HAS_LIGHT_SUMS
 static inline void add_part(const Launch* launch, const LaneWork* work, const REAL3* light,
                             const float* shares, MASK lanes, u32 part, __global float4* restrict film) {
   EACH_LANE(lane, lanes) {
@@ -150,7 +150,7 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
                    limited = limit_components(radiance, scene->info->max_component);
       store_sample((u32)MASK_LANE(work.place, lane), limited, work.sign[lane], film, weights, counts);
     }
-    HAVING(HAS_LIGHT_PARTS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
+    HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
   }
   counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);

@@ -14,7 +14,7 @@ SUNDOG_SHARED_BEGIN
 // for rows and then for the cells of each row, a word per four steps: of n words, word k holds the first and,
 // above CUTPOINT_SHIFT, the last step that may contain a number in [k, k + 1) / n.
 typedef struct Environment {
-  float4 right, up, ahead;  // unit, orthogonal; up.w: CELLS_*
+  float4 right, up, ahead;  // unit, orthogonal; up.w: CELLS_*; ahead.w: its group of lights
   u32 width, height;        // in pixels
   u32 columns, rows;        // in cells
 } Environment;

@@ -46,6 +46,7 @@
   FEATURE(bool, HAS_FUZZ_MAPS, fuzz_maps, rounds)       /* some has a fuzz color texture */                       \
   FEATURE(bool, HAS_LAYER_FILTERS, layer_filters, rounds) /* paths: shadow rays go through fuzz or coats */       \
   FEATURE(bool, HAS_LENS, lens, alters)                 /* the camera has a lens */                               \
+  FEATURE(bool, HAS_ORTHOGRAPHIC, orthographic, alters) /* the camera's rays are parallel */                      \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion, rounds) /* the camera moves while the shutter is open */        \
   FEATURE(bool, HAS_OBJECT_MOTION, object_motion, alters) /* some object does */                                  \
   FEATURE(bool, HAS_TURNS, turns, alters)               /* some object turns or grows meanwhile */                \

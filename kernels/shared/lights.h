@@ -37,24 +37,25 @@ SUNDOG_SHARED_BEGIN
 
 // Keys in scene files: the members of the host's LightDescription, with defaults.
 //   KEY(type, name, default)
-#define LIGHT_KEYS(KEY)                                                                 \
-  KEY(dvec3, color, {1, 1, 1})                                                          \
-  KEY(double, intensity, {1})       /* times colour: of an extent its radiance */       \
-  KEY(dvec3, position, {0, 0, 0})   /* of an extent the middle */                       \
-  KEY(dvec3, direction, {0, -1, 0}) /* the way the light travels; normalised later */   \
-  KEY(double, inner_angle, {20})    /* spot: half angles in degrees, */                 \
-  KEY(double, outer_angle, {30})    /* 0 <= inner <= outer < 90 */                      \
-  KEY(bool, square_edge, {false})   /* spot: between them s^2, else s^2 (3 - 2 s) */    \
-  KEY(double, range, {0})           /* point, spot: fades to 0 there; 0: it does not */ \
-  KEY(dvec3, falloff, {1, 0, 0})    /* constant, linear, quadratic */                   \
-  KEY(dvec2, size, {1, 1})          /* rectangle: across and along `up` */              \
-  KEY(dvec3, up, {0, 1, 0})                                                             \
-  KEY(double, radius, {0.5}) /* disk, sphere */                                         \
-  KEY(double, angle, {0})    /* directional: degrees across that it takes up            \
-                                in the sky, [0, 90]; above 0 an extent */               \
-  KEY(int, samples, {1})     /* an extent: shadow rays that a surface sends to it */    \
-  KEY(bool, visible, {true}) /* the camera's rays see it, where others do */            \
-  KEY(bool, hidden, {false}) /* no ray meets it (scene/lamps.h places what they meet) */
+#define LIGHT_KEYS(KEY)                                                                   \
+  KEY(dvec3, color, {1, 1, 1})                                                            \
+  KEY(double, intensity, {1})       /* times colour: of an extent its radiance */         \
+  KEY(dvec3, position, {0, 0, 0})   /* of an extent the middle */                         \
+  KEY(dvec3, direction, {0, -1, 0}) /* the way the light travels; normalised later */     \
+  KEY(double, inner_angle, {20})    /* spot: half angles in degrees, */                   \
+  KEY(double, outer_angle, {30})    /* 0 <= inner <= outer < 90 */                        \
+  KEY(bool, square_edge, {false})   /* spot: between them s^2, else s^2 (3 - 2 s) */      \
+  KEY(double, range, {0})           /* point, spot: fades to 0 there; 0: it does not */   \
+  KEY(dvec3, falloff, {1, 0, 0})    /* constant, linear, quadratic */                     \
+  KEY(dvec2, size, {1, 1})          /* rectangle: across and along `up` */                \
+  KEY(dvec3, up, {0, 1, 0})                                                               \
+  KEY(double, radius, {0.5})  /* disk, sphere */                                          \
+  KEY(double, angle, {0})     /* directional: degrees across that it takes up             \
+                                 in the sky, [0, 90]; above 0 an extent */                \
+  KEY(int, samples, {1})      /* an extent: shadow rays that a surface sends to it */     \
+  KEY(bool, visible, {true})  /* the camera's rays see it, where others do */             \
+  KEY(bool, hidden, {false})  /* no ray meets it (scene/lamps.h places what they meet) */ \
+  KEY(std::string, group, {}) /* its AOV; empty: none */
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {
@@ -83,13 +84,14 @@ typedef struct Light {
   float4 position;   // world; corner of a rectangle, else the centre; w = 1: an area light invisible to rays,
                      // a sun invisible to the camera
   float4 direction;  // unit, direction of emission; w: see above
-  float4 color;      // times intensity (radiance of an area light); w = cosine of a spot's inner half angle
+  float4 color;      // times intensity (radiance of an area light); w = its group
   float falloff_constant, falloff_linear,
       falloff_quadratic;  // intensity / (c + l d + q d^2), d in world units
   u32 kind;               // LIGHT_*
   float4 edge_u, edge_v;  // sides of a rectangle, or from the centre to the rim of a disk; w = their lengths
-                          // (edge_u.w is a sphere's radius). A spot's edge is s^2 (edge_u.x - edge_u.y s); a
-                          // point's and a spot's edge_v.x is 1 / range, or 0
+                          // (edge_u.w is a sphere's radius). A spot's edge is s^2 (edge_u.x - edge_u.y s),
+                          // its edge_u.z the cosine of the inner half angle; a point's and a spot's edge_v.x
+                          // is 1 / range, or 0
 } Light;
 SUNDOG_SHARED_SIZE(Light, 96)
 

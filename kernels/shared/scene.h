@@ -24,6 +24,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_FROSTED 16384u       // path: thin with transmitting facets
 #define MATERIAL_WALL 32768u          // thin, with an index: transmission.w
 #define MATERIAL_OFF_CAMERA 65536u    // a lamp invisible to camera rays
+#define MATERIAL_GROUP_SHIFT 20u      // above: the group of lights that its emission belongs to
 
 // Facets with a smaller alpha are treated as smooth by paths.
 #define LEAST_ALPHA 1e-4f
@@ -86,7 +87,8 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 // 400 bytes: the scene's constants. Positions in all tables are relative to the world position `origin` +
 // `origin_rest`, near the camera's target (host/compile/local_origin.h). Pixel (x, y), y down, with sample
 // offset (a, b) in [0, 1)^2 looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which has
-// length 1 along camera_forward.
+// length 1 along camera_forward. HAS_ORTHOGRAPHIC: that is the ray's start, from camera_position, and
+// camera_corner.w is 1 / the target's distance.
 typedef struct SceneInfo {
   float4 camera_position;
   float4 camera_corner;
@@ -117,7 +119,8 @@ typedef struct SceneInfo {
   float4 origin_rest;    // the remainder of its rounding to floats
   // HAS_LENS: from the lens's centre to its rim, right and up; w = focus depth; blades.
   float4 lens_x, lens_y;
-  // HAS_CAMERA_MOTION: translation of these while the shutter is open.
+  // HAS_CAMERA_MOTION: translation of these while the shutter is open; w of the first three: of
+  // camera_forward, if HAS_ORTHOGRAPHIC.
   float4 moved_position, moved_corner, moved_dx, moved_dy;
   // Path tracing:
   u32 roulette_depth;  // depth at which Russian roulette starts

@@ -22,7 +22,7 @@ struct Command {
 using AddCommand = void(Arguments& root, Command& chosen);
 
 AddCommand add_render, add_devices, add_formulas, add_kernels, add_info, add_compare, add_check, add_tune,
-    add_merge, add_bake, add_gallery, add_halo, add_serve, add_bench;
+    add_merge, add_mix, add_bake, add_gallery, add_halo, add_serve, add_bench;
 /// Not for people: other processes of sundog start these.
 AddCommand add_compile, add_worker;
 

@@ -36,10 +36,21 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
-/// The number that an option gives, in `low`..`high`; 0 without it.
-double real_number(const char* option, const std::string& text, double low, double high) {
-  return text.empty() ? 0 : parse_real(option, text, low, high);
-}
+/// The options that are numbers of a ToneMap: the limits are the schema's.
+struct ToneOption {
+  const char *option, *key;
+  std::string PictureOptions::* typed;
+  double ToneMap::* value;
+  double low, high;
+};
+
+constexpr ToneOption tone_options[] = {
+    {"--exposure", "exposure", &PictureOptions::exposure, &ToneMap::exposure, -32, 32},
+    {"--white-balance", "white_balance", &PictureOptions::white_balance, &ToneMap::white_balance, least_white,
+     greatest_white},
+    {"--contrast", "contrast", &PictureOptions::contrast, &ToneMap::contrast, 0.25, 4},
+    {"--vignette", "vignette", &PictureOptions::vignette, &ToneMap::vignette, 0, 1},
+    {"--bloom", "bloom", &PictureOptions::bloom, &ToneMap::bloom, 0, 1}};
 
 }  // namespace
 
@@ -50,8 +61,11 @@ ToneMap parse_tone_map(const PictureOptions& picture) {
     throw UsageError(fmt::format("--tone-map {}: wanted one of {}", picture.tone_curve,
                                  fmt::join(tone_curve_names, ", ")));
   map.curve = curve.value_or(map.curve);
-  map.exposure = real_number("--exposure", picture.exposure, -32, 32);
-  map.white_balance = real_number("--white-balance", picture.white_balance, least_white, greatest_white);
+  map.automatic = picture.exposure == "auto";
+  for (const ToneOption& one : tone_options)
+    if (const std::string& typed = picture.*one.typed;
+        !typed.empty() && !(map.automatic && &typed == &picture.exposure))
+      map.*one.value = parse_real(one.option, typed, one.low, one.high);
   return map;
 }
 
@@ -60,9 +74,10 @@ std::vector<std::string> tone_map_overrides(const PictureOptions& picture) {
   std::vector<std::string> all;
   if (!picture.tone_curve.empty())
     all.push_back(fmt::format("/image/tone_map/curve=\"{}\"", picture.tone_curve));
-  if (!picture.exposure.empty()) all.push_back(fmt::format("/image/tone_map/exposure={}", map.exposure));
-  if (!picture.white_balance.empty())
-    all.push_back(fmt::format("/image/tone_map/white_balance={}", map.white_balance));
+  for (const ToneOption& one : tone_options)
+    if (const std::string& typed = picture.*one.typed; !typed.empty())
+      all.push_back(fmt::format("/image/tone_map/{}={}", one.key,
+                                typed == "auto" ? typed : fmt::format("{}", map.*one.value)));
   return all;
 }
 

@@ -11,10 +11,11 @@ namespace sundog {
 
 /// A picture that a command writes.
 struct PictureOptions {
-  std::string out;                                  // "-": the standard output
-  std::string format;                               // of image_formats(), for the standard output
-  bool full_floats = false;                         // an EXR's colours as 32-bit floats
-  std::string tone_curve, exposure, white_balance;  // as typed; empty: the scene's
+  std::string out;           // "-": the standard output
+  std::string format;        // of image_formats(), for the standard output
+  bool full_floats = false;  // an EXR's colours as 32-bit floats
+  // As typed; empty: the scene's.
+  std::string tone_curve, exposure, white_balance, contrast, vignette, bloom;
   bool no_dither = false;
   int dpi = 72;                      // pixels an inch, for printers
   std::string color_space = "srgb";  // of an EXR: srgb or acescg

@@ -28,9 +28,14 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "--tone-map", "CURVE", picture.tone_curve,
         fmt::format("how .png and .jpg show colours brighter than white: {}",
                     fmt::join(tone_curve_names, ", ")));
-  value(app, "--exposure", "STOPS", picture.exposure, "brighten .png and .jpg by so many stops");
+  value(app, "--exposure", "STOPS", picture.exposure,
+        "brighten .png and .jpg by so many stops; auto: as bright as a picture of its light should be");
   value(app, "--white-balance", "KELVIN", picture.white_balance,
         "the temperature of the light that is white in .png and .jpg");
+  value(app, "--contrast", "C", picture.contrast, "of .png and .jpg after the tone map: 1 leaves it");
+  value(app, "--vignette", "V", picture.vignette, "the share of light that corners of .png and .jpg lose");
+  value(app, "--bloom", "B", picture.bloom,
+        "the share of light that spreads over its surroundings in .png and .jpg");
   value(app, "--dpi", "N", picture.dpi, "pixels an inch that .png, .jpg and .exr state (default 72)")
       ->range(1, 65535);
   app->add_flag("--icc", picture.icc, "put an ICC profile, that of sRGB, into .png and .jpg");

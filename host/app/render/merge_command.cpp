@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "render/film/cryptomatte.h"
+#include "render/film/group_names.h"
 #include "render/film/motion.h"
 #include "render/film/part.h"
 
@@ -39,6 +40,7 @@ int merge(const MergeCommand& command) {
   for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
   end_depth(command, aovs);
   find_motion(aovs, whole.shot);
+  aovs = without_group_numbers(std::move(aovs));
   FileOptions file = file_options(command);
   file.texts = name_cryptomattes(aovs, whole.names);
   file.shot = whole.shot;

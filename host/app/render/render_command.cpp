@@ -12,6 +12,7 @@
 #include "app/render/render_frames.h"
 #include "base/error.h"
 #include "base/names.h"
+#include "render/film/group_names.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
 
@@ -99,7 +100,7 @@ RenderCommand checked(const TypedRender& typed) {
   if (command.devices.empty()) command.devices = devices_of_environment();
   command.aovs = with_parts_named(command.aovs);
   for (const std::string& name : command.aovs)
-    if (std::ranges::count(aov_names(), name) == 0)
+    if (std::ranges::count(aov_names(), name) == 0 && !is_light_group(name))
       throw UsageError(
           fmt::format("--aov {}: {}", name,
                       did_you_mean(name, aov_names(),
@@ -162,8 +163,9 @@ void add_render(Arguments& root, Command& chosen) {
   value(app, "--stats", "FILE", command.stats,
         "write rays, times and devices to this JSON file; -: the standard output");
   values(app, "--aov", "NAME", command.aovs,
-         fmt::format("an extra image in the .exr: {}; {}: all ten parts of light",
-                     fmt::join(aov_names(), ", "), light_parts));
+         fmt::format("an extra image in the .exr: {}; {}: all ten parts of light; light_NAME: a group of "
+                     "lights; {}: all of them",
+                     fmt::join(aov_names(), ", "), light_parts, light_groups_aov));
   app->add_flag("--transparent", command.transparent,
                 "leave what is behind the scene out of .png and .exr: their alpha says what covers it");
   app->add_flag("--denoise", command.denoise,

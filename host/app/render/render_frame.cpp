@@ -22,9 +22,11 @@
 #include "bench/runs/energy.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 #include "render/plan/passes.h"
+#include "scene/light_groups.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -93,6 +95,19 @@ std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const Loaded
   return plans;
 }
 
+/// Joins the parts of light, or the light of groups. Other AOVs are those of the first time.
+void add_light(const Film& more, RenderResult& all) {
+  const AovLayout& layout = all.film.layout;
+  for (std::size_t i = 0; i < all.film.aovs.size(); ++i) {
+    if (i % layout.vectors() < layout.first_light()) continue;
+    float4& sum = all.film.aovs[i];
+    const float4& other = more.aovs[i];
+    sum.x += other.x, sum.y += other.y, sum.z += other.z, sum.w += other.w;
+  }
+  for (auto& [name, image] : all.aovs)
+    if (is_light(name)) image = all.film.develop_aov(name);
+}
+
 /// Joins the samples of the same frame at another time.
 void add_samples(const RenderResult& more, int channels, RenderResult& all) {
   for (std::size_t i = 0; i < all.film.sums.size(); ++i) {
@@ -103,6 +118,7 @@ void add_samples(const RenderResult& more, int channels, RenderResult& all) {
     all.film.done[i] = all.film.done[i] && more.film.done[i];
   }
   for (std::size_t i = 0; i < all.counts.size(); ++i) all.counts[i] += more.counts[i];
+  if (all.film.layout.light) add_light(more.film, all);
   all.image = all.film.develop(channels);
   all.complete = all.complete && more.complete;
   all.time_limited = all.time_limited || more.time_limited;
@@ -156,8 +172,10 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
   return scene;
 }
 
-FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup,
-                    const Stopwatch& clock, TimeLedger& times) {
+FrameEnd render_one(const RenderCommand& asked, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
+                    TimeLedger& times) {
+  RenderCommand command = asked;
+  command.aovs = with_group_numbers(asked.aovs, light_groups(*scene.description));
   setup.stop.asks();
   print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})

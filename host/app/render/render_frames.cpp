@@ -55,6 +55,8 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   text += std::filesystem::path(command.out).extension().string();
   if (!drops_alpha(command.out))  // an EXR states both
     text += fmt::format(" {} {}", scene.description->frames_per_second, scene.description->unit);
+  if (tone != ToneMap())
+    text += fmt::format(" {} {} {} {}", tone.automatic, tone.contrast, tone.vignette, tone.bloom);
   if (command.icc) text += " icc";
   text += command.far;
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);

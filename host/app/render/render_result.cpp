@@ -21,6 +21,7 @@
 #include "base/image_io.h"
 #include "compile/placing/next_shot.h"
 #include "render/film/cryptomatte.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/film/motion.h"
 #include "render/film/part.h"
@@ -114,7 +115,7 @@ AovImages take_aovs(const RenderCommand& command, const Shot& shot, const std::o
                 [&](const auto& aov) { return std::ranges::count(command.aovs, aov.first) == 0; });
   end_depth(command, result.aovs);
   find_motion(result.aovs, shot, region);
-  return std::move(result.aovs);
+  return without_group_numbers(std::move(result.aovs));
 }
 
 }  // namespace

@@ -67,9 +67,10 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
-/// Whether it is one of the parts of light (kernels/shared/light_parts.h).
+/// Whether it is one of the parts of light (kernels/shared/light_parts.h), or the light of a group of lights.
 bool is_light_part(std::string_view aov) {
-  return aov.ends_with("_direct") || aov.ends_with("_indirect") || aov == "emission" || aov == "sky";
+  return aov.ends_with("_direct") || aov.ends_with("_indirect") || aov == "emission" || aov == "sky" ||
+         aov.starts_with("light_");
 }
 
 /// Names of a layer's channels.

@@ -103,8 +103,10 @@ FieldView view_of_field(const SceneDescription& scene, const Object& object) {
   const double ahead = glm::length(glm::dmat3(object_from_world) * (camera.target - camera.position));
   double distance = std::max(distance_at(field.root, view.place, ahead), beside_interval(field, view.place));
   if (!(distance > 0)) distance = ahead;  // inside
+  const double across = ahead / glm::length(camera.target - camera.position) * camera.orthographic;
   view.footprint =
-      distance * 2 * std::tan(camera.fov * std::numbers::pi / 360) / std::max(scene.image.height, 1);
+      (camera.orthographic > 0 ? across : distance * 2 * std::tan(camera.fov * std::numbers::pi / 360)) /
+      std::max(scene.image.height, 1);
   return view;
 }
 

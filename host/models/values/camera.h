@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "base/tone_map.h"
 
@@ -17,10 +18,12 @@ struct View {
 
 /// A thin lens; only points at depth `focus` along the view are sharp.
 struct Lens {
-  double radius = 0;            // 0: a pinhole
-  std::optional<double> focus;  // none: the target's distance
-  int blades = 0;               // of the aperture, 3..16; 0: round
-  double rotate = 0;            // rotation of the blades, degrees
+  double radius = 0;              // 0: a pinhole
+  std::optional<double> focus{};  // none: the target's distance
+  int blades = 0;                 // of the aperture, 3..16; 0: round
+  double rotate = 0;              // rotation of the blades, degrees
+  std::string focus_on{};         // the object whose middle has set `focus`; empty: none
+  dvec3 focus_point{0};           // that middle
 };
 
 /// A pinhole camera unless its lens has a radius. `fov` is the vertical angle of view in degrees, (0, 180).
@@ -29,9 +32,10 @@ struct Camera {
   dvec3 position{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
   double fov = 45;
   double near = 0, far = std::numeric_limits<double>::infinity();
-  Lens lens;
-  std::optional<View> moves_to;  // position and target when the shutter closes; linear in between
-  double shutter = 0;            // of a film: the part of a frame for which it is open
+  Lens lens{};
+  std::optional<View> moves_to{};  // position and target when the shutter closes; linear in between
+  double shutter = 0;              // of a film: the part of a frame for which it is open
+  double orthographic = 0;         // the picture's height in world units, by parallel rays; 0: perspective
 };
 
 struct ImageSettings {

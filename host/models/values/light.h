@@ -2,6 +2,7 @@
 #pragma once
 #include <glm/glm.hpp>
 #include <limits>
+#include <string>
 
 #include "shared/lights.h"
 

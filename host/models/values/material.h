@@ -60,6 +60,7 @@ struct MaterialDescription {
   double displacement_edge = 0;             // edge length of the triangles, object space; 0: about a texel
   double occlusion = 1;                     // strength of the occlusion texture, [0, 1]
   double coat = 0;                          // reflectance of a clear layer on top, [0, 1], times its texture
+  std::string group{};                      // of lights, that its emission belongs to; empty: none
   std::optional<OpenPbr> layers{};          // layers over these terms, and their base: set_openpbr()
   /// The variant for path tracing, if it differs: surface_for().
   std::shared_ptr<const MaterialDescription> by_paths{};

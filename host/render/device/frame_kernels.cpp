@@ -103,7 +103,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
   KernelConfig config = kernels.only_general ? general_config(scene, device.info(), tuning)
                                              : make_kernel_config(scene, device.info(), tuning);
   if (kernels.mattes) config.numbers["HAS_MATTES"] = 1;
-  if (kernels.light) config.numbers["HAS_LIGHT_PARTS"] = 1;
+  if (kernels.light) config.numbers[kernels.groups ? "HAS_LIGHT_GROUPS" : "HAS_LIGHT_PARTS"] = 1;
   if (kernels.counts_rays) config.numbers["HAS_RAY_COUNTS"] = 1;
   KernelStore* const store = kernels.store;
   if (store) store->begin_scene(general_configs(scene, device.info(), tuning));

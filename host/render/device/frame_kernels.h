@@ -28,7 +28,8 @@ struct FrameKernels {
     friend bool operator==(const MoreAovs&, const MoreAovs&) = default;
   } wanted_aovs, there_aovs;            // of first_surfaces
   bool mattes = false;                  // the integrator notes what covers pixels
-  bool light = false;                   // and keeps the parts of their light apart
+  bool light = false;                   // and keeps the parts of their light apart,
+  bool groups = false;                  // or that of groups of lights
   bool counts_rays = false;             // the integrator counts rays per pixel
   bool only_general = false;            // use general_config() even if the scene's own could be built
   SceneKernel<Buffer<u32>> find_media;  // only if the camera has been inside a solid

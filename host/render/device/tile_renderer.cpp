@@ -66,6 +66,7 @@ FrameKernels wanted_by(const RenderOptions& options, KernelStore* store, FrameKe
   kernels.wanted_aovs = {layout.surfaces == all_aov_vectors, shows_features(options.aovs)};
   kernels.mattes = layout.mattes;
   kernels.light = layout.light;
+  kernels.groups = layout.groups;
   kernels.counts_rays = counts_rays(options.aovs);
   kernels.notes.clear();
   return kernels;

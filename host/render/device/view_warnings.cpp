@@ -15,7 +15,8 @@ constexpr float least_angle = 4e-7f;  // of a pixel: a few float spacings at 1
 
 float pixel_angle(const CompiledScene& scene) {
   const float4& dx = scene.info.camera_dx;
-  return std::sqrt(dx.x * dx.x + dx.y * dx.y + dx.z * dx.z);
+  const float spread = scene.features.orthographic ? scene.info.camera_corner.w : 1;
+  return std::sqrt(dx.x * dx.x + dx.y * dx.y + dx.z * dx.z) * spread;
 }
 
 // Relative to the largest coordinate: the error of estimates in doubles.

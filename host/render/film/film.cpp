@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "render/film/group_names.h"
 #include "render/film/light_parts.h"
 #include "render/film/pass.h"
 
@@ -159,6 +160,7 @@ PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
 }
 
 const AovPlace* find_place(const std::string& name) {
+  if (is_light_group(name)) return &places[number_of_group(name)];  // in place of a part of light
   const auto* place =
       std::find_if(std::begin(places), std::end(places), [&](const AovPlace& p) { return name == p.name; });
   return place == std::end(places) ? nullptr : place;
@@ -187,6 +189,7 @@ AovLayout aov_layout(const std::vector<std::string>& names) {
     if (!place) continue;
     layout.mattes |= place->kind == AovKind::matte;
     layout.light |= place->kind == AovKind::light;
+    layout.groups |= is_light_group(name);
     for (const std::size_t more : {feature_aov_vectors, all_aov_vectors})
       if (place->kind == AovKind::surface && place->first >= 4 * layout.surfaces) layout.surfaces = more;
   }

@@ -22,11 +22,14 @@ constexpr std::size_t few_aov_vectors = 3, feature_aov_vectors = 5, all_aov_vect
 struct AovLayout {
   std::size_t surfaces = few_aov_vectors;
   bool mattes = false, light = false;
+  bool groups = false;  // the sums of light are those of groups of lights
   std::size_t first_light() const { return surfaces + (mattes ? MATTE_VECTORS : 0); }
   std::size_t sums() const { return (mattes ? MATTE_VECTORS : 0) + (light ? LIGHT_VECTORS : 0); }
   std::size_t vectors() const { return surfaces + sums(); }
   /// Not 0, and another for every layout.
-  std::uint32_t code() const { return u32(surfaces) | u32(mattes) << 8 | u32(light) << 9; }
+  std::uint32_t code() const {
+    return u32(surfaces) | u32(mattes) << 8 | u32(light) << 9 | u32(groups) << 10;
+  }
 };
 constexpr std::size_t most_aov_vectors = all_aov_vectors + MATTE_VECTORS + LIGHT_VECTORS;
 

@@ -17,7 +17,11 @@ using glm::dvec4;
 
 /// The world point, or with w = 0 the direction of the sky, that a pixel shows at this place and depth.
 dvec4 seen(const Shot& shot, const dmat4& world_from_ndc, const dvec2& ndc, double depth) {
-  if (std::isinf(depth)) return world_from_ndc * dvec4(ndc, 1, 1);
+  // An orthographic camera sees no part of the sky move.
+  const auto& m = shot.world_to_ndc;
+  const bool parallel = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0;
+  if (std::isinf(depth)) return parallel ? dvec4(0) : world_from_ndc * dvec4(ndc, 1, 1);
+  if (parallel) return world_from_ndc * dvec4(ndc, depth, 1);
   const double near = shot.world_to_ndc[3][3] - shot.world_to_ndc[3][2];  // scene/shot.cpp
   return world_from_ndc * dvec4(ndc * depth, depth - near, depth);
 }

@@ -14,6 +14,7 @@
 #include "base/json_memory.h"
 #include "base/limits.h"
 #include "base/memory.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/film/part.h"
 
@@ -63,7 +64,9 @@ std::optional<int> whole(const json& head, const char* key, int least, int most)
 
 /// The values are distinct names of AOVs.
 bool are_aovs(const std::vector<std::string>& names) {
-  const auto known = [](const std::string& name) { return std::ranges::count(aov_names(), name) == 1; };
+  const auto known = [](const std::string& name) {
+    return std::ranges::count(aov_names(), name) == 1 || is_light_group(name);
+  };
   return std::ranges::all_of(names, known) &&
          std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/plan/frame_tiles.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 void check_aovs(const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    if (std::find(aov_names().begin(), aov_names().end(), name) == aov_names().end())
+    if (!is_light_group(name) && std::ranges::count(aov_names(), name) == 0)
       throw UsageError(
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }
@@ -30,7 +31,10 @@ void check_variance(const std::vector<std::string>& names, const Sampling& sampl
 void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
   for (const std::string& name : names)
     if (is_light(name) && scene.integrator != "path")
-      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator", name));
+      throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator",
+                                   name.substr(0, name.rfind('@'))));
+  if (scene.features.caustics && std::ranges::any_of(names, is_light_group))
+    throw UsageError("photons do not know their groups of lights: leave caustics out, or the AOVs of groups");
 }
 
 void check_shares(const Split& split, const std::vector<WorkerPlan>& devices) {

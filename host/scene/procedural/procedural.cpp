@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/image_io.h"
 #include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
@@ -79,11 +80,21 @@ Extrusion read_extrusion(JsonObject& object) {
   return extrusion;
 }
 
-Terrain read_terrain(JsonObject& object) {
+/// A picture's levels as its file has them: those of 8 and 16 bits say nothing of light.
+Image levels_of(const JsonValue& file, const ReadPicture& read_picture) {
+  Image picture = read_picture(file);
+  if (is_for_screens(file.text()))
+    for (float& value : picture.data) value = srgb_from_linear(value);
+  return picture;
+}
+
+Terrain read_terrain(JsonObject& object, const ReadPicture& read_picture) {
   Terrain terrain;
   object.read("seed", terrain.seed, "size", terrain.size, "height", terrain.height);
   object.read("feature", terrain.feature, "ridges", terrain.ridges, "octaves", terrain.octaves);
   object.read("cells", terrain.cells);
+  if (const auto file = object.find("file"); file && read_picture)
+    terrain.picture = levels_of(*file, read_picture);
   return terrain;
 }
 
@@ -120,13 +131,15 @@ Mesh made(const Shape& shape, Mesh (*make)(const Shape&), bool checks) {
   return checks ? Mesh() : make(shape);
 }
 
-Mesh follow(const JsonValue& recipe, const JsonValue& meshes, bool checks) {
+/// Without `read_picture` the recipe is only checked.
+Mesh follow(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture& read_picture) {
+  const bool checks = !read_picture;
   const std::string type = recipe.type();
   try {
     return recipe.object("generate_" + type, [&](JsonObject& object) {
       if (type == "lathe") return made(read_lathe(object), make_lathe, checks);
       if (type == "extrusion") return made(read_extrusion(object), make_extrusion, checks);
-      if (type == "terrain") return made(read_terrain(object), make_terrain, checks);
+      if (type == "terrain") return made(read_terrain(object, read_picture), make_terrain, checks);
       if (type == "fill") return read_fill(object, meshes, checks);
       return read_ice_block(object, checks);
     });
@@ -137,9 +150,11 @@ Mesh follow(const JsonValue& recipe, const JsonValue& meshes, bool checks) {
 
 }  // namespace
 
-Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes) { return follow(recipe, meshes, false); }
+Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture& read_picture) {
+  return follow(recipe, meshes, read_picture);
+}
 
-void check_recipe(const JsonValue& recipe, const JsonValue& meshes) { follow(recipe, meshes, true); }
+void check_recipe(const JsonValue& recipe, const JsonValue& meshes) { follow(recipe, meshes, {}); }
 
 std::string recipe_key(const JsonValue& recipe, const JsonValue& meshes) {
   std::string key = recipe.json().dump();

@@ -42,6 +42,26 @@ double height_at(const Terrain& terrain, const dvec2& p) {
   return sum;
 }
 
+/// The picture at (u, v) in [0, 1], v from its top: bilinear between the middles of pixels.
+double value_at(const Image& picture, double u, double v) {
+  const auto at = [](double share, int count) { return std::clamp(share * count - 0.5, 0.0, count - 1.0); };
+  const double x = at(u, picture.width), y = at(v, picture.height);
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const auto pixel = [&](int dx, int dy) {
+    const float* c =
+        picture.pixel(std::min(left + dx, picture.width - 1), std::min(top + dy, picture.height - 1));
+    return (double(c[0]) + double(c[1]) + double(c[2])) / 3;
+  };
+  return glm::mix(glm::mix(pixel(0, 0), pixel(1, 0), x - left), glm::mix(pixel(0, 1), pixel(1, 1), x - left),
+                  y - top);
+}
+
+/// From 0 to the terrain's height.
+void even_out(const Terrain& terrain, std::vector<double>& heights) {
+  const auto [low, high] = std::ranges::minmax(heights);
+  for (double& h : heights) h = high > low ? (h - low) * (terrain.height / (high - low)) : 0;
+}
+
 }  // namespace
 
 Mesh make_terrain(const Terrain& terrain) {
@@ -55,11 +75,14 @@ Mesh make_terrain(const Terrain& terrain) {
                  (double(k) / double(nz) - 0.5) * terrain.size.y);
   };
   std::vector<double> heights((nx + 1) * (nz + 1));
+  const auto height_of = [&](std::size_t i, std::size_t k) {
+    if (!terrain.picture) return height_at(terrain, place(i, k));
+    return terrain.height * value_at(*terrain.picture, double(i) / double(nx), double(k) / double(nz));
+  };
   tbb::parallel_for(std::size_t{0}, nz + 1, [&](std::size_t k) {
-    for (std::size_t i = 0; i <= nx; ++i) heights[k * (nx + 1) + i] = height_at(terrain, place(i, k));
+    for (std::size_t i = 0; i <= nx; ++i) heights[k * (nx + 1) + i] = height_of(i, k);
   });
-  const auto [low, high] = std::ranges::minmax(heights);
-  for (double& h : heights) h = high > low ? (h - low) * (terrain.height / (high - low)) : 0;
+  if (!terrain.picture) even_out(terrain, heights);
 
   const auto height = [&](std::size_t i, std::size_t k) { return heights[k * (nx + 1) + i]; };
   Mesh mesh;

@@ -1,7 +1,8 @@
-// Mountains from noise: a grid over a rectangle, with its heights.
+// Mountains from noise, or from a picture of heights: a grid over a rectangle.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "scene/description.h"
 
@@ -15,6 +16,8 @@ struct Terrain {
   double ridges = 0.7;      // 0: rolling hills, 1: sharp ridges over flat valleys
   int octaves = 9;          // 1..16; each has half the size of the one before
   int cells = 256;          // along the longer side, 1..4096: up to 2 cells^2 triangles
+  /// In place of noise: the mean of red, green and blue times `height` over y = 0, with the top towards -z.
+  std::optional<Image> picture{};
 };
 
 /// A sheet that faces up, smooth, with u along x and v along -z. Heights are a sum of gradient noise whose

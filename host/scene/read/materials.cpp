@@ -321,6 +321,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.transmission = transmission.even, material.textures.transmission = transmission.texture;
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
+    material.group = read_group(object);
     read_surface(object, material, textures);
     return material;
   });

@@ -19,14 +19,18 @@ class TextureLibrary;
 /// The index of a name that must be in `table`; `what` is its kind ("material").
 int find_name(const JsonValue& name, const NameTable& table, std::string_view what);
 
-/// `position` and `target` must both be given or both be missing, which `placed` returns.
-Camera read_camera(const JsonValue& value, bool& placed);
+/// `position` and `target` must both be given or both be missing, which `placed` returns. Lenses are in
+/// millimetres, so `unit` is the metres of a scene unit.
+Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
-LightDescription read_light(const JsonValue& value);
+/// `unit`: metres of a scene unit, for the power of lamps.
+LightDescription read_light(const JsonValue& value, double unit);
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);
+/// The name of a group of lights, empty without one. Throws SceneError for one that is no name of an AOV.
+std::string read_group(JsonObject& object);
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);

@@ -2,9 +2,11 @@
 #include "scene/read/scene_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/image_io.h"
@@ -15,14 +17,17 @@
 #include "scene/displace.h"
 #include "scene/json/parse.h"
 #include "scene/lamps.h"
+#include "scene/light_groups.h"
 #include "scene/materials/presets.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/dark_world.h"
 #include "scene/read/fields.h"
+#include "scene/read/focus.h"
 #include "scene/read/frame_cache.h"
 #include "scene/read/library.h"
 #include "scene/read/motion.h"
 #include "scene/read/parts.h"
+#include "scene/read/scatter.h"
 #include "scene/read/surfaces.h"
 #include "scene/read/textures.h"
 #include "scene/read/tracks.h"
@@ -57,9 +62,11 @@ class SceneReader {
     if (animate) read_tracks(*animate);  // animate.cpp has applied them
     object.read("frames_per_second", scene_.frames_per_second, "unit", scene_.unit);
     bool placed = false;
-    if (const auto camera = object.find("camera")) scene_.camera = read_camera(*camera, placed);
+    if (const auto camera = object.find("camera"))
+      scene_.camera = read_camera(*camera, scene_.image, scene_.unit, placed);
     if (const auto lights = object.find("lights"))
-      for (const JsonValue& light : lights->items("lights")) scene_.lights.push_back(read_light(light));
+      for (const JsonValue& light : lights->items("lights"))
+        scene_.lights.push_back(read_light(light, scene_.unit));
     if (const auto environment = object.find("environment"))
       scene_.environment =
           read_environment(*environment, [&](const JsonValue& file) { return read_picture(file); });
@@ -71,6 +78,10 @@ class SceneReader {
     if (!placed)
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
+    if (!scene_.camera.lens.focus_on.empty()) focus_on_object(scene_, in_focus_);
+    if (const auto groups = light_groups(scene_); groups.size() > most_light_groups)
+      root_.fail(fmt::format("wanted at most {} groups of lights, found {}: {}", most_light_groups,
+                             groups.size(), fmt::join(groups, ", ")));
     add_lamps(scene_);
     warn_of_dark_world(scene_);
   }
@@ -139,7 +150,11 @@ class SceneReader {
         object.read("crease_angle", options.crease_angle);
         return library_.load(object, from, file, options);
       }
-      const auto generate = [&] { return model_of(generate_mesh(from, meshes), name); };
+      const auto generate = [&] {
+        return model_of(
+            generate_mesh(from, meshes, [&](const JsonValue& picture) { return read_picture(picture); }),
+            name);
+      };
       if (!cache()) return library_.add(generate(), name);
       if (cache()->checks()) check_recipe(from, meshes);
       return library_.add(cache()->model(recipe_key(from, meshes), from.pointer(), generate), name);
@@ -173,12 +188,15 @@ class SceneReader {
   }
 
   void read_object(const JsonValue& value, const Placement& parent) {
-    const std::string type = value.type();
+    const std::string type = value.type(), &wanted = scene_.camera.lens.focus_on;
+    const std::size_t first = scene_.objects.size();
     const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
     value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
       const Placement placement = read_placement(object, parent);
       if (type == "group") {
         for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, placement);
+      } else if (type == "scatter") {
+        read_scatter(object, placement);
       } else if (type == "mesh") {
         const JsonValue name = object.at("mesh");
         library_.place(find_mesh(name), placement);
@@ -193,6 +211,38 @@ class SceneReader {
         place_solid(object, type, placement);
       }
     });
+    if (const auto name = value.json().find("name"); !wanted.empty() && name != value.json().end())
+      if (*name == wanted)
+        in_focus_.insert(in_focus_.end(), scene_.objects.begin() + std::ptrdiff_t(first),
+                         scene_.objects.end());
+  }
+
+  /// Reads each of the objects once and copies it.
+  void read_scatter(JsonObject& object, const Placement& placement) {
+    const auto [how, limit] = read_scatter_keys(object);
+    std::vector<Ground> grounds;
+    for (const Object& part : find_mesh(object.at("on")))
+      if (const auto* mesh = std::get_if<MeshShape>(&part.shape))
+        grounds.push_back({scene_.meshes[static_cast<std::size_t>(mesh->mesh)], part.world_from_object});
+    const std::size_t first = scene_.objects.size();
+    std::vector<std::vector<Object>> kinds;
+    Placement at_origin = placement;
+    at_origin.world_from_object = dmat4(1);
+    for (const JsonValue& item : object.at("objects").items("objects")) {
+      read_object(item, at_origin);
+      kinds.emplace_back(scene_.objects.begin() + std::ptrdiff_t(first), scene_.objects.end());
+      scene_.objects.erase(scene_.objects.begin() + std::ptrdiff_t(first), scene_.objects.end());
+    }
+    double wanted = 0;
+    const std::vector<ScatteredPlace> places = scatter(how, grounds, limit, wanted);
+    if (wanted > static_cast<double>(limit))
+      object.value().fail(
+          fmt::format("wanted at most the \"limit\" of {} copies, found {:.0f}: lower the "
+                      "\"density\" or raise the \"limit\"",
+                      limit, wanted));
+    for (const ScatteredPlace& place : places)
+      add_copies(kinds[static_cast<std::size_t>(place.index * static_cast<double>(kinds.size()))],
+                 placement.world_from_object * place.place, object.value(), scene_);
   }
 
   const ModelLibrary::Parts& find_mesh(const JsonValue& name) const {
@@ -243,6 +293,7 @@ class SceneReader {
   TextureLibrary textures_{scene_};
   SurfaceNames names_;
   NameTable fields_;
+  std::vector<Object> in_focus_;  // those in the object of the name that the camera focuses on
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };
 

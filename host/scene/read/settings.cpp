@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scene/integrators.h"
 #include "scene/kinds.h"
+#include "scene/lamps.h"
 #include "scene/read/parts.h"
 #include "scene/spectra/cie.h"
 
@@ -21,12 +23,34 @@ void check_view(JsonObject& object, const Camera& camera) {
     object.value().fail("wanted an \"up\" that is not along the view from \"position\" to \"target\"");
 }
 
-Lens read_lens(JsonObject& object) {
+/// `focal_length` in scene units, if there is one.
+Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   Lens lens;
+  object.not_both("radius", "f_number");
+  object.not_both("focus", "focus_on");
   object.read("radius", lens.radius, "focus", lens.focus, "blades", lens.blades, "rotate", lens.rotate);
+  object.read("focus_on", lens.focus_on);
+  if (const auto f_number = object.find("f_number")) {
+    if (!focal_length) f_number->fail("wanted a camera with a \"focal_length\", or the lens's \"radius\"");
+    lens.radius = *focal_length / (2 * f_number->number());
+  }
   if (lens.blades == 1 || lens.blades == 2)
     object.find("blades")->wanted("3 or more blades, or 0 for a round aperture");
   return lens;
+}
+
+/// Sets what the picture shows; returns the focal length in millimetres, if it is given.
+std::optional<double> read_angle(JsonObject& object, const ImageSettings& image, Camera& camera) {
+  object.not_both("fov", "focal_length");
+  object.not_both("fov", "orthographic");
+  object.not_both("focal_length", "orthographic");
+  std::optional<double> focal_length;
+  double film_width = 0;
+  object.read("fov", camera.fov, "orthographic", camera.orthographic, "focal_length", focal_length,
+              "film_width", film_width);
+  if (focal_length)
+    camera.fov = glm::degrees(2 * std::atan(film_width * image.height / image.width / (2 * *focal_length)));
+  return focal_length;
 }
 
 View read_view(JsonObject& object, const Camera& camera) {
@@ -61,6 +85,23 @@ void read_spot(JsonObject& object, LightDescription& light) {
   if (light.inner_angle > light.outer_angle)
     object.value().fail(fmt::format("wanted an \"inner_angle\" not above the \"outer_angle\" of {}, found {}",
                                     light.outer_angle, light.inner_angle));
+}
+
+/// The intensity by the power of the whole light. Its luminance counts, so that a colour only tints it.
+void read_power(JsonObject& object, double unit, LightDescription& light) {
+  constexpr double lumens_a_watt = 179;  // of white light, as Radiance has it (Ward 1994)
+  const auto watts = object.find("watts"), lumens = object.find("lumens");
+  for (const char* power : {"watts", "lumens"}) {
+    object.not_both("intensity", power);
+    if (object.knows("falloff")) object.not_both("falloff", power);
+  }
+  object.not_both("watts", "lumens");
+  if (!watts && !lumens) return;
+  const double luminance = glm::dot(light.color, dvec3(0.2126, 0.7152, 0.0722));
+  if (!(luminance > 0)) object.value().fail("wanted a \"color\" that is not black with a power");
+  const double power = watts ? watts->number() : lumens->number() / lumens_a_watt;
+  light.intensity = power / (power_of_intensity(light) * unit * unit * luminance);
+  light.falloff = {0, 0, 1};
 }
 
 void read_sun(JsonObject& object, EnvironmentDescription& e) {
@@ -116,7 +157,7 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
 
 }  // namespace
 
-Camera read_camera(const JsonValue& value, bool& placed) {
+Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed) {
   return value.object("camera", [&](JsonObject& object) {
     Camera camera;
     placed = object.has("position") || object.has("target");
@@ -125,11 +166,15 @@ Camera read_camera(const JsonValue& value, bool& placed) {
       camera.target = object.at("target").vec3();
     }
     if (const auto up = object.find("up")) camera.up = up->direction();
-    object.read("fov", camera.fov, "near", camera.near, "far", camera.far, "shutter", camera.shutter);
+    const std::optional<double> focal_length = read_angle(object, image, camera);
+    object.read("near", camera.near, "far", camera.far, "shutter", camera.shutter);
     if (camera.far <= camera.near)
       object.at("far").wanted(fmt::format("a number above the \"near\" of {}", camera.near));
     if (placed) check_view(object, camera);
-    if (const auto lens = object.find("lens")) camera.lens = lens->object("lens", read_lens);
+    if (const auto lens = object.find("lens"))
+      camera.lens = lens->object("lens", [&](JsonObject& inner) {
+        return read_lens(inner, focal_length ? std::optional(*focal_length / 1000 / unit) : std::nullopt);
+      });
     object.check("shutter_steps");
     if (const auto moves = object.find("moves_to")) {
       if (!placed) moves->fail("wanted a camera with \"position\" and \"target\" that it moves from");
@@ -153,7 +198,11 @@ ImageSettings read_image(const JsonValue& value) {
                 "transparent_glass", image.transparent_glass);
     if (const auto tone_map = object.find("tone_map"))
       tone_map->object("tone_map", [&map = image.tone_map](JsonObject& inner) {
-        inner.read("curve", map.curve, "exposure", map.exposure, "white_balance", map.white_balance);
+        inner.read("curve", map.curve, "white_balance", map.white_balance, "contrast", map.contrast);
+        inner.read("vignette", map.vignette, "bloom", map.bloom);
+        const auto exposure = inner.find("exposure");
+        map.automatic = exposure && exposure->json() == "auto";
+        if (exposure && !map.automatic) exposure->get(map.exposure);
       });
     const auto background = object.find("background");
     if (!background) return image;
@@ -221,6 +270,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
     e.type = *value_named(environment_types, type);
     object.read("color", e.color, "intensity", e.intensity, "rotate", e.rotate, "samples", e.samples);
     object.read("visible", e.visible, "hidden", e.hidden);
+    e.group = read_group(object);
     if (const auto up = object.find("up")) e.up = up->direction();
     if (e.type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file"));
@@ -236,14 +286,28 @@ EnvironmentDescription read_environment(const JsonValue& value,
   });
 }
 
-LightDescription read_light(const JsonValue& value) {
+std::string read_group(JsonObject& object) {
+  const auto group = object.find("group");
+  if (!group) return "";
+  const std::string name = group->text();
+  const bool plain = std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  if (!plain || name == "rest" || name == "groups" || name == "parts")
+    group->wanted("a name of letters, digits, - and _, other than rest, groups and parts");
+  return name;
+}
+
+LightDescription read_light(const JsonValue& value, double unit) {
   const std::string type = value.type();
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
     object.check("name");  // for pointers
+    if (object.knows("group")) light.group = read_group(object);
     const auto read = [&](std::string_view key, auto& to) {
-      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
+      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff" && key != "group")
+        object.read(key, to);
     };
 #define SUNDOG_READ_KEY(of, name, ...) read(#name, light.name);
     LIGHT_KEYS(SUNDOG_READ_KEY)
@@ -256,6 +320,7 @@ LightDescription read_light(const JsonValue& value) {
       if (const auto up = object.find("up")) light.up = up->direction();
     if (facts_of(light.type).aimed) read_aim(object, light);
     if (light.type == LightType::spot) read_spot(object, light);
+    if (object.knows("watts")) read_power(object, unit, light);
     return light;
   });
 }

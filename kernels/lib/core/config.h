@@ -129,6 +129,12 @@
 #define HAS_LIGHT_PARTS 0
 #endif
 
+// Whether they keep the light of each group of lights apart instead, in the same sums.
+#ifndef HAS_LIGHT_GROUPS
+#define HAS_LIGHT_GROUPS 0
+#endif
+#define HAS_LIGHT_SUMS ANY_OF(HAS_LIGHT_PARTS, HAS_LIGHT_GROUPS)
+
 // Whether rays carry the pixel's cone, for texture filtering.
 #if HAS_MAPS && TEXTURE_KINDS
 #define HAS_CONES 1

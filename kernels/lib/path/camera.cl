@@ -16,7 +16,7 @@ static inline void set_ray_times(REAL time, Rays* rays) { HAVING(HAS_OBJECT_MOTI
 // Growth of a pixel's footprint per unit of a ray's distance.
 static inline float pixel_spread(__global const SceneInfo* restrict info) {
   const float3 dx = info->camera_dx.xyz;
-  return sqrt(dot(dx, dx));
+  return sqrt(dot(dx, dx)) * (HAS_ORTHOGRAPHIC ? info->camera_corner.w : 1.0f);
 }
 
 // Growth of a sample's footprint. The samples share the pixel, but each sees more than its share, or too
@@ -31,10 +31,14 @@ static inline void start_cones(__global const SceneInfo* restrict info, Rays* ra
 
 static inline Rays camera_rays(__global const SceneInfo* restrict info, REAL x, REAL y) {
   Rays rays;
-  const REAL3 along = along3(along3(all3(info->camera_corner.xyz), x, all3(info->camera_dx.xyz)), y,
-                             all3(info->camera_dy.xyz));
-  const REAL depth_to_t = length3(along);  // `along` has length 1 along the view
+  REAL3 along = along3(along3(all3(info->camera_corner.xyz), x, all3(info->camera_dx.xyz)), y,
+                       all3(info->camera_dy.xyz));
   rays.o = all3(info->camera_position.xyz);
+  if (HAS_ORTHOGRAPHIC) {
+    rays.o = add3(rays.o, along);
+    along = all3(info->camera_forward.xyz);
+  }
+  const REAL depth_to_t = length3(along);  // `along` has length 1 along the view
   rays.d = scale3(along, 1.0f / depth_to_t);
   rays.t_min = info->camera_forward.w * depth_to_t;
   rays.t_max = info->background_bottom.w * depth_to_t;

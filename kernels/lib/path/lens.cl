@@ -24,6 +24,7 @@ typedef struct CameraSamples {
 // The pinhole camera at one time, before lens and motion; `along` has length 1 along the view.
 typedef struct CameraPlaces {
   REAL3 position, along, dx, dy;
+  HAVING(HAS_ORTHOGRAPHIC, REAL3 forward;)
 } CameraPlaces;
 
 static inline REAL sampled_time(const CameraSamples* samples) {
@@ -35,6 +36,9 @@ static inline void move_camera(__global const SceneInfo* restrict info, REAL tim
   camera->along = along3(camera->along, time, all3(info->moved_corner.xyz));
   camera->dx = along3(camera->dx, time, all3(info->moved_dx.xyz));
   camera->dy = along3(camera->dy, time, all3(info->moved_dy.xyz));
+  HAVING(HAS_ORTHOGRAPHIC,
+         const float3 turned = (float3)(info->moved_position.w, info->moved_corner.w, info->moved_dx.w);
+         camera->forward = along3(camera->forward, time, all3(turned));)
 }
 
 // The origin's offset by the lens.
@@ -68,10 +72,16 @@ static inline Rays sampled_camera_rays(__global const SceneInfo* restrict info,
     set_ray_times(sampled_time(samples), &still);
     return still;
   }
-  CameraPlaces camera = {all3(info->camera_position.xyz), all3(info->camera_corner.xyz),
-                         all3(info->camera_dx.xyz), all3(info->camera_dy.xyz)};
+  CameraPlaces camera;
+  camera.position = all3(info->camera_position.xyz);
+  camera.along = all3(info->camera_corner.xyz);
+  camera.dx = all3(info->camera_dx.xyz);
+  camera.dy = all3(info->camera_dy.xyz);
+  HAVING(HAS_ORTHOGRAPHIC, camera.forward = all3(info->camera_forward.xyz);)
   if (HAS_CAMERA_MOTION) move_camera(info, sampled_time(samples), &camera);
   camera.along = along3(along3(camera.along, samples->x, camera.dx), samples->y, camera.dy);
+  HAVING(HAS_ORTHOGRAPHIC, camera.position = add3(camera.position, camera.along);
+         camera.along = camera.forward;)
   HAVING(HAS_LENS, pass_lens(info, samples->lens_x, samples->lens_y, &camera);)
   const REAL depth_to_t = length3(camera.along);
   Rays rays;

@@ -9,7 +9,7 @@
 
 // Sums of a pixel's samples: mattes, then parts of light.
 #define FIRST_LIGHT_VECTOR (HAS_MATTES ? MATTE_VECTORS : 0u)
-#define SAMPLE_VECTORS (FIRST_LIGHT_VECTOR + (HAS_LIGHT_PARTS ? LIGHT_VECTORS : 0u))
+#define SAMPLE_VECTORS (FIRST_LIGHT_VECTOR + (HAS_LIGHT_SUMS ? LIGHT_VECTORS : 0u))
 
 // The sums of the rectangle's pixel `place`. They lie behind the film of all its pixels.
 static inline __global float4* sample_sums(const Launch* launch, __global float4* film, u32 place) {

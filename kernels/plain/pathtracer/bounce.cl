@@ -13,7 +13,8 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path
                                      const Numbers* u, UNIFORM u32* counts) {
   bool seen;  // rays may meet the lamp: the path's next ray has its share
   float scattered;
-  const LightSample light = choose_one(scene, at->s.p, u, &seen);
+  int chosen;
+  const LightSample light = choose_one(scene, at->s.p, u, &chosen, &seen);
   const float3 scattering = bsdf_scatter(scene, &at->bsdf, lobes, -ray->d, light.wi, &scattered);
   scattered = guided_pdf(scene, lobes, at->s.p, light.wi, scattered);
   const float weight = weight_of_chosen(scene, light.pdf, seen ? scattered : 0.0f);
@@ -35,6 +36,7 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path
   const SampledSpectrum arriving =
       kept_hero(scene, at, &lobes->split, path,
                 arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts));
+  if (HAS_LIGHT_GROUPS) note_group(path, group_of(scene, chosen), arriving);
   if (HAS_LIGHT_PARTS) {
     const LobeShares shares =
         shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, -ray->d, light.wi, below);
@@ -110,8 +112,8 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
   if (HAS_GLOW)
-    path->radiance +=
-        met_light(path, SEEN_EMISSION, path->throughput * spectrum_of(&path->wavelengths, emitted(ray)));
+    path->radiance += met_light(path, SEEN_EMISSION, NO_LIGHT_GROUP,
+                                path->throughput * spectrum_of(&path->wavelengths, emitted(ray)));
   forget_glow(ray);
   bool turned;  // the medium has scattered the path, which may continue
   if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
@@ -121,11 +123,13 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     return true;
   }
   SampledSpectrum light = (SampledSpectrum)(0.0f);
-  if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, met_fog(scene, &met, path));
+  if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, NO_LIGHT_GROUP, met_fog(scene, &met, path));
   if (!hit_anything(&met.hit)) {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
-    path->radiance += light + met_light(path, SEEN_SKY, sky);
+    int group = NO_LIGHT_GROUP;
+    if (HAS_LIGHT_GROUPS) group = note_suns(scene, path, ray->d);
+    path->radiance += light + met_light(path, SEEN_SKY, group, sky);
     path->covered = !path->straight;
     return false;
   }
@@ -135,7 +139,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   follow_hero(&path->wavelengths, &at.bsdf);
   if (HAS_EMISSION)
     light += met_light(
-        path, SEEN_EMISSION,
+        path, SEEN_EMISSION, at.bsdf.flags >> (int)MATERIAL_GROUP_SHIFT,
         path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at)));
   const bool deep = path->depth > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);

@@ -82,8 +82,21 @@ static void add_scattered(PathState* path, const LobeShares* shares, bool direct
   }
 }
 
+// Adds light to its group of lights, whatever has scattered it.
+HAVING(HAS_LIGHT_GROUPS)
+static inline void note_group(PathState* path, int group, SampledSpectrum light) {
+  int number = 0;
+  bool here;
+#define ADD_TO_GROUP(name)             \
+  here = group == number;              \
+  if (here) path->parts.name += light; \
+  ++number;
+  LIGHT_PARTS(ADD_TO_GROUP)
+}
+
 // Light that the path's ray meets, which is the part `seen` where nothing has scattered the ray.
-static inline SampledSpectrum met_light(PathState* path, UNIFORM int seen, SampledSpectrum light) {
+static inline SampledSpectrum met_light(PathState* path, UNIFORM int seen, int group, SampledSpectrum light) {
+  if (HAS_LIGHT_GROUPS) note_group(path, group, light);
   if (HAS_LIGHT_PARTS) {
     if (path->scatterings > 0) {
       add_scattered(path, &path->shares, path->scatterings == 1, light);

@@ -1,6 +1,6 @@
 // Light that the rays of paths meet: what shines on surfaces, the sky, and what lies on the way.
+#include "plain/pathtracer/light_parts.cl"
 #include "plain/pathtracer/mis.cl"
-#include "plain/pathtracer/path_state.cl"
 
 // The density with which path->from chooses the light `lamp` at the point p, which the ray met in the
 // direction d.
@@ -72,6 +72,30 @@ static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* pa
     }
   return light;
 }
+// Moves the light of suns that lie in the direction d, and are of another group than the environment, to
+// their groups. Returns the environment's, for the whole of met_sky().
+HAVING(HAS_LIGHT_GROUPS)
+static int note_suns(UNIFORM const Scene* scene, PathState* path, float3 d) {
+  int around = NO_LIGHT_GROUP;
+  if (HAS_ENVIRONMENT) around = (int)scene->environments->ahead.w;
+  if (HAS_SKY && HAS_AREA_LIGHTS) {
+    const float chance = 1.0f / (float)max(scene->info->light_count, 1u);
+    const bool shown = !(path->straight && scene->info->transparent != 0u);
+    for (u32 index = 0; index < scene->info->table_lights; ++index) {
+      __global const Light* lamp = scene->lights + index;
+      if (is_in_sky(lamp) && (int)lamp->color.w != around) {
+        const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
+        const float3 seen = left_by_photons(path, sky_light_radiance(lamp, d, path->depth == 1));
+        SampledSpectrum light = path->throughput * spectrum_of(&path->wavelengths, seen * weight);
+        if (!shown) light = (SampledSpectrum)(0.0f);
+        note_group(path, (int)lamp->color.w, light);
+        note_group(path, around, (SampledSpectrum)(0.0f) - light);
+      }
+    }
+  }
+  return around;
+}
+
 static inline float3 met_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {
   if (HAS_SKY)
     return met_lit_sky(scene, path, d);

@@ -30,11 +30,20 @@ static inline LightSample sample_chosen(UNIFORM const Scene* scene, float3 p, fl
   return light;
 }
 
-// A way to one of the lights for the point p, with its density among all.
-static inline LightSample choose_one(UNIFORM const Scene* scene, float3 p, const Numbers* u, bool* seen) {
+// The group of a light.
+HAVING(HAS_LIGHT_GROUPS)
+static inline int group_of(UNIFORM const Scene* scene, int chosen) {
+  int group = NO_LIGHT_GROUP;
+  EACH_ALIKE(int, index, chosen) group = (int)scene->lights[index].color.w;
+  return group;
+}
+
+// A way to one of the lights for the point p, `chosen`, with its density among all.
+static inline LightSample choose_one(UNIFORM const Scene* scene, float3 p, const Numbers* u, int* chosen,
+                                     bool* seen) {
   float chance;
-  const int chosen = choose_index(scene, p, u->z, &chance);
-  LightSample light = sample_chosen(scene, p, u->x, u->y, chosen, seen);
+  *chosen = choose_index(scene, p, u->z, &chance);
+  LightSample light = sample_chosen(scene, p, u->x, u->y, *chosen, seen);
   // Of a delta light the chance counts for the light, not for a direction.
   light.pdf *= chance;
   return light;

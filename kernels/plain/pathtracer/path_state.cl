@@ -42,7 +42,7 @@ typedef struct PathState {
   HAVING(HAS_MATTES) float clear;             // of the background, straight on, behind its last surface
   HAVING(HAS_MATTES) float matte;             // what the last surface took of that
   HAVING(HAS_MATTES) int instance, material;  // of that surface
-  HAVING(HAS_LIGHT_PARTS) LightParts parts;
+  HAVING(HAS_LIGHT_SUMS) LightParts parts;
   HAVING(HAS_LIGHT_PARTS) int scatterings;     // since the camera, without straight ways through surfaces
   HAVING(HAS_LIGHT_PARTS) LobeShares shares;   // at the first of them
   HAVING(HAS_SCATTERING) Scattered scattered;  // the density is then of the place there and of the direction
@@ -75,8 +75,10 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
     path.material = 0;
   }
 #define CLEAR_PART(name) path.parts.name = (SampledSpectrum)(0.0f);
-  if (HAS_LIGHT_PARTS) {
+  if (HAS_LIGHT_SUMS) {
     LIGHT_PARTS(CLEAR_PART)
+  }
+  if (HAS_LIGHT_PARTS) {
     path.scatterings = 0;
     path.shares.diffuse = (SampledSpectrum)(0.0f);
     path.shares.transmitted = (SampledSpectrum)(0.0f);

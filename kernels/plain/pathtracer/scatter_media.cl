@@ -136,6 +136,7 @@ static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, PathState* p
   note_ray(counts);
   SceneRay to_light = ray_from_stretch(scene, begun, ray, s, at, light.wi, light.distance);
   const SampledSpectrum arriving = arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
+  if (HAS_LIGHT_GROUPS) note_group(path, group_of(scene, chosen), arriving);
   if (HAS_LIGHT_PARTS) {
     const LobeShares shares = all_of_medium();
     note_sent(path, &shares, true, arriving);

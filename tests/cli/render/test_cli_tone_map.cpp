@@ -26,6 +26,14 @@ TEST_CASE("--exposure brightens a .png and leaves a .pfm and a merged part as re
   render("a.pfm", {});
   render("b.pfm", {"--exposure", "-1", "--tone-map", "agx", "--white-balance", "3200"});
   CHECK(read_file(folder / "a.pfm") == read_file(folder / "b.pfm"));
+  render("c.pfm", {"--exposure", "auto", "--contrast", "1.5", "--vignette", "0.5", "--bloom", "0.1"});
+  CHECK(read_file(folder / "a.pfm") == read_file(folder / "c.pfm"));
+  render("d.png", {"--contrast", "1", "--vignette", "0", "--bloom", "0"});
+  CHECK(read_file(folder / "a.png") == read_file(folder / "d.png"));
+  for (const char* option : {"--exposure=auto", "--contrast=1.5", "--vignette=0.5", "--bloom=0.1"}) {
+    render("e.png", {option});
+    CHECK(read_file(folder / "a.png") != read_file(folder / "e.png"));
+  }
   render("a.part", {"--tiles", "1/1"});
   REQUIRE(
       run_sundog({"merge", folder.file("a.part"), "-o", folder.file("c.png"), "--exposure", "-1"}).status ==
@@ -86,4 +94,8 @@ TEST_CASE("values of tone mapping that are none are refused by the option's name
   refused("--tone-map", "filmic");
   refused("--exposure", "bright");
   refused("--white-balance", "100");
+  refused("--white-balance", "auto");
+  refused("--contrast", "0");
+  refused("--vignette", "2");
+  refused("--bloom", "-1");
 }

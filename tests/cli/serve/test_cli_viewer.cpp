@@ -1,6 +1,7 @@
 // The viewer's page in a real browser: what a person does, and the pixels that change by it.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -100,6 +101,26 @@ TEST_CASE("dragging orbits, the wheel and keys come nearer, a drag is one step t
   const json version = v.run("const n = store.state.version; store.say('undo'); return n");
   v.wait("return store.state.version > " + version.dump());
   CHECK(v.picture() == before);
+}
+
+TEST_CASE("a focal length takes the place of the angle, and parallel rays come nearer by their height") {
+  Viewer& v = viewer();
+  v.run("store.edit([{at: '/camera/fov', value: 30}])");
+  v.wait("return store.state.resolved.camera.fov === 30 && settled()");
+  const auto before = v.picture();
+  v.tab("camera");
+  v.type("Focal length", "100");
+  v.wait("return store.edits.idle && store.state.document.camera.focal_length === 100 && settled()");
+  CHECK(v.picture() != before);
+  CHECK(!v.run("return store.state.document.camera").contains("fov"));
+  const double fov = v.run("return store.state.resolved.camera.fov");
+  CHECK(std::abs(fov - 20.41) < 0.01);  // of a square: 2 atan(18 / 100)
+  v.type("Orthographic", "3");
+  v.wait("return store.edits.idle && store.state.resolved.camera.orthographic === 3 && settled()");
+  v.run("canvas.dispatchEvent(new WheelEvent('wheel', {deltaY: -200, cancelable: true}))");
+  v.wait("return store.edits.idle && store.state.document.camera.orthographic < 3");
+  CHECK(!v.run("return store.state.document.camera").contains("focal_length"));
+  v.open_again();
 }
 
 TEST_CASE("a click picks an object; a double click looks there") {

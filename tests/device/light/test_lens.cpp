@@ -76,3 +76,41 @@ TEST_CASE("a moving camera makes of an edge a ramp as wide as it moves") {
   scene.camera.moves_to = View{{0.5, 0, 0}, {0.5, 0, -5}};
   on_picture_devices([&](const DeviceInfo& device) { moving_edge::check_ramp(device, scene, 0.5); });
 }
+
+TEST_CASE("an orthographic camera sees a ball as large at any depth, where its parallel ray meets it") {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 0}, {0, 0, -8});
+  scene.camera.orthographic = 4;
+  scene.image.width = scene.image.height = size;
+  scene.render.samples = 16;
+  const double pixel = 4.0 / size, radius = 0.5, area = M_PI * radius * radius / (pixel * pixel);
+  const int glow = scenes::add_glow(scene, {1, 1, 1});
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const double depth : {2.0, 50.0}) {
+      SceneDescription placed = scene;
+      scenes::place(placed, SphereShape{radius}, glow, glm::translate(glm::dmat4(1), {1, -0.5, -depth}));
+      const Image image = scenes::render_on(device, placed).image;
+      double sum = 0, across = 0, down = 0;
+      for (int row = 0; row < size; ++row)
+        for (int column = 0; column < size; ++column) {
+          const double value = double(image.pixel(column, row)[0]);
+          sum += value, across += value * (column + 0.5), down += value * (row + 0.5);
+        }
+      CHECK(sum == Approx(area).epsilon(0.02));
+      CHECK(across / sum == Approx(size / 2.0 + 1 / pixel).margin(0.1));
+      CHECK(down / sum == Approx(size / 2.0 + 0.5 / pixel).margin(0.1));
+      placed.camera.moves_to = View{{2, 0, 0}, {2, 0, -8}};  // on the mean 1 to the right
+      double moved = 0, all = 0;
+      const Image blurred = scenes::render_on(device, placed).image;
+      for (int row = 0; row < size; ++row)
+        for (int column = 0; column < size; ++column) {
+          all += double(blurred.pixel(column, row)[0]);
+          moved += double(blurred.pixel(column, row)[0]) * (column + 0.5);
+        }
+      CHECK(moved / all == Approx(size / 2.0).margin(0.5));
+      placed.camera.moves_to.reset();
+      placed.camera.lens = {.radius = 0.2, .focus = depth};  // sharp there
+      CHECK(spread_along(scenes::render_on(device, placed).image, 1, 0).along ==
+            Approx((1 + radius) / pixel).margin(1.5));
+    }
+  });
+}

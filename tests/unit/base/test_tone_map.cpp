@@ -1,4 +1,5 @@
 // Tone mapping: closed forms of the curves, exposure and white balance.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -104,4 +105,66 @@ TEST_CASE("what is not finite stays, and so does alpha") {
   CHECK(image.data[3] == 0.25f);
   CHECK(image.data[7] == 0.5f);
   CHECK(image.data[4] < 1);
+}
+
+TEST_CASE(
+    "the automatic exposure makes the middle of a picture grey, whatever lamps and black parts it has") {
+  Image image(10, 10, 3);
+  // 80 pixels about 4 * 0.18 by their logarithms, 10 of a lamp, 10 nearly black, and one that is not finite.
+  for (std::size_t i = 0; i < 100; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      image.data[3 * i + c] = i < 10 ? 1e-6f : i >= 90 ? 1e4f : i % 2 ? 0.36f : 1.44f;
+  CHECK(automatic_exposure(image) == Approx(-2).margin(1e-4));
+  CHECK(automatic_exposure(Image(3, 3, 3)) == 0);
+  Image grey = image, set = image;
+  apply({.automatic = true}, grey);
+  apply({.exposure = automatic_exposure(image)}, set);
+  CHECK(grey.data == set.data);
+}
+
+TEST_CASE("contrast has its slope at middle grey and keeps the ends") {
+  const auto coded = [](double contrast, double value) {
+    return double(srgb_from_linear(float(grey({.contrast = contrast}, linear_from_srgb(float(value))))));
+  };
+  for (const double contrast : {0.5, 1.5, 3.0}) {
+    CHECK(coded(contrast, 0) == Approx(0).margin(1e-6));
+    CHECK(coded(contrast, 0.5) == Approx(0.5).margin(1e-4));
+    CHECK(coded(contrast, 1) == Approx(1).margin(1e-3));
+    CHECK((coded(contrast, 0.505) - coded(contrast, 0.495)) / 0.01 == Approx(contrast).epsilon(0.02));
+    CHECK(coded(contrast, 0.2) == Approx(std::pow(0.4, contrast) / 2).margin(1e-4));
+  }
+}
+
+TEST_CASE("a vignette takes its share in the corners and nothing in the middle") {
+  Image image(101, 51, 3);
+  std::ranges::fill(image.data, 2.0f);
+  apply({.vignette = 0.5}, image);
+  CHECK(image.pixel(50, 25)[1] == 2);
+  CHECK(image.pixel(0, 0)[1] == Approx(1).margin(0.03));
+  CHECK(image.pixel(0, 0)[1] == image.pixel(100, 50)[1]);
+  CHECK(double(image.pixel(0, 25)[1]) == Approx(2 - 2500 / 3200.5).margin(1e-3));
+}
+
+TEST_CASE("bloom spreads a lamp evenly and keeps its light") {
+  Image image(201, 201, 4);
+  float* lamp = &image.data[4 * (100 * 201 + 100)];
+  lamp[0] = 1000;
+  lamp[3] = 0.5f;
+  const float dark = std::numeric_limits<float>::quiet_NaN();
+  image.data[1] = dark;
+  apply({.bloom = 0.2}, image);
+  double sum = 0, spread = 0;
+  for (int y = 0; y < 201; ++y)
+    for (int x = 0; x < 201; ++x) {
+      sum += double(image.pixel(x, y)[0]);
+      if (x != 100 || y != 100) spread += double(image.pixel(x, y)[0]);
+    }
+  CHECK(sum == Approx(1000).epsilon(0.01));
+  CHECK(spread < 200);
+  CHECK(spread > 150);
+  CHECK(image.pixel(90, 100)[0] == Approx(image.pixel(110, 100)[0]));
+  CHECK(image.pixel(100, 90)[0] == Approx(image.pixel(110, 100)[0]));
+  CHECK(image.pixel(105, 100)[0] > image.pixel(115, 100)[0]);
+  CHECK(image.pixel(100, 100)[3] == 0.5f);
+  CHECK(std::isnan(image.data[1]));
 }

@@ -235,7 +235,7 @@ TEST_CASE("lights are packed by kind, ambient ones summed") {
   check_vector(xyz(flat.lights[0].direction), {0, -1, 0});
   CHECK(flat.lights[1].kind == LIGHT_SPOT);
   CHECK(flat.lights[1].direction.w == Approx(0.5));
-  CHECK(flat.lights[1].color.w == 1);
+  CHECK(flat.lights[1].edge_u.z == 1);
   check_vector(xyz(flat.lights[1].color), {1, 2, 3});
   CHECK(flat.lights[1].falloff_quadratic == 3);
 

@@ -52,7 +52,8 @@ export function fly(camera, right, up, forward) {
 
 export function dolly(camera, factor) {
   const away = scale(sub(camera.position, camera.target), factor);
-  return length(away) > 1e-9 && length(away) < 1e12 ? withView(camera, add(camera.target, away), camera.target) : camera;
+  const next = {...camera, orthographic: camera.orthographic * factor};  // its picture's height; 0: perspective
+  return length(away) > 1e-9 && length(away) < 1e12 ? withView(next, add(camera.target, away), camera.target) : camera;
 }
 
 /** The camera, turned about an axis through its target or its own place. */
@@ -64,23 +65,28 @@ export function turnAbout(camera, axis, degrees, about) {
           up: tidy(turn(camera.up, axis, degrees))};
 }
 
+/** What a pixel shows, in world units at that depth. */
+const pixelAt = (camera, height, depth) =>
+  camera.orthographic > 0 ? camera.orthographic / height : (2 * depth * Math.tan((camera.fov * Math.PI) / 360)) / height;
+
 /** Where a point is in a picture of that size: {x, y, depth}; null behind the camera. */
 export function project(camera, width, height, point) {
   const f = frame(camera), d = sub(point, camera.position), depth = dot(d, f.forward);
   if (depth <= 1e-9) return null;
-  const pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
-  return {x: width / 2 + dot(d, f.right) / depth / pixel, y: height / 2 - dot(d, f.up) / depth / pixel, depth};
+  const pixel = pixelAt(camera, height, depth);
+  return {x: width / 2 + dot(d, f.right) / pixel, y: height / 2 - dot(d, f.up) / pixel, depth};
 }
 
 /** The way in the world of a way in the picture, at that depth. */
 export function unproject(camera, height, dx, dy, depth) {
-  const f = frame(camera), pixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
-  return add(scale(f.right, dx * pixel * depth), scale(f.up, -dy * pixel * depth));
+  const f = frame(camera), pixel = pixelAt(camera, height, depth);
+  return add(scale(f.right, dx * pixel), scale(f.up, -dy * pixel));
 }
 
 /** The changes of the document that make `camera` its camera. */
 export function cameraChanges(camera, before) {
   const changes = [{at: '/camera/position', value: camera.position}, {at: '/camera/target', value: camera.target}];
   if (camera.up.some((v, i) => v !== before.up[i])) changes.push({at: '/camera/up', value: camera.up});
+  if (camera.orthographic !== before.orthographic) changes.push({at: '/camera/orthographic', value: camera.orthographic});
   return changes;
 }

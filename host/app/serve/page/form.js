@@ -112,6 +112,10 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
     const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // it has none
     store.edit([...gone, ...Object.entries({...more, [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))]);
   });
+  const rivals = (key) => (s.not?.anyOf ?? []).filter((one) => one.required?.includes(key)).flatMap((one) => one.required)
+    .filter((other) => other !== key && value?.[other] !== undefined);
+  const instead = (key) => rivals(key).length > 0 && ((next, gesture) =>  // a key takes the place of those that exclude it
+    store.edit([...rivals(key).map((other) => ({at: join(at, other)})), {at: join(at, key), value: next}], gesture));
   const keys = Object.keys(s.properties ?? {}).filter((key) => (!only || only.includes(key)) && !without.includes(key) && key !== '$schema');
   const setType = (type) => {
     const kept = Object.fromEntries(Object.entries(value).filter(([key]) => key in (types[type].properties ?? {})));
@@ -122,7 +126,7 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   return html`<div class="fields">
     ${types && !without.includes('type') && html`<${ChoiceField} label="Type" at=${at + '/type'} value=${value?.type} choices=${Object.keys(types)} onSet=${setType} />`}
     ${keys.filter((key) => !(types && key === 'type')).map((key) => html`<${Field} key=${at + key} schema=${key in defaults ? {...s.properties[key], default: defaults[key]} : s.properties[key]} at=${join(at, key)} value=${value?.[key]}
-      label=${words(key)} required=${required.includes(key)} onSet=${needs(key)} />`)}
+      label=${words(key)} required=${required.includes(key)} onSet=${needs(key) || instead(key)} />`)}
   </div>`;
 }
 

@@ -4,7 +4,7 @@
 static inline LightSample sample_spot(UNIFORM __global const Light* light, float3 p) {
   LightSample sample = sample_point(light, p);
   const float cosine = -dot(sample.wi, light->direction.xyz);
-  const float outer = light->direction.w, inner = light->color.w;
+  const float outer = light->direction.w, inner = light->edge_u.z;
   float s = cosine >= outer ? 1.0f : 0.0f;
   if (inner > outer) s = real_clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
   sample.radiance *= s * s * (light->edge_u.x - light->edge_u.y * s);

@@ -12,6 +12,7 @@ namespace {
 std::string text(const dvec3& v) { return fmt::format("[{} {} {}]", v.x, v.y, v.z); }
 std::string text(const dvec2& v) { return fmt::format("[{} {}]", v.x, v.y); }
 std::string text(double v) { return fmt::format("{}", v); }
+std::string text(const std::string& v) { return v; }
 
 struct ShapeText {
   std::string operator()(const MeshShape& s) const { return fmt::format("mesh {}", s.mesh); }
@@ -45,8 +46,8 @@ std::string settings(const SceneDescription& scene) {
   const RenderSettings& r = scene.render;
   const EnvironmentDescription& e = scene.environment;
   const View to = c.moves_to.value_or(View{});
-  return fmt::format("camera {} {} {} {} {} {} ", text(c.position), text(c.target), text(c.up), c.fov, c.near,
-                     c.far) +
+  return fmt::format("camera {} {} {} {} {} {} {} ", text(c.position), text(c.target), text(c.up), c.fov,
+                     c.orthographic, c.near, c.far) +
          fmt::format("{} {} {} {} {} {}\n", c.lens.radius, c.lens.focus.value_or(-1), c.lens.blades,
                      c.lens.rotate, text(to.position), text(to.target)) +
          fmt::format("environment {} {} {} {} {} {} {} {} {}", static_cast<int>(e.type), text(e.color),

@@ -87,6 +87,7 @@ const std::string everything = R"({
     {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "model", "file": "tetra.ply", "transform": [{"translate": [0, 0, 0]}, {"scale": 2}, {"scale": [1, 2, 3]},
       {"rotate": {"axis": [0, 1, 0], "degrees": 3}}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]},
+    {"type": "scatter", "on": "m", "density": 0.01, "objects": [{"type": "sphere", "material": "m"}]},
     {"type": "group", "objects": [], "turns_by": {"axis": [0, 1, 0], "degrees": 90}, "grows_to": 2}]})";
 
 const std::string small_picture = "PF\n1 1\n-1\n" + std::string(12, '\0');

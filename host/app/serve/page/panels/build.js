@@ -26,7 +26,7 @@ function useSelected() {
   return {all, chosen, document};
 }
 
-const namedIn = {mesh: 'meshes', field: 'fields'};  // types that are made of an entry of a table
+const namedIn = {mesh: 'meshes', field: 'fields', scatter: 'meshes'};  // types that are made of an entry of a table
 
 /** Scrolls the list alone, not the panel around it. */
 function showIn(list, row) {
@@ -43,8 +43,8 @@ function ObjectList({all, chosen}) {
   const add = () => {
     const schema = variants({$ref: '#/$defs/object'})[type];
     const entry = namedIn[type] && Object.keys(store.state.document[namedIn[type]] ?? {})[0];
-    if (namedIn[type] && !entry) return store.notice(`There is no ${type} in the scene: add one first, at Image → ${words(namedIn[type])}.`);
-    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}, mesh: {mesh: entry}, field: {field: entry}, model: {file}};
+    if (namedIn[type] && !entry) return store.notice(`The scene has no ${namedIn[type]}: add one first, at Image → ${words(namedIn[type])}.`);
+    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}, mesh: {mesh: entry}, field: {field: entry}, scatter: {on: entry}, model: {file}};
     const object = {type, ...sample(schema), ...starts[type]};
     const materials = Object.keys(store.state.document.materials ?? {});
     const changes = [];

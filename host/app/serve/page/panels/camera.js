@@ -50,7 +50,7 @@ export function CameraPanel() {
     <${Group} title="View" id="view">
       <${VectorField} label="Position" value=${camera.position} help="The camera's place." at="/camera/position" onSet=${(v, g) => change({...camera, position: v}, g)} />
       <${VectorField} label="Target" value=${camera.target} help="The point in the middle of the picture." at="/camera/target" onSet=${(v, g) => change({...camera, target: v}, g)} />
-      <${Fields} schema=${{$ref: '#/$defs/camera'}} at="/camera" value=${placed} only=${['up', 'fov', 'near', 'far']} />
+      <${Fields} schema=${{$ref: '#/$defs/camera'}} at="/camera" value=${placed} only=${['up', 'fov', 'focal_length', 'film_width', 'orthographic', 'near', 'far']} />
       <div class="line" role="group" aria-label="Look from">${['X', 'Y', 'Z'].flatMap((name, axis) => [1, -1].map((side) =>
         html`<${Button} kind="small" label=${(side > 0 ? '+' : '−') + name} title=${`Look from ${side > 0 ? '+' : '-'}${name.toLowerCase()}`} onClick=${from(axis, side)} />`))}
         <${Button} kind="small" label="Nearer" onClick=${() => change(dolly(camera, 0.8))} /><${Button} kind="small" label="Farther" onClick=${() => change(dolly(camera, 1.25))} /></div>
