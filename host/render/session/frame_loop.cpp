@@ -53,9 +53,10 @@ void FrameLoop::end() {
   }
   for (const auto& thread : all) {
     std::unique_lock lock(mutex);
-    const auto gone = [&] { return thread->gone || thread->abandoned; };
-    changed.wait_for(lock, thread->opening && thread->worker->compiles() ? look_again : ending_grace, gone);
-    const bool joins = thread->gone;
+    // A thread that a frame did not wait for may only be about to end.
+    const bool in_driver = thread->abandoned || (thread->opening && thread->worker->compiles());
+    const bool joins =
+        changed.wait_for(lock, in_driver ? look_again : ending_grace, [&] { return thread->gone; });
     lock.unlock();
     if (joins)
       thread->driver.thread.join();
