@@ -51,14 +51,17 @@ std::pair<std::string, glm::vec3> parse_light(const std::string& typed) {
   if (equals == std::string::npos || equals == 0) throw wanted();
   const std::string first = typed.substr(equals + 1, comma == std::string::npos ? comma : comma - equals - 1);
   const std::string last = comma == std::string::npos ? first : typed.substr(comma + 1);
+  const std::string name = typed.substr(0, equals);
   glm::vec3 factor(1);
-  if (!first.starts_with("#")) factor = glm::vec3(static_cast<float>(parse_real("--light", first, 0, 1e6)));
+  if (!first.starts_with("#"))
+    factor =
+        glm::vec3(static_cast<float>(parse_real(fmt::format("--light {}:", name).c_str(), first, 0, 1e6)));
   if (last.starts_with("#") || comma != std::string::npos) {
     const auto color = parse_color(last);
     if (!color || (first.starts_with("#") && comma != std::string::npos)) throw wanted();
     factor *= *color;
   }
-  return {typed.substr(0, equals), factor};
+  return {name, factor};
 }
 
 /// The factors of the picture's groups, 1 where none is typed.

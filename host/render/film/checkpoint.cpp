@@ -84,15 +84,18 @@ UsageError other_checkpoint(const std::filesystem::path& path) {
 /// The file's bytes without their checksum, which is right. A file that is longer than the frame's longest
 /// is not read.
 std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most) {
-  std::string start(sizeof magic, ' ');
-  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
-    throw UsageError(path.string() +
-                     ": is a checkpoint of another version of sundog; finish the frame with that version, or "
-                     "remove the file to start anew");
   std::error_code failed;
-  const std::uintmax_t size = std::filesystem::file_size(path, failed);
-  if (!failed && size > most) throw other_checkpoint(path);
+  if (std::filesystem::is_regular_file(path, failed)) {  // else a pipe: read_input() says so
+    std::string start(sizeof magic, ' ');
+    std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+    if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
+      throw UsageError(
+          path.string() +
+          ": is a checkpoint of another version of sundog; finish the frame with that version, or "
+          "remove the file to start anew");
+    const std::uintmax_t size = std::filesystem::file_size(path, failed);
+    if (!failed && size > most) throw other_checkpoint(path);
+  }
   std::string bytes = read_input(path, most);
   std::uint64_t checksum = 0;
   if (!starts_with_magic(bytes, sizeof magic) || bytes.size() < sizeof(Header) + sizeof checksum)

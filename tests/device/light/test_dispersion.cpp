@@ -98,7 +98,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   SpecularSplits split = bsdf_specular(&scene, &bsdf, negate3(d), ALL_LANES);
   const REAL3 inside = transmitted_direction(&bsdf, &split, negate3(d), ALL_LANES);
   bsdf.side = real3(-0.5f, 0.8660254f, 0.0f);
-  bsdf.ns = bsdf.ng;
+  bsdf.ns = bsdf.side;
   bsdf.before = 1;
   bsdf.after = 0;
   split = bsdf_specular(&scene, &bsdf, negate3(inside), ALL_LANES);
