@@ -37,6 +37,7 @@ struct Covering {
 void cover(const Image& surfaces, const Shot& shot, const Region& shown, int object, const MovingFace& face,
            std::vector<Covering>& pixels) {
   glm::dmat3 corners;  // x, y in pixels of `shown`, times w; w
+  glm::dvec3 depths;
   dvec2 low(1e9), high(-1e9);
   for (int c = 0; c < 3; ++c) {
     const dvec4 at = shot.world_to_ndc * dvec4(glm::dvec3(face.now[static_cast<std::size_t>(c)]), 1);
@@ -45,6 +46,7 @@ void cover(const Image& surfaces, const Shot& shot, const Region& shown, int obj
         dvec2(at) / at.w * dvec2(shown.whole_width, shown.whole_height) - dvec2(shown.x, shown.y);
     low = glm::min(low, place), high = glm::max(high, place);
     corners[c] = glm::dvec3(place * at.w, at.w);
+    depths[c] = (shot.world_to_camera * dvec4(glm::dvec3(face.now[static_cast<std::size_t>(c)]), 1)).z;
   }
   const dvec2 last(surfaces.width - 1, surfaces.height - 1);
   low = glm::clamp(glm::floor(low - 1.0), dvec2(0), last + 1.0),
@@ -60,7 +62,7 @@ void cover(const Image& surfaces, const Shot& shot, const Region& shown, int obj
       const double sum = weights.x + weights.y + weights.z;
       const glm::dvec3 shares = weights / sum;
       if (!(std::min({shares.x, shares.y, shares.z}) >= -1e-4)) continue;
-      const double off = std::abs(1 / sum - double(pixel[0]));
+      const double off = std::abs(glm::dot(shares, depths) - double(pixel[0]));
       if (off < pixels[i].off) pixels[i] = {&face, shares, off};
     }
 }
