@@ -76,3 +76,34 @@ TEST_CASE("what a panel offers to add or to choose, the server takes") {
   }
   v.open_again();
 }
+
+TEST_CASE("the page's tracks have the values of a render") {
+  const json values = viewer().run(R"(
+    const {valueAt} = await import('/tracks.js');
+    const keys = [[0, 0], [10, 0], [12, 3], [22, 3]].map(([frame, value]) => ({frame, value: [value]}));
+    const round = ([v]) => Math.round(v * 1e9) / 1e9;
+    const loop = {type: 'smooth', cycle: true, keys: [[0, 0], [10, 4], [20, 0]].map(([frame, value]) => ({frame, value: [value]}))};
+    const ease = {type: 'bezier', keys: [{frame: 0, value: [0], handle_right: {frame: 10, value: [0]}}, {frame: 10, value: [1]}]};
+    return [[5, 11, 15].map((f) => round(valueAt({type: 'smooth', keys}, f))), round(valueAt({type: 'step', keys}, 11.9)),
+      round(valueAt({type: 'linear', keys}, 11)), round(valueAt(loop, 25)) === round(valueAt(loop, 5)), round(valueAt(ease, 5)) < 0.3];)");
+  CHECK(values == json::parse("[[0, 1.5, 3], 0, 1.5, true, true]"));
+}
+
+TEST_CASE("presets of materials, lights and quality are scenes that can be read") {
+  Viewer& v = viewer();
+  const json refused = v.run(R"(
+    const presets = await import('/presets.js');
+    const bad = [];
+    const tried = async (name, act) => {
+      store.update({error: null});
+      act();
+      for (let i = 0; i < 500 && !store.edits.idle; ++i) await new Promise((r) => setTimeout(r, 5));
+      if (store.state.error) bad.push(name + ': ' + store.state.error.reason);
+    };
+    for (const name of Object.keys(presets.materials()).filter((_, i) => i % 6 === 0)) await tried(name, () => presets.setMaterial('/materials/red', {}, name));
+    for (const name of Object.keys(presets.lights)) await tried(name, () => presets.setLights(name));
+    for (const name of Object.keys(presets.qualities)) await tried(name, () => presets.setQuality(name));
+    return bad;)");
+  CHECK(refused == json::array());
+  v.undo_all();
+}

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "catch.h"
-#include "render/film/rows.h"
 #include "render/plan/tiles.h"
 
 using namespace sundog;
@@ -377,22 +376,6 @@ TEST_CASE("speeds nobody has measured follow the estimates of those that are") {
   CHECK(expected_speed(devices, 1) == Approx(2000));
   devices[0].measured = 0;
   CHECK(expected_speed(devices, 1) == 0);
-}
-
-TEST_CASE("rows are divided by shares, without gap or overlap") {
-  CHECK(divide_rows(16, std::vector{3.0, 1.0}) == std::vector<RowRange>{{0, 12}, {12, 4}});
-  CHECK(divide_rows(480, std::vector{1.0}) == std::vector<RowRange>{{0, 480}});
-  CHECK(divide_rows(480, std::vector{0.0, 2.0}) == std::vector<RowRange>{{0, 0}, {0, 480}});
-  for (const int height : {1, 5, 30, 479})
-    for (const std::size_t count : {1u, 2u, 3u, 9u}) {
-      int next = 0;
-      for (const RowRange& range : divide_rows(height, std::vector<double>(count, 0.7))) {
-        CHECK(range.first == next);
-        CHECK((range.first % 4 == 0 || range.count == 0));
-        next += range.count;
-      }
-      CHECK(next == height);
-    }
 }
 
 TEST_CASE("efficiency is what was kept over what could have been made") {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "catch.h"
+#include "render/film/rows.h"
 #include "render/plan/tiles.h"
 
 using namespace sundog;
@@ -91,4 +92,20 @@ TEST_CASE("a launch follows the measured speed within its limits") {
   CHECK(next_launch_size(1000, 0.0, 0.05, 1, 1'000'000) == 8000);
   CHECK(next_launch_size(1000, 100.0, 0.05, 64, 1'000'000) == 64);  // never less than the least
   CHECK(next_launch_size(1000, 1e-9, 0.05, 64, 3000) == 3000);
+}
+
+TEST_CASE("rows are divided by shares, without gap or overlap") {
+  CHECK(divide_rows(16, std::vector{3.0, 1.0}) == std::vector<RowRange>{{0, 12}, {12, 4}});
+  CHECK(divide_rows(480, std::vector{1.0}) == std::vector<RowRange>{{0, 480}});
+  CHECK(divide_rows(480, std::vector{0.0, 2.0}) == std::vector<RowRange>{{0, 0}, {0, 480}});
+  for (const int height : {1, 5, 30, 479})
+    for (const std::size_t count : {1u, 2u, 3u, 9u}) {
+      int next = 0;
+      for (const RowRange& range : divide_rows(height, std::vector<double>(count, 0.7))) {
+        CHECK(range.first == next);
+        CHECK((range.first % 4 == 0 || range.count == 0));
+        next += range.count;
+      }
+      CHECK(next == height);
+    }
 }
