@@ -236,7 +236,8 @@ const char* interval_note(const Tally& tally) {
   if (tally.fewest_calls < 6)
     return "Fewer than six calls of each: the interval is that of the ranges of all runs, each widened by "
            "its "
-           "width at both ends, because calls differ by more than the runs within one. Six calls of each, "
+           "width at both ends, because calls differ by more than the runs within one. Fewer than six runs "
+           "tell nothing apart. Six calls of each, "
            "made "
            "in turn, with their reports in a folder each, have a much smaller one.";
   return "Intervals by bootstrap of the medians of the calls' medians. Calls of both have to be made in "

@@ -23,11 +23,15 @@ double resampled_median(const std::vector<double>& values, std::mt19937& random)
   return spread(drawn).median;
 }
 
-/// The range of all runs, widened.
-Interval wide_range(const Calls& calls) {
+std::vector<double> all_runs(const Calls& calls) {
   std::vector<double> all;
   for (const auto& runs : calls) all.insert(all.end(), runs.begin(), runs.end());
-  const auto [low, high] = std::ranges::minmax(all);
+  return all;
+}
+
+/// The range of all runs, widened.
+Interval wide_range(const std::vector<double>& runs) {
+  const auto [low, high] = std::ranges::minmax(runs);
   return {low * low / high, high * high / low};
 }
 
@@ -55,8 +59,10 @@ Ratio ratio_of_calls(const Calls& base, const Calls& other) {
   if (a.empty() || b.empty()) return {};
   const double value = spread(b).median / spread(a).median;
   if (std::min(a.size(), b.size()) < fewest) {
-    const Interval of_a = wide_range(base), of_b = wide_range(other);
-    return {value, of_b.low / of_a.high, of_b.high / of_a.low};
+    const std::vector<double> of_base = all_runs(base), of_other = all_runs(other);
+    const Interval range = wide_range(of_base), other_range = wide_range(of_other);
+    return {value, other_range.low / range.high, other_range.high / range.low,
+            std::min(of_base.size(), of_other.size()) >= fewest};
   }
   std::mt19937 random;  // the same interval for the same runs
   std::vector<double> ratios;

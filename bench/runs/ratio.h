@@ -28,7 +28,7 @@ using Calls = std::vector<std::vector<double>>;
 /// where the memory lies, and the machine's state), so six or more of each are taken as a sample: the
 /// interval is by bootstrap of the medians of their medians (Efron and Tibshirani, "An Introduction to the
 /// Bootstrap", 1993, chapter 13). With fewer it is that of the ranges of all runs, each widened by its width
-/// at both ends.
+/// at both ends; six runs are the fewest for a verdict.
 Ratio ratio_of_calls(const Calls& base, const Calls& other);
 
 }  // namespace sundog

@@ -40,6 +40,7 @@ std::vector<Placing> solids_below(double s) {
           {DiskShape{s}, moved(0, 0)},
           {RectangleShape{{s, s}}, moved(0, 0)},
           {TorusShape{s, 0.3 * s}, moved(s, -0.3 * s)},
+          {TorusShape{s, 0.01 * s}, moved(s, -0.01 * s)},
           {TorusShape{s, 0.3 * s}, moved(0, -1.3 * s) * turned(90)},
           {TorusShape{s, 0.05 * s}, moved(0, -1.05 * s) * turned(90)}};
 }
@@ -97,7 +98,7 @@ TEST_CASE("no large solid throws shadows on itself, from however near it is seen
           if (size > most_sizes * distance) continue;
           CAPTURE(size, distance, solid.shape.index());
           const bool thin = std::holds_alternative<TorusShape>(solid.shape);
-          check_lit(device, (thin ? 0.002 : 0.05) * size, distance,
+          check_lit(device, (thin ? 0.0005 : 0.05) * size, distance,
                     [&](SceneDescription& scene) { scenes::place(scene, solid.shape, 0, solid.at); });
         }
   });
@@ -106,15 +107,18 @@ TEST_CASE("no large solid throws shadows on itself, from however near it is seen
 TEST_CASE("no large mesh throws shadows on itself, wherever its own origin is") {
   on_picture_devices([&](const DeviceInfo& device) {
     for (const double size : sizes)
-      for (const double distance : distances) {
-        CAPTURE(size, distance);
-        check_lit(device, 0.02 * size, distance, [&](SceneDescription& scene) {
-          scene.meshes = {bumpy_sphere(16, 0)};
-          scene.meshes.front().normals.clear();
-          const glm::dmat4 placed = glm::scale(moved(0, -size), glm::dvec3(size));
-          scenes::place(scene, MeshShape{0}, 0, placed * turned(33));
-        });
-      }
+      for (const double distance : distances)
+        for (const float away : {0.0f, 500.0f}) {
+          CAPTURE(size, distance, away);
+          check_lit(device, 0.02 * size, distance, [&](SceneDescription& scene) {
+            scene.meshes = {bumpy_sphere(16, 0)};
+            Mesh& mesh = scene.meshes.front();
+            mesh.normals.clear();
+            for (glm::vec3& position : mesh.positions) position.y += away;
+            const glm::dmat4 placed = glm::scale(moved(0, -size), glm::dvec3(size)) * turned(33);
+            scenes::place(scene, MeshShape{0}, 0, placed * moved(0, -away));
+          });
+        }
   });
 }
 

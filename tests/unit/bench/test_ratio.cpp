@@ -102,6 +102,19 @@ TEST_CASE("calls of the same thing name a winner in 5 % of trials at most, and a
   }
 }
 
+TEST_CASE("calls of few runs name a winner in 5 % of trials at most") {
+  std::mt19937 random(3);
+  for (const std::size_t runs : {1, 2, 3, 4, 5, 6}) {
+    CAPTURE(runs);
+    const auto call = [&] {
+      std::vector<double> made = made_call(random, 1, 0.04);
+      made.resize(runs);
+      return made;
+    };
+    CHECK(winners(many, [&](int) { return ratio_of_calls({call()}, {call()}); }) <= many / 20);
+  }
+}
+
 TEST_CASE("recorded calls, measured in turn, name a winner in 5 % of trials at most") {
   const Calls calls = recorded_calls();
   REQUIRE(calls.size() == 2 * trials);
