@@ -172,21 +172,24 @@ LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load
   return scene;
 }
 
-FrameEnd render_one(const RenderCommand& asked, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
-                    TimeLedger& times) {
-  RenderCommand command = asked;
-  command.aovs = with_group_numbers(asked.aovs, light_groups(*scene.description));
+DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setup& setup, TimeLedger& times) {
+  DrawnFrame drawn;
+  drawn.command = asked;
+  drawn.scene = std::move(loaded);
+  const RenderCommand& command = drawn.command;
+  const LoadedScene& scene = drawn.scene;
+  drawn.command.aovs = with_group_numbers(asked.aovs, light_groups(*scene.description));
   setup.stop.asks();
   print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
     if (!file.empty()) remove_left_over(file);
   ProgressBar bar(!command.quiet, setup.run);
   RenderOptions options = render_options(command, scene.description->image);
-  const std::string checkpoint = scene.times > 1 ? "" : checkpoint_file(command, setup);
+  drawn.checkpoint = scene.times > 1 ? "" : checkpoint_file(command, setup);
   if (scene.times > 1) options.resume.clear(), options.time_limit /= scene.times;
-  RankWatch watch(setup.job, setup.stop.flag(), checkpoint);
+  RankWatch watch(setup.job, setup.stop.flag(), drawn.checkpoint);
   options.stop = &setup.stop.flag();
-  options.checkpoint = checkpoint;
+  options.checkpoint = drawn.checkpoint;
   options.in_haste = setup.job != nullptr;
   if (setup.job) options.keep_now = &setup.stop.continued();
   options.tuning = [flat = scene.flat](const DeviceInfo& device) { return saved_tuning(device, *flat); };
@@ -201,35 +204,49 @@ FrameEnd render_one(const RenderCommand& asked, LoadedScene scene, const Setup& 
     return setup.session ? setup.session->render(at.flat, options)
                          : render(at.flat, plan_workers(command, at, setup), options);
   };
-  RenderResult result = make(scene);
-  for (int time = 1; time < scene.times && result.complete && !result.failure; ++time)
-    add_samples(make(scene.at_time(time)), options.channels, result);
+  drawn.result = make(scene);
+  for (int time = 1; time < scene.times && drawn.result.complete && !drawn.result.failure; ++time)
+    add_samples(make(scene.at_time(time)), options.channels, drawn.result);
   times.joules = energy.joules(), times.frame = frame.seconds(), times.joules_by = energy.source();
+  times.render = drawn.result.times;
   bar.erase();
-  const bool told = setup.job && result.checkpoint_kept && !result.failure;
-  if (told) tell_kept(result, checkpoint);
+  drawn.told = setup.job && drawn.result.checkpoint_kept && !drawn.result.failure;
+  if (drawn.told) tell_kept(drawn.result, drawn.checkpoint);
+  return drawn;
+}
 
-  times.render = result.times;
+void save_frame(DrawnFrame& drawn, const Stopwatch& clock, TimeLedger& times) {
+  const RenderCommand& command = drawn.command;
+  const SceneDescription& scene = *drawn.scene.description;
+  const CompiledScene& flat = *drawn.scene.flat;
   const Stopwatch writing;
-  save_result(command, *scene.description, *scene.flat, frame_shot(command, *scene.description, scene.next),
-              result, checkpoint);
+  save_result(command, scene, flat, frame_shot(command, scene, drawn.scene.next), drawn.result,
+              drawn.checkpoint);
   times.write = writing.seconds();
-  warn_of_losses(*scene.description, result);
-  if (const std::string& left = result.checkpoint_left; !left.empty())
-    print_warnings({{fmt::format("{}; the frame began anew", left.substr(0, left.find("; remove")))}});
+  drawn.warnings = warnings_of(scene, drawn.result);
   using nlohmann::json;
   json stats;
-  if (!command.stats.empty()) stats = stats_json(command, *scene.description, *scene.flat, result, times);
-  const ImageSettings image = scene.description->image;
-  const auto samples = static_cast<u32>(scene.description->render.samples);
-  scene = {}, options = {};  // which hold its tables
-  times.total = clock.seconds();
-  if (!command.stats.empty()) {
-    stats["seconds"] = seconds_json(times);
-    write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-  }
-  tell_result(command, image, samples, result, times);
-  return {conclude(command, result, told), result.complete};
+  if (!command.stats.empty()) stats = stats_json(command, scene, flat, drawn.result, times);
+  drawn.image = scene.image;
+  drawn.samples = static_cast<u32>(scene.render.samples);
+  drawn.scene = {};
+  times.total = clock.seconds() - times.waited;
+  if (command.stats.empty()) return;
+  stats["seconds"] = seconds_json(times);
+  write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+int end_frame(const DrawnFrame& drawn, const TimeLedger& times) {
+  print_warnings(drawn.warnings);
+  tell_result(drawn.command, drawn.image, drawn.samples, drawn.result, times);
+  return conclude(drawn.command, drawn.result, drawn.told);
+}
+
+int render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
+               TimeLedger& times) {
+  DrawnFrame drawn = draw_frame(command, std::move(scene), setup, times);
+  save_frame(drawn, clock, times);
+  return end_frame(drawn, times);
 }
 
 }  // namespace sundog

@@ -69,15 +69,29 @@ using LoadScene = std::function<std::shared_ptr<const SceneDescription>()>;
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
                              TimeLedger& times);
 
-/// How a frame ended: the exit status, and whether it has all its samples.
-struct FrameEnd {
-  int status = 0;
-  bool complete = true;
+/// A frame that the devices have rendered.
+struct DrawnFrame {
+  RenderCommand command;
+  LoadedScene scene;  // until the frame is saved
+  RenderResult result;
+  std::string checkpoint;
+  bool told = false;                  // that it was interrupted
+  std::vector<std::string> warnings;  // once it is saved, as are its image and samples
+  ImageSettings image;
+  u32 samples = 0;
 };
 
-/// `clock` began with the frame. The scene is let go before the frame's time ends: freeing a large one takes
-/// its time, too.
-FrameEnd render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup,
-                    const Stopwatch& clock, TimeLedger& times);
+DrawnFrame draw_frame(const RenderCommand& command, LoadedScene scene, const Setup& setup, TimeLedger& times);
+
+/// Writes the frame's files. `clock` began with the frame. The scene is let go before the frame's time ends:
+/// freeing a large one takes its time, too.
+void save_frame(DrawnFrame& drawn, const Stopwatch& clock, TimeLedger& times);
+
+/// Reports a saved frame. Returns the exit status.
+int end_frame(const DrawnFrame& drawn, const TimeLedger& times);
+
+/// All three. Returns the exit status.
+int render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
+               TimeLedger& times);
 
 }  // namespace sundog

@@ -191,9 +191,13 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
       percent_done(result), checkpoint, checkpoint));
 }
 
-void warn_of_losses(const SceneDescription& scene, const RenderResult& result) {
-  print_warnings(losses(result.counts, scene));
-  for (const DeviceReport& report : result.devices) print_warnings(failures_text(report));
+std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result) {
+  std::vector<std::string> all = losses(result.counts, scene);
+  for (const DeviceReport& report : result.devices)
+    for (std::string& text : failures_text(report)) all.push_back(std::move(text));
+  if (const std::string& left = result.checkpoint_left; !left.empty())
+    all.push_back(left.substr(0, left.find("; remove")) + "; the frame began anew");
+  return all;
 }
 
 void tell_result(const RenderCommand& command, const ImageSettings& image, u32 samples,

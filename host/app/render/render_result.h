@@ -33,8 +33,8 @@ void write_so_far(const RenderCommand& command, const ImageSettings& settings, c
 /// may leave no time.
 void tell_kept(const RenderResult& result, const std::string& checkpoint);
 
-/// Warnings of what was lost, on stderr.
-void warn_of_losses(const SceneDescription& scene, const RenderResult& result);
+/// Of what was lost, and of devices that failed.
+std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result);
 
 /// The frame's figures, on stdout; `samples`: a pixel's, as the scene asks for them.
 void tell_result(const RenderCommand& command, const ImageSettings& image, u32 samples,

@@ -101,7 +101,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     print_warnings({{why}});
   if (setup.devices.empty()) setup.devices = choose_devices(command, job);
-  if (scene) return render_one(command, *std::move(scene), setup, clock, times).status;
+  if (scene) return render_one(command, *std::move(scene), setup, clock, times);
   if (!job && !command.isolate) setup.session = std::make_unique<RenderSession>(setup.devices);
   return render_frames(command, setup);
 }

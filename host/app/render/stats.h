@@ -12,6 +12,7 @@ namespace sundog {
 /// checks), so that they add up to `total`.
 struct TimeLedger {
   double load = 0, compile_scene = 0, write = 0, total = 0;
+  double waited = 0;              // for other frames, not in the total
   double joules = -1, frame = 0;  // that the devices used for the frame (below 0: unknown), and its seconds
   std::string joules_by;          // what counts them, or why nothing does
   RenderTimes render;

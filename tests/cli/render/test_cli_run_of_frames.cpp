@@ -57,6 +57,30 @@ TEST_CASE("lists, steps and ranges that fall say which frames are rendered, and 
   CHECK(rendered(run_sundog(run.command("4..0", {"--step", "2"}))) == "420");
 }
 
+TEST_CASE("frames that are drawn while others are loaded and saved have the bits of each alone") {
+  Run run;
+  run.options = {"--size", "640x480", "--samples", "1"};
+  CHECK(rendered(run_sundog(run.command("0..4"))) == "01234");
+  std::vector<std::string> together;
+  for (int frame = 0; frame < 5; ++frame) together.push_back(run.picture(frame));
+  for (int frame = 0; frame < 5; ++frame) {
+    CHECK(rendered(run_sundog(run.command(std::to_string(frame)))) == std::to_string(frame));
+    CHECK((run.picture(frame) == together[static_cast<std::size_t>(frame)]));
+  }
+}
+
+TEST_CASE("a frame that cannot be saved ends the run, and those before it are done") {
+  ResumedRun run;
+  run.options.insert(run.options.end(), {"--size", "640x480", "--samples", "1"});
+  std::filesystem::create_directories(run / "a_0003.png" / "in_the_way");
+  const CommandResult result = run_sundog(run.command("0..4"));
+  CAPTURE(result.out, result.err);
+  CHECK(result.status != 0);
+  CHECK(result.err.find("a_0003.png") != std::string::npos);
+  std::filesystem::remove_all(run / "a_0003.png");
+  CHECK(rendered(run_sundog(run.command("0..4"))) == "34");
+}
+
 TEST_CASE("a frame is rendered again when its own keys change, and only then, also after the run has ended") {
   ResumedRun run;
   CHECK(rendered(run_sundog(run.command("0..4"))) == "01234");
