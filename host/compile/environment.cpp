@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "compile/halo/halo_map.h"
 #include "compile/materials.h"
 #include "compile/sky.h"
+#include "compile/twilight.h"
 #include "scene/pack.h"
 
 namespace sundog {
@@ -62,7 +64,10 @@ dvec3 sun_in_axes(const EnvironmentDescription& e) {
   return {std::cos(height) * std::sin(azimuth), std::sin(height), std::cos(height) * std::cos(azimuth)};
 }
 
-Sky sky_of(const EnvironmentDescription& e) { return {e.turbidity, e.sun_altitude * pi / 180}; }
+/// The sky of the day, at the latest that of sunset.
+Sky sky_of(const EnvironmentDescription& e) {
+  return {e.turbidity, std::max(0.0, e.sun_altitude) * pi / 180};
+}
 
 /// The fraction of sunlight that crystals transmit to the ground.
 double sun_share(const EnvironmentDescription& e) {
@@ -83,18 +88,35 @@ Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, c
       level += light * (std::cos(zenith) * std::sin(zenith) * 2 * pi / (columns * double(rows)));
       picture.pixels[std::size_t(y) * std::size_t(columns) + std::size_t(x)] = pack(light * factor);
     }
-  level += sky_of(e).sun_irradiance() * (sun_in_axes(e).y * sun_share(e));
+  level += sky_of(e).sun_irradiance() * (std::max(0.0, sun_in_axes(e).y) * sun_share(e));
   const auto horizon = picture.pixels.begin() + std::ptrdiff_t{rows / 2} * columns;
   std::fill(horizon, picture.pixels.end(), pack(level * e.ground * factor));
   return picture;
 }
 
+/// The sky after sunset, and its share in the sky of a low sun: Preetham's model has no twilight.
+struct Dusk {
+  Twilight light;
+  double share;
+};
+
+std::optional<Dusk> dusk_of(const EnvironmentDescription& e) {
+  constexpr double day_begins = 4;  // degrees
+  if (e.sun_altitude >= day_begins) return {};
+  return Dusk{{e.turbidity, e.sun_altitude * pi / 180}, std::min(1.0, 1 - e.sun_altitude / day_begins)};
+}
+
 Picture picture_of_sky(const EnvironmentDescription& e) {
   const dvec3 sun = sun_in_axes(e);
+  const std::optional<Dusk> dusk = dusk_of(e);
   return picture_of_day(e, sky_columns, sky_rows, [&, sky = sky_of(e)](double zenith, double azimuth) {
+    if (dusk && dusk->share == 1) return dusk->light.radiance(zenith, azimuth - e.sun_azimuth * pi / 180);
     const dvec3 d(std::sin(zenith) * std::sin(azimuth), std::cos(zenith),
                   std::sin(zenith) * std::cos(azimuth));
-    return sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
+    const dvec3 day = sky.radiance(zenith, std::acos(std::clamp(glm::dot(d, sun), -1.0, 1.0)));
+    if (!dusk) return day;
+    const dvec3 least(1e-4), late = dusk->light.radiance(zenith, azimuth - e.sun_azimuth * pi / 180);
+    return glm::pow(glm::max(day, least), dvec3(1 - dusk->share)) * glm::pow(late, dvec3(dusk->share));
   });
 }
 
@@ -277,7 +299,7 @@ void add_shares(const Picture& picture, Environment& e, Lights& out) {
 
 void add_sun(const LightInputs& in, const glm::dmat3& axes, Lights& out) {
   const EnvironmentDescription& e = *in.environment;
-  if (e.sun_size <= 0) return;
+  if (e.sun_size <= 0 || e.sun_altitude < 0) return;
   LightDescription sun;
   sun.type = LightType::directional;
   sun.direction = -(axes * sun_in_axes(e));

@@ -3,7 +3,9 @@
 #include <numbers>
 
 #include "catch.h"
+#include "compile/compiled_scene.h"
 #include "compile/sky.h"
+#include "compile/twilight.h"
 
 using namespace sundog;
 using glm::dvec3;
@@ -11,6 +13,20 @@ using glm::dvec3;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
+
+double candela(const dvec3& c) { return 20000 * (0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z); }
+
+/// Of horizontal ground.
+double lux(const Twilight& sky) {
+  constexpr int rows = 60, columns = 48;
+  double sum = 0;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double zenith = 90 * degree * (i + 0.5) / rows, azimuth = 360 * degree * (j + 0.5) / columns;
+      sum += candela(sky.radiance(zenith, azimuth)) * std::cos(zenith) * std::sin(zenith);
+    }
+  return sum * (90 * degree / rows) * (360 * degree / columns);
+}
 
 }  // namespace
 
@@ -43,4 +59,53 @@ TEST_CASE("a sky is finite and not below 0 for every turbidity, sun and directio
           const dvec3 light = Sky(turbidity, height * degree).radiance(zenith * degree, sun * degree);
           for (int c = 0; c < 3; ++c) REQUIRE((std::isfinite(light[c]) && light[c] >= 0));
         }
+}
+
+TEST_CASE("twilight lights the ground as is tabulated for a clear sky") {
+  // Lux by the sun's altitude: Explanatory Supplement to the Astronomical Almanac, 1992, after Brown 1952.
+  const std::pair<double, double> known[] = {{0, 700}, {-6, 3.4}, {-12, 0.008}, {-18, 0.00065}};
+  for (const auto& [altitude, expected] : known) {
+    const double found = lux(Twilight(3, altitude * degree));
+    CAPTURE(altitude, found);
+    CHECK(found > expected / 1.6);
+    CHECK(found < expected * 1.6);
+  }
+}
+
+TEST_CASE("at dusk the sky is red where the sun is, and blue overhead, by ozone and not by air alone") {
+  for (const double altitude : {-2.0, -4.0, -6.0}) {
+    const Twilight sky(3, altitude * degree);
+    const dvec3 low = sky.radiance(86 * degree, 0), zenith = sky.radiance(0, 0),
+                behind = sky.radiance(80 * degree, 180 * degree);
+    CAPTURE(altitude);
+    CHECK(low.x > 1.3 * low.z);
+    CHECK(zenith.z > 1.6 * zenith.y);
+    CHECK(zenith.y > 1.3 * zenith.x);
+    CHECK(candela(low) > 2 * candela(zenith));
+    CHECK(candela(low) > 1.2 * candela(behind));
+    CHECK(sky.radiance(70 * degree, 1) == sky.radiance(70 * degree, -1));
+  }
+}
+
+TEST_CASE("the sky of a low sun meets that of dusk and that of the day") {
+  EnvironmentDescription e;
+  e.type = EnvironmentType::sky;
+  const auto picture = [&](double altitude) {
+    e.sun_altitude = altitude;
+    SceneDescription scene;
+    scene.environment = e;
+    return compile(scene).environment;
+  };
+  for (const double altitude : {-18.0, -6.0, 0.0, 2.0, 4.0}) {
+    const auto before = picture(altitude - (altitude > -18 ? 1e-4 : 0)), after = picture(altitude + 1e-4);
+    REQUIRE(before.size() == after.size());
+    double most = 0, most_apart = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      most = std::max(most, double(after[i].w));
+      most_apart = std::max(most_apart, std::abs(double(after[i].w - before[i].w)) / double(after[i].w));
+    }
+    CAPTURE(altitude);
+    CHECK(most > 0);
+    CHECK(most_apart < 0.01);
+  }
 }

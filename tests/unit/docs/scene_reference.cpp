@@ -39,7 +39,7 @@ const std::vector<Group>& groups() {
       {"Environment",
        "`environment` has one of these types.",
        {"image_environment", "gradient_environment", "sky_environment", "halo_environment", "crystals",
-        "sun"}},
+        "sun", "halo_sun"}},
       {"Media and materials",
        "",
        {"medium", "absorption", "material", "openpbr_material", "normal_map", "bump_map", "parallax_map",
