@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the meshes and the sky of the gallery's scenes: lathes with exact normals, a wind-swept field of snow, a spruce, a dusk sky.
+"""Writes the meshes of the gallery's scenes: lathes with exact normals, a wind-swept field of snow, a spruce.
 
     pip install numpy; scenes/gallery/make_meshes.py [FOLDER]
 """
@@ -175,39 +175,6 @@ def write_plain(name, V, F):
     print(name, len(V), "vertices", len(F), "triangles", os.path.getsize(os.path.join(OUT, name)) // 1024, "KiB")
 
 
-def write_hdr(name, img):
-    """Radiance RGBE, flat."""
-    h, w, _ = img.shape
-    m = np.max(img, -1); e = np.zeros_like(m); ok = m > 1e-32
-    f, ex = np.frexp(np.where(ok, m, 1)); sc = np.where(ok, np.ldexp(1.0, 8 - ex), 0)
-    out = np.zeros((h, w, 4), np.uint8)
-    out[..., :3] = np.clip(img * sc[..., None], 0, 255).astype(np.uint8); out[..., 3] = np.where(ok, ex + 128, 0)
-    with open(os.path.join(OUT, name), "wb") as o:
-        o.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (h, w)); o.write(out.tobytes())
-    print(name, img.shape, os.path.getsize(os.path.join(OUT, name)) // 1024, "KiB")
-
-
-def dusk(name, w=512, h=256, sun_az=-35.0):
-    """After sunset: a warm band at sun_az (degrees from -z towards +x), pink belt opposite, blue above."""
-    th = (0.5 - (np.arange(h) + 0.5) / h) * np.pi          # elevation
-    az = ((np.arange(w) + 0.5) / w - 0.5) * 2 * np.pi       # middle: -z, right +x
-    E, A = np.meshgrid(th, az, indexing="ij")
-    d = np.cos(A - np.radians(sun_az)) * np.cos(E)
-    up = np.clip(np.sin(E), 0, 1)
-    zen, mid = np.array([0.008, 0.030, 0.115]), np.array([0.045, 0.125, 0.27])
-    img = mid + (zen - mid) * (up[..., None] ** 0.55)
-    toward = np.clip(0.5 + 0.5 * d, 0, 1)
-    band = np.exp(-up / 0.085)
-    img = img + (band * toward ** 3.0)[..., None] * np.array([0.60, 0.21, 0.05])
-    glow = np.exp(-up / 0.075) * np.clip(d, 0, 1) ** 10
-    img = img + glow[..., None] * np.array([1.9, 0.75, 0.20])
-    belt = np.exp(-((up - 0.16) / 0.09) ** 2) * np.clip(-d, 0, 1)
-    img = img + belt[..., None] * np.array([0.10, 0.035, 0.06])
-    below = E < 0
-    img[below] = np.array([0.06, 0.075, 0.12])
-    write_hdr(name, img)
-
-
 def tumbler():
     # whisky glass, 1 unit = 10 cm: outside up, rim, inside down to the axis
     outer = [(0, 0), (0.36, 0, 0.04), (0.405, 0.03, 0.05), (0.43, 0.12), (0.455, 0.50), (0.475, 0.95, 0.012), (0.452, 0.955, 0.012), (0.43, 0.50), (0.40, 0.20, 0.10), (0.25, 0.155), (0, 0.15)]
@@ -236,7 +203,6 @@ def build():
     snow("snow_field.ply")
     spruce("spruce.ply")
     shore("shore.ply")
-    dusk("dusk.hdr")
     tumbler()
 
 
