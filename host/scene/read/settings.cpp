@@ -280,7 +280,8 @@ EnvironmentDescription read_environment(const JsonValue& value,
       if (e.type == EnvironmentType::halo) read_halo(object, e.halo);
       object.read("turbidity", e.turbidity, "ground", e.ground);
       if (const auto sun = object.find("sun"))
-        sun->object("sun", [&](JsonObject& inner) { read_sun(inner, e); });
+        sun->object(e.type == EnvironmentType::halo ? "halo_sun" : "sun",
+                    [&](JsonObject& inner) { read_sun(inner, e); });
     }
     return e;
   });
