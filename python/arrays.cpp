@@ -1,6 +1,7 @@
 // See values.h.
 #include "values.h"
 
+#include <dlfcn.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
@@ -32,6 +33,13 @@ int free_let_go(void*) {
   return 0;
 }
 
+/// Whether this thread has the interpreter's lock; false where the interpreter does not say.
+bool has_interpreter() {
+  static const auto check =  // outside the stable ABI
+      reinterpret_cast<int (*)()>(::dlsym(RTLD_DEFAULT, "PyGILState_Check"));
+  return check && check() == 1;
+}
+
 /// The last that holds the arrays may be a thread of the library's, which never waits for the interpreter's
 /// lock: a thread that has it may wait for this one. The interpreter frees them soon.
 void let_go(const HeldArrays* held) {
@@ -40,7 +48,7 @@ void let_go(const HeldArrays* held) {
   mine->next = let_go_of;
   while (!let_go_of.compare_exchange_weak(mine->next, mine)) {
   }
-  if (PyGILState_Check())
+  if (has_interpreter())
     free_let_go(nullptr);
   else
     Py_AddPendingCall(free_let_go, nullptr);  // full: a later one frees these too

@@ -10,6 +10,7 @@ A scene is a file, a dict like its JSON (docs/reference/scene-reference.md), or 
 
 import atexit as _atexit
 import ctypes as _ctypes
+import pathlib as _pathlib
 
 try:
     # Drivers are loaded by the system's own loader, which all modules of a process share.
@@ -37,6 +38,33 @@ from ._sundog import (  # noqa: E402
     wait_for_threads,
 )
 
+_scenes = _pathlib.Path(__file__).parent / "scenes"
+
+
+def examples():
+    """The names of the scenes that come with the package."""
+    return sorted(file.stem for file in _scenes.glob("*.json") if not file.stem.endswith(".schema"))
+
+
+def example(name):
+    """A scene that comes with the package, such as "hollow_ice"."""
+    if name not in examples():
+        raise ValueError(f"sundog.example: {name!r} is none of {', '.join(examples())}")
+    return Scene.load(str(_scenes / f"{name}.json"))
+
+
+def view(scene, parameters=None, devices=None):
+    """A live picture of a scene in a notebook: drag to turn it, scroll to come nearer.
+
+    `scene`: a Scene, a file or a dict whose camera has a position and a target. `parameters`: sliders, by JSON
+    pointer, with their least and greatest value: {"/objects/0/parameters/power": (2, 12)}. The view has `set()`,
+    `scene` (a copy, as shown), `pixels` (numpy, waits for the settled picture) and `close()`. Needs anywidget.
+    """
+    from ._view import View
+
+    return View(scene, parameters, devices)
+
+
 _atexit.register(wait_for_threads)  # while what the drivers' threads use is still there
 __version__ = version()
 __all__ = [
@@ -50,8 +78,11 @@ __all__ = [
     "Snapshot",
     "choose_devices",
     "devices",
+    "example",
+    "examples",
     "render",
     "threads_left_behind",
     "version",
+    "view",
     "wait_for_threads",
 ]

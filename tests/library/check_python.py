@@ -188,3 +188,37 @@ if child == 0:
     os._exit(0 if "spawn" in message else 1)
 assert os.waitpid(child, 0)[1] == 0
 print("the package works")
+
+# Scenes of the package, and a live view of one, as its page would move it.
+assert "hollow_ice" in sundog.examples()
+for wrong in (lambda: sundog.example("no_such"), lambda: sundog.view({"objects": []})):
+    try:
+        wrong()
+        raise AssertionError("no error was raised")
+    except ValueError as error:
+        assert "no_such" in str(error) or "target" in str(error)
+scene = sundog.example("menger")
+scene["/image/width"], scene["/image/height"], scene["/render/samples"] = 64, 48, 1
+view = sundog.view(scene, {"/camera/fov": (20, 60)}, devices=device)
+assert view.parameters["/camera/fov"]["least"] == 20 and (view.width, view.height) == (64, 48)
+before, target = view.pixels, np.array(scene["/camera/target"])
+assert before.shape == (48, 64, 4)
+view.hear({"turn": [0.4, 0.1], "nearer": 2, "set": {"/camera/fov": 30}})
+assert not np.array_equal(view.pixels, before)
+old, new = np.array(scene["/camera/position"]) - target, np.array(view.scene["/camera/position"]) - target
+assert abs(np.linalg.norm(new) * 2 - np.linalg.norm(old)) < 1e-9 and view.scene["/camera/fov"] == 30
+flat = lambda way: np.array([way[0], way[2]]) / np.hypot(way[0], way[2])
+assert abs(np.arccos(flat(old) @ flat(new)) - 0.4) < 1e-9
+view.hear({"turn": [0, 9]})  # no farther than above
+assert np.isfinite(view.scene["/camera/position"]).all()
+sent = []
+view.send = lambda message, buffers: sent.append((message, buffers))
+view.set("/camera/fov", 50)
+deadline = time.monotonic() + 60
+while not any(buffers for _, buffers in sent) and time.monotonic() < deadline:
+    time.sleep(0.01)
+assert sent and bytes(sent[-1][1][0]).startswith(b"\x89PNG"), sent
+assert "fov" in error_of(lambda: view.set("/camera/fov", 500)).place
+view._heard(view, {"set": {"/camera/fov": 500}}, [])  # the page is told, and shows the scene before
+assert any("fov" in message["text"] for message, _ in sent) and view.scene["/camera/fov"] == 50
+view.close()

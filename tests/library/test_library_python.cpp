@@ -43,10 +43,10 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   // A compiler cache finds what it has, though the folder has another name each time.
   patient.environment["CCACHE_BASEDIR"] = folder.path().string();
   patient.environment["CCACHE_NOHASHDIR"] = "1";
-  const CommandResult fetched =
-      run_command(joined(pip, {"install", "--quiet", "--retries", "1", "--no-compile", "scikit-build-core",
-                               "nanobind", "ninja", "numpy", "matplotlib"}),
-                  patient);
+  const CommandResult fetched = run_command(
+      joined(pip, {"install", "--quiet", "--retries", "1", "--no-compile", "scikit-build-core", "nanobind",
+                   "ninja", "numpy", "matplotlib", "anywidget", "nbclient", "ipykernel"}),
+      patient);
   if (fetched.status != 0) {
     WARN("pip cannot fetch what builds the package, so it is not tried: " << fetched.err);
     return;
@@ -99,5 +99,15 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   CAPTURE(noted.out, noted.err);
   CHECK(noted.status == 0);
   CHECK(noted.out.find("| 16x16 |") != std::string::npos);
+  const CommandResult live =
+      run_command({python, "-c",
+                   "import nbclient, nbformat, sys; "
+                   "nbclient.NotebookClient(nbformat.read(sys.argv[1], 4), timeout=300, "
+                   "resources={'metadata': {'path': sys.argv[2]}}).execute()",
+                   SUNDOG_SOURCE_DIR "/examples/view.ipynb", folder.path().string()},
+                  patient);
+  CAPTURE(live.out, live.err);
+  CHECK(live.status == 0);
+  CHECK(file_bytes(folder / "view.png").starts_with("\x89PNG"));
   CHECK(fs::exists(find_below(environment, "_sundog.pyi")));
 }

@@ -53,7 +53,7 @@ void tell_samples(const RenderCommand& command, const RenderResult& result, u32 
       sampling_figures(result.film.taken, result.film.done, result.film.surfaces_seen, each);
   fmt::print("  {:.3g} samples a pixel in {} passes, at most {}", figures.mean, result.film.stage,
              figures.most);
-  if (result.complete)
+  if (result.complete && figures.saved > 0)
     fmt::print("; {:.1f} % of the pixels interpolated; {:.1f} % fewer camera rays than {} a pixel",
                100 * figures.share_interpolated, 100 * figures.saved, each);
   fmt::print("\n");
