@@ -26,7 +26,7 @@ struct KeptHalo {
   std::shared_ptr<const HaloMap> map;
 };
 
-/// What the frames of one run share.
+/// State that the frames of one run share.
 struct Setup {
   const StopOnSignal& stop;
   Mailbox* job = nullptr;  // the other processes that mpirun has started
@@ -50,7 +50,7 @@ struct LoadedScene {
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);
 
-/// Of the file that the command writes. Throws UsageError for a region that is not within the scene's
+/// Width and height of the file that the command writes. Throws UsageError for a region outside the scene's
 /// picture.
 std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene);
 

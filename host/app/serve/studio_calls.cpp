@@ -1,5 +1,5 @@
-// What a page asks the studio over HTTP: the schema and the lists that its panels are made of, files that go
-// out, scenes that come in. Each call has the token in its header; only POST changes anything.
+// The studio's HTTP calls: the schema and lists that pages build their panels from, downloads, uploads of
+// scenes. Each call carries the token in its header; only POST changes state.
 #include <fmt/format.h>
 
 #include "app/commands/formulas_command.h"

@@ -109,7 +109,7 @@ Primaries primaries(const Imf::Chromaticities& c) {
   return {v(c.red), v(c.green), v(c.blue), v(c.white)};
 }
 
-/// Of the first three channels.
+/// Multiplies the first three channels by `matrix`.
 void convert(Image& image, const glm::dmat3& matrix) {
   for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
     float* c = &image.data[i];

@@ -48,7 +48,7 @@ void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   }
 }
 
-/// What a worker is asked for; nothing when the frame is over.
+/// The request for a tile, with the earlier samples of its pixels; nothing when the frame is over.
 std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   TileRequest request;
   request.tile = tile;
@@ -142,7 +142,7 @@ void keep_checkpoint(Frame& frame) {
   try {
     write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
   } catch (const IoError&) {
-    // What keeps it from being written is reported at the end, if the frame does not come to its end.
+    // If the frame is interrupted, the last write reports the same error.
   }
 }
 

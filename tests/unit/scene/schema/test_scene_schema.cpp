@@ -273,6 +273,33 @@ TEST_CASE("the schema's defaults are the reader's") {
   CHECK(plain == explicitly);
 }
 
+TEST_CASE("a description that no reader has filled holds the schema's defaults") {
+  const SceneDescription scene = read(json::parse(R"({
+    "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "lens": {}}, "image": {"tone_map": {}},
+    "render": {"path": {}, "adaptive": {}, "subsample": {"on": false}},
+    "environment": {"type": "sky", "sun": {}},
+    "media": {"a": {}}, "materials": {"m": {}, "l": {"type": "openpbr"}},
+    "textures": {"t": {"type": "vertex_color"}},
+    "lights": [{"type": "ambient"}, {"type": "directional", "direction": [0, -1, 0]},
+      {"type": "point", "position": [0, 0, 0], "falloff": {}},
+      {"type": "spot", "position": [0, 0, 0], "direction": [0, -1, 0]},
+      {"type": "rectangle", "position": [0, 0, 0], "direction": [0, -1, 0]},
+      {"type": "disk", "position": [0, 0, 0], "direction": [0, -1, 0]}, {"type": "sphere", "position": [0, 0, 0]}],
+    "objects": [{"type": "sphere"}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
+      {"type": "disk"}, {"type": "rectangle"}, {"type": "torus"}, {"type": "round_box"}]})"));
+  SceneDescription own = scene;
+  own.camera = {};
+  own.image = {};
+  own.render = {};
+  own.environment = {.type = EnvironmentType::sky};
+  for (LightDescription& light : own.lights) light = {.type = light.type};
+  for (MediumDescription& medium : own.media) medium = {.name = medium.name, .priority = medium.priority};
+  own.materials[0] = {.name = "m"};
+  own.materials[1].layers = OpenPbr{};
+  for (Object& object : own.objects) std::visit([](auto& shape) { shape = {}; }, object.shape);
+  CHECK(all_values(own) == all_values(scene));
+}
+
 TEST_CASE("every scene that ships loads and is valid") {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(SUNDOG_SOURCE_DIR "/scenes")) {
