@@ -176,7 +176,7 @@ DeviceInfo choose_device(unsigned threads) {
   return device;
 }
 
-// What is rendered when nothing is named.
+// The scenes that are rendered when none is named.
 std::vector<std::string> standard_scenes(const Options& options) {
   std::vector<std::string> scenes{SUNDOG_SOURCE_DIR "/scenes/spheres.json",
                                   SUNDOG_SOURCE_DIR "/bench/scenes/ice_boxes.json",

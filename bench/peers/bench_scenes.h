@@ -1,5 +1,4 @@
-// What the programs that measure against a peer share: scenes made around a model, the clocks, the form of
-// their figures.
+// Scenes around a model, clocks and JSON figures for the programs that measure against a peer.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -23,7 +22,7 @@ SceneDescription glass_scene(const std::string& model, std::vector<std::string> 
 struct Elapsed {
   double wall = 0, processor = 0;
 
-  /// Of one of `threads` threads: on a machine that others use too the processor's clock says more.
+  /// Seconds per thread. The processor's clock is steadier on a machine that others use too.
   double of_thread(unsigned threads, bool by_wall) const { return by_wall ? wall : processor / threads; }
 };
 

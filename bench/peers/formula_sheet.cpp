@@ -36,7 +36,7 @@ constexpr int label_height = 22;
 constexpr double label_scale = 1.5;  // pixels for one of the font's
 const float dark = linear_from_srgb(0.11f), light = linear_from_srgb(0.88f);
 
-/// What a picture of `size` pixels a side shows: the camera's place stays, its angle and its target do not.
+/// The camera's target and angle; its position is fixed.
 struct View {
   std::array<double, 3> target{};
   double tangent = 0.43;  // of half the angle
