@@ -13,11 +13,6 @@ namespace sundog {
 /// One model's meshes where they lie, without lights; or a .json scene as it is.
 SceneDescription scene_of_model(const std::string& path, bool spatial_splits);
 
-/// bench/scenes/glass_model.json around a model of one mesh, whose holes are closed and which is scaled to
-/// two units and stands a little in the floor. The vertices themselves are moved, so that nobody needs a
-/// transform. `overrides` as for load_scene().
-SceneDescription glass_scene(const std::string& model, std::vector<std::string> overrides);
-
 /// Seconds by the wall clock, and by the processor's of all threads together.
 struct Elapsed {
   double wall = 0, processor = 0;

@@ -114,6 +114,15 @@ inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || fra
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);
 
+/// Reports how far the frame is. The caller holds its mutex.
+void report_progress(Frame& frame);
+
+/// Ends the frame at its time limit. The caller holds its mutex.
+void look_at_clock(Frame& frame);
+
+/// Retires workers whose launches are overdue.
+void retire_hanging(Frame& frame);
+
 /// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
 /// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);

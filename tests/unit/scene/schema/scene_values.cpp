@@ -23,6 +23,8 @@ void write(std::string& out, const T& value) {
     fmt::format_to(std::back_inserter(out), "\"{}\" ", std::string_view(value));
   } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
     write(out, value.string());
+  } else if constexpr (std::is_same_v<T, Image>) {
+    write(out, value.data);
   } else if constexpr (std::is_enum_v<T>) {
     write(out, static_cast<int>(value));
   } else if constexpr (std::is_arithmetic_v<T>) {
