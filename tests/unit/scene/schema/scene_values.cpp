@@ -22,13 +22,13 @@ void write(std::string& out, const T& value) {
   if constexpr (std::is_convertible_v<const T&, std::string_view>) {
     fmt::format_to(std::back_inserter(out), "\"{}\" ", std::string_view(value));
   } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
-    write(out, value.string());
+    return;  // of temporary folders
   } else if constexpr (std::is_same_v<T, Image>) {
     write(out, value.data);
   } else if constexpr (std::is_enum_v<T>) {
     write(out, static_cast<int>(value));
   } else if constexpr (std::is_arithmetic_v<T>) {
-    fmt::format_to(std::back_inserter(out), "{} ", value);
+    fmt::format_to(std::back_inserter(out), "{} ", value + T{});  // -0 as 0
   } else if constexpr (Pointer<T>) {
     out += value ? "some " : "none ";
     if (value) write(out, *value);
