@@ -34,7 +34,7 @@ struct Options {
   int width = 640, height = 640, repeat = 5;
   unsigned threads = std::max(1u, std::thread::hardware_concurrency());
   bool filtered = false, media = false, wall = false;
-  double tolerance = 0.003;
+  double tolerance = 0.02;  // sundog filters checkers, POV-Ray does not
   std::string json, folder = "against_povray";
 };
 
