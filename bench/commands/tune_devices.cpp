@@ -39,7 +39,7 @@ struct NamedScene {
   CompiledScene scene;
 };
 
-/// Those of the command line, or two that are built in: solids alone, and with a mesh among them.
+/// Scenes of the command line, or two that are built in: solids alone, and with a mesh among them.
 std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
   std::vector<NamedScene> scenes;
   for (const std::string& file : options.bench.scenes)

@@ -57,7 +57,8 @@ std::pair<int, int> picture_size(const RenderCommand& command, const CompiledSce
 /// The files that one frame may write.
 std::vector<std::string> output_files(const RenderCommand& command);
 
-/// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
+/// Lets a signal end the process at once, because nothing is to be saved before the frame begins. Not in a
+/// job, where other ranks must hear of it.
 void stop_loses_nothing(const RenderCommand& command, const Setup& setup);
 
 /// How the scene file is read.

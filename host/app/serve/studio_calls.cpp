@@ -28,7 +28,7 @@ WebAnswer plain(int status, std::string text) {
 
 WebAnswer json_answer(const json& value) { return {200, json_type, message_text(value), ""}; }
 
-/// Those channels of a settled frame that `sundog render` would write into that file.
+/// The channels of a settled frame that `sundog render` would write into that file.
 Image with_channels(const Image& image, int channels) {
   if (image.channels <= channels) return image;
   Image out(image.width, image.height, channels);

@@ -162,7 +162,7 @@ class Reader {
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
-  /// Those of the picture itself; others are further layers.
+  /// The channels of the picture itself; others are further layers.
   Suffixes color_channels() const {
     if (has("R") || has("G") || has("B")) return {"R", "G", "B", "A"};
     return {"Y", "A"};

@@ -142,7 +142,7 @@ bool show_surfaces(const std::vector<std::string>& names);
 /// The layout of a pixel's vectors for these AOVs.
 AovLayout aov_layout(const std::vector<std::string>& names);
 
-/// Those that a denoiser takes: albedo and normal as the pixels' samples see them.
+/// The AOVs that a denoiser takes: albedo and normal as the pixels' samples see them.
 constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "denoise_normal";
 
 /// The pixels' ways to the next frame (render/film/motion.h).
