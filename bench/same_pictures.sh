@@ -96,11 +96,6 @@ for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do
   esac
 done
 
-# What a scene file lacks: the benchmark's model is one that its user gives.
-extra_of() {
-  [[ $(basename -- "$1") == glass_model.json ]] && printf '%s\n' --set '/meshes/model={"generate": {"type": "ice_block"}}'
-}
-
 name_of() {
   local name
   name=$(basename -- "$1" .json)
@@ -110,13 +105,12 @@ name_of() {
 
 # render PROGRAM SCENE DEVICE SIZE NAME ARGUMENT...: leaves NAME.exr, NAME.json and NAME.log in the folder that is kept.
 render() {
-  local program=$1 scene=$2 device=$3 wanted=$4 name=$keep/$5 extra
+  local program=$1 scene=$2 device=$3 wanted=$4 name=$keep/$5
   shift 5
-  mapfile -t extra < <(extra_of "$scene")
   local under=() place=(--device "$device")
   if [[ $device == oclgrind ]]; then under=(oclgrind --build-options -cl-opt-disable) place=(--max-depth 4); fi
   rm -f "$name.exr" "$name.json"
-  timeout 900 "${under[@]}" "$program" render "$scene" "${place[@]}" --size "$wanted" --samples 1 "${extra[@]}" \
+  timeout 900 "${under[@]}" "$program" render "$scene" "${place[@]}" --size "$wanted" --samples 1 \
     "${common[@]}" "$@" --float -o "$name.exr" --stats "$name.json" -q >"$name.log" 2>&1
 }
 

@@ -177,7 +177,7 @@ Spread milliseconds(const std::vector<std::vector<Run>>& calls) {
   return scaled(spread(medians), 1e3);
 }
 
-/// Of all rows of a comparison.
+/// Facts that all rows of a comparison share.
 struct Tally {
   bool in_turn = false;                                // runs in pairs
   std::size_t fewest_calls = SIZE_MAX, unmatched = 0;  // of a row; rows that the base has not

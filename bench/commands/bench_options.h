@@ -1,4 +1,4 @@
-// What all `sundog bench` commands share: their options, the scenes, and where a report goes.
+// Options, scenes and report files of all `sundog bench` commands.
 //
 // A further benchmark is a function `void add_bench_NAME(Arguments& bench, Command& chosen)` in a file of its
 // own, which calls add_bench_command() (bench_run.h). It measures parts by a BenchRun, each with measure()
@@ -44,7 +44,7 @@ void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed 
 /// --size, for benchmarks that render frames of one size.
 void add_bench_size(Arguments* app, BenchOptions& options);
 
-/// What is being measured, on a terminal's stderr; nothing elsewhere.
+/// Shows the current step on stderr if that is a terminal.
 void show_step(const BenchOptions& options, const std::string& step);
 
 /// The file's name without folder and extension.

@@ -35,7 +35,7 @@ std::vector<std::string> parse_kinds(const std::string& text) {
   return kinds;
 }
 
-/// What the report says of a scene before any time.
+/// The report's line about a scene: its contents and the parts that are left out.
 std::string describe(const CompiledScene& scene) {
   const u32 fields = scene.info.field_end - scene.info.instance_count;
   const std::string left_out = fields ? fmt::format("{} distance field{} left out: marched, not traced",

@@ -17,7 +17,7 @@ class BenchRun {
   /// the report to continue is another bench's.
   BenchRun(const std::string& name, const std::string& title, const BenchOptions& options);
 
-  /// What the report says besides measurements: facts, and notes behind those of the measurements.
+  /// The report without measurements: facts, and notes that follow those of the measurements.
   Report& head() { return head_; }
   void add_devices(const std::vector<DeviceInfo>& devices);
   /// Throws UsageError where the report to continue has measured another scene of that name.

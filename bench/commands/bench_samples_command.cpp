@@ -18,8 +18,8 @@ struct SamplesOptions : BenchOptions {
   std::string adaptive = "0.01,0.02,0.05";  // thresholds
 };
 
-/// The same number of samples for each pixel, and frames whose samples go where they are needed: adaptive
-/// ones up to four times the most that all pixels get, and subsampled ones of each count.
+/// Even frames of each count; adaptive frames, with up to four times the greatest count a pixel; subsampled
+/// frames of each count.
 std::vector<SampleWay> sample_ways(const SamplesOptions& options, const std::vector<int>& counts) {
   std::vector<SampleWay> ways;
   for (const int samples : counts)

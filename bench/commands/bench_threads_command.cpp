@@ -82,7 +82,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
     };
     show_step(options, plan.scene + ", a small frame for the estimate");
     plan.cost = pixel_cost(plan);
-    // Who names the sizes wants them all.
+    // Sizes that the user names are all measured.
     const double budget = options.budget >= 0 ? options.budget : options.sizes.empty() ? 100.0 : 0.0;
     if (budget > 0) {
       const auto left_out = fit_into(plan, budget / static_cast<double>(options.scenes.size()));

@@ -45,7 +45,7 @@ std::pair<std::size_t, std::size_t> local_of(const Times& kernels, const std::st
   return {found->second.local_x, found->second.local_y};
 }
 
-/// Of the launches since the device's times were forgotten (TimedKernel::beyond_events).
+/// TimedKernel::beyond_events for all launches since the device's times were reset.
 std::optional<double> beyond_events(const Times& kernels) {
   double seconds = 0;
   for (const auto& [name, times] : kernels) {

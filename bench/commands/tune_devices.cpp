@@ -39,7 +39,7 @@ struct NamedScene {
   CompiledScene scene;
 };
 
-/// Those of the command line, or two that are built in: solids alone, and with a mesh among them.
+/// Scenes of the command line, or two that are built in: solids alone, and with a mesh among them.
 std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
   std::vector<NamedScene> scenes;
   for (const std::string& file : options.bench.scenes)
@@ -108,7 +108,7 @@ std::vector<std::string> tune_scenes(const DeviceInfo& device, const std::vector
   return left_out;
 }
 
-/// What a worker has said.
+/// A worker's output so far.
 struct Heard {
   std::string step = "starting", remark;
   bool has_outcome = false, has_ended = false;
@@ -155,7 +155,7 @@ std::string end_text(const DeviceInfo& device, const Heard& heard, double second
   return fmt::format("{}; ended during a compilation or a launch ({}; a longer --budget)", took, heard.step);
 }
 
-/// What a device gives that has no result in its time.
+/// The report of a device that had no result in its time.
 std::string nothing_text(const DeviceInfo& device, const Heard& heard, double seconds) {
   return fmt::format("{} was ended after {} with no result, during a compilation or a launch ({})",
                      device.label(), duration_text(seconds), heard.step);

@@ -41,7 +41,7 @@ bool is_possible(const std::vector<DeviceInfo>& devices) {
   return true;
 }
 
-/// What all combinations are compared with, and the devices that are open.
+/// Open devices, and reference pictures, for all combinations.
 struct Common {
   std::map<std::string, std::shared_ptr<LocalWorker>> open;
   std::map<std::string, Image> alone;  // each device's own picture

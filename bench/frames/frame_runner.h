@@ -36,11 +36,11 @@ class FrameRunner {
   /// The largest work-group that the first device's kernels allow; 0: unknown.
   std::size_t greatest_group() const;
 
-  /// Of the last run: on the first device, of all launches of a kernel; by the host's clock where the driver
+  /// Seconds of a kernel's launches on the first device in the last run; by the host's clock where the driver
   /// gives no times.
   double kernel_seconds(const std::string& kernel) const;
   double kernel_seconds() const;  // of all kernels
-  /// Of the last run, for each kernel of the first device.
+  /// Times of each kernel of the first device in the last run.
   const std::map<std::string, KernelTimes>& kernel_times() const { return kernel_times_; }
   const Film& film() const { return last_.film; }
   Image image() const { return last_.film.develop(); }
@@ -71,10 +71,10 @@ struct FrameSubject {
 };
 Subject frame_subject(const std::string& name, FrameSubject of);
 
-/// The same bits in both.
+/// Whether both have the same bits.
 bool same_bits_of(const Image& a, const Image& b);
 
-/// What others are compared with: a picture that two frames in a row agree on, as confirmed() has it.
+/// A reference picture: one that two frames in a row agree on (confirmed()).
 Image confirmed_image(FrameRunner& frames);
 
 }  // namespace sundog

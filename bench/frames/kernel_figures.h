@@ -1,4 +1,4 @@
-// What a device's compiler made of the kernels that a scene needs: sizes of groups, memory, registers.
+// Group sizes, memory and registers of the kernels that a scene needs, as a device's compiler reports them.
 #pragma once
 #include <string>
 #include <vector>

@@ -32,7 +32,7 @@ struct SampleScaling {
   int reference = 128;          // samples of the picture that counts as right
 };
 
-/// Of one way, by its first frame.
+/// Figures of one way, from its first frame.
 struct SampleFigures {
   double samples = 0;     // a pixel, in the mean
   double rays = 0;        // of a frame, of all kinds, those that only look too

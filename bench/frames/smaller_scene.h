@@ -1,4 +1,4 @@
-// The same picture with fewer pixels and samples, for measurements that have to end in time. Pure arithmetic.
+// Scales a scene down to fewer pixels and samples, for measurements within a time budget. Pure arithmetic.
 #pragma once
 #include <functional>
 

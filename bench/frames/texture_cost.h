@@ -1,5 +1,4 @@
-// What textures cost: a scene's frame with its textures and without them, and the time that its images take
-// to load.
+// The cost of textures: times of a scene's frame with and without them, and of loading its images.
 #pragma once
 #include <memory>
 #include <string>

@@ -96,7 +96,7 @@ void WorkGroupTimes::measure(const MeasureOptions& options) {
   MeasureOptions sweep = options, duel = options;
   sweep.budget *= 0.8, duel.budget *= 0.2;
   sundog::measure(subjects_, sweep);
-  // Of dozens of sizes the one of the least median owes some of it to luck: it must win again.
+  // The least median of dozens is partly luck, so its size must win again.
   const Subject* best = least();
   if (!best || best == &subjects_.front() || options.is_stopped()) return;
   duel_ = {subjects_.front(), *best};

@@ -24,10 +24,10 @@ struct TimedKernel {
   std::vector<WorkGroup> sizes;                 // to try beside the default; empty: the candidates
   std::function<double(const WorkGroup&)> run;  // seconds
   std::function<std::uint64_t()> result;        // of the last run
-  /// Of the last run: the group that was enqueued; zeros where the driver chose, which OpenCL does not tell.
+  /// The group enqueued in the last run; zeros where the driver chose it (OpenCL does not report its choice).
   std::function<std::pair<std::size_t, std::size_t>()> local;
-  /// Of the last run: seconds that launches took by the host's clock beyond what the device's events say that
-  /// kernels ran. Nothing where the driver gives no times.
+  /// Seconds that the last run's launches took by the host's clock beyond their device events. Nothing where
+  /// the driver gives no times.
   std::function<std::optional<double>()> beyond_events;
   double build_seconds = 0;    // of the program, by the clock, before any run
   std::optional<bool> cached;  // whether it came from the binary cache

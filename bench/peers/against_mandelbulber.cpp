@@ -3,21 +3,31 @@
 // they shade differently, so outlines are what can be compared. Mandelbulber's Mandelbulb counts its angle
 // from the equator, which makes it another set of the same kind: there outlines differ.
 #include <fmt/format.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/arguments.h"
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/image_io.h"
 #include "bench/report/samples.h"
-#include "run_program.h"
-#include "whole_runs.h"
+#include "parse_arguments.h"
 
 using namespace sundog;
 
 namespace {
+
+struct Options {
+  int size = 640, repeats = 3;
+  std::string device = "cpu/1", folder = "against_mandelbulber", json;
+};
 
 struct Surface {
   const char *name, *camera;    // the camera's place, on which it looks at the origin
@@ -63,11 +73,35 @@ struct Times {
   std::vector<double> wall, processor;  // seconds
 };
 
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+[[noreturn]] void become(const std::vector<std::string>& command, const std::string& log) {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(0, &one);
+  sched_setaffinity(0, sizeof one, &one);
+  if (!std::freopen(log.c_str(), "w", stdout) || dup2(1, 2) < 0) _exit(126);
+  std::vector<char*> words;
+  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  execvp(words[0], words.data());
+  _exit(127);
+}
+
 /// Runs a program on one processor with its output in `log`. Throws when it fails.
 void run(const std::vector<std::string>& command, const std::string& log, Times& times) {
-  const Elapsed used = run_program({command, log, {}, true});
-  times.wall.push_back(used.wall);
-  times.processor.push_back(used.processor);
+  const Stopwatch clock;
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) become(command, log);
+  int status = 0;
+  rusage used{};
+  if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0)
+    throw std::runtime_error(command[0] + " failed; see " + log);
+  times.wall.push_back(clock.seconds());
+  times.processor.push_back(seconds(used.ru_utime) + seconds(used.ru_stime));
 }
 
 /// Share of the pixels that show the background, which is magenta, in one picture alone.
@@ -81,7 +115,7 @@ double outline_difference(const std::string& a, const std::string& b) {
   return static_cast<double>(different) / (static_cast<double>(ours.width) * ours.height);
 }
 
-nlohmann::json measure(const Surface& s, const WholeRuns& options) {
+nlohmann::json measure(const Surface& s, const Options& options) {
   const std::filesystem::path base = std::filesystem::path(options.folder) / s.name;
   const auto file = [&](const char* end) { return base.string() + end; };
   write_file(file(".json"), our_scene(s, options.size));
@@ -125,16 +159,25 @@ nlohmann::json measure(const Surface& s, const WholeRuns& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  WholeRuns options{.size = 640, .repeats = 3, .device = "cpu/1", .folder = "against_mandelbulber"};
+  Options options;
+  Arguments app("Whole runs of sundog and of Mandelbulber 2 in turn, each on one thread of the processor.");
+  app.add_option("--size", options.size, "pixels a side")->range(16, 4096);
+  app.add_option("--repeats", options.repeats)->range(1, 100);
+  app.add_option("--device", options.device, "sundog's OpenCL device");
+  app.add_option("--folder", options.folder, "for scenes and pictures");
+  app.add_option("--json", options.json, "file for the figures");
+  parse_or_exit(app, argc, argv);
   setenv("QT_QPA_PLATFORM", "offscreen", 0);
-  const auto measure_all = [&] {
+  try {
+    std::filesystem::create_directories(options.folder);
     fmt::print("{0}x{0}, one thread, {1} runs in turn\n{2:12} {3:>10} {4:>10} {5:>9} {6:>9} {7:>11}\n",
                options.size, options.repeats, "", "sundog", "Mandelb.", "x wall", "x cpu", "outlines");
     nlohmann::json report{{"size", options.size}, {"repeats", options.repeats}};
     for (const Surface& s : surfaces) report["surfaces"].push_back(measure(s, options));
-    return report;
-  };
-  return run_whole_runs(
-      "Whole runs of sundog and of Mandelbulber 2 in turn, each on one thread of the processor.", argc, argv,
-      options, measure_all);
+    if (!options.json.empty()) write_file(options.json, report.dump(2) + "\n");
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "against_mandelbulber: {}\n", error.what());
+    return 1;
+  }
 }

@@ -1,5 +1,4 @@
-// What the programs that measure against a peer share: scenes made around a model, the clocks, the form of
-// their figures.
+// Scenes around a model, clocks and JSON figures for the programs that measure against a peer.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,16 +13,11 @@ namespace sundog {
 /// One model's meshes where they lie, without lights; or a .json scene as it is.
 SceneDescription scene_of_model(const std::string& path, bool spatial_splits);
 
-/// bench/scenes/glass_model.json around a model of one mesh, whose holes are closed and which is scaled to
-/// two units and stands a little in the floor. The vertices themselves are moved, so that nobody needs a
-/// transform. `overrides` as for load_scene().
-SceneDescription glass_scene(const std::string& model, std::vector<std::string> overrides);
-
 /// Seconds by the wall clock, and by the processor's of all threads together.
 struct Elapsed {
   double wall = 0, processor = 0;
 
-  /// Of one of `threads` threads: on a machine that others use too the processor's clock says more.
+  /// Seconds per thread. The processor's clock is steadier on a machine that others use too.
   double of_thread(unsigned threads, bool by_wall) const { return by_wall ? wall : processor / threads; }
 };
 

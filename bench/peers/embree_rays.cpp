@@ -45,7 +45,7 @@ class Comparison {
   Comparison(const Options& options, const CompiledScene& scene, RayTracer& tracer, const EmbreePeer& embree)
       : options_(options), scene_(scene), tracer_(tracer), embree_(embree) {}
 
-  /// Of all sets so far: rays with a wrong answer of sundog's.
+  /// Rays of all sets so far that sundog answered wrongly.
   std::size_t wrong() const { return wrong_; }
 
   nlohmann::json run(const RaySet& set) {

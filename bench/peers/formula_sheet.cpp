@@ -1,28 +1,28 @@
 // The contact sheet of docs: every surface of `sundog formulas` with its default parameters in one picture,
 // each with its name under it. docs/render_pictures.sh runs it.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
 #include "base/arguments.h"
-#include "base/file.h"
+#include "base/environment.h"
 #include "base/image_io.h"
+#include "bench/frames/frame_runner.h"
+#include "compile/compiled_scene.h"
+#include "device/devices.h"
 #include "formula/list.h"
 #include "parse_arguments.h"
-#include "run_program.h"
+#include "scene/read/scene_reader.h"
 #include "stb/stb_easy_font.h"
 
 using namespace sundog;
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -36,7 +36,7 @@ constexpr int label_height = 22;
 constexpr double label_scale = 1.5;  // pixels for one of the font's
 const float dark = linear_from_srgb(0.11f), light = linear_from_srgb(0.88f);
 
-/// What a picture of `size` pixels a side shows: the camera's place stays, its angle and its target do not.
+/// The camera's target and angle; its position is fixed.
 struct View {
   std::array<double, 3> target{};
   double tangent = 0.43;  // of half the angle
@@ -85,14 +85,12 @@ json scene_of(const Subject& subject, const View& view, int size, int samples) {
       {"objects", {object}}};
 }
 
-Image render(const std::string& name, const json& scene, const Sheet& sheet, const fs::path& folder) {
-  const std::string file = folder / (name + ".json"), picture = folder / (name + ".exr");
-  write_file(file, scene.dump(1));
-  run_program({{SUNDOG_BINARY, "render", file, "-o", picture, "--float", "--device", sheet.device, "--quiet"},
-               folder / (name + ".log"),
-               {},
-               false});
-  return read_image(picture);
+Image render(const json& scene, const DeviceInfo& device) {
+  const JsonContext context{"formula_sheet"};
+  const CompiledScene compiled = compile(read_scene(JsonValue(scene, context)));
+  FrameRunner frames(device, compiled);
+  frames.run();
+  return frames.image();
 }
 
 /// A view in which the surface nearly fills the picture: `probe` is a picture of the whole interval.
@@ -114,11 +112,11 @@ View fitted(const Subject& subject, const View& wide, const Image& probe) {
   return view;
 }
 
-Image picture_of(const FormulaDefinition& d, const Sheet& sheet, const fs::path& folder) {
+Image picture_of(const FormulaDefinition& d, const Sheet& sheet, const DeviceInfo& device) {
   const Subject subject = subject_of(d);
   const View wide{subject.center};
-  const View view = fitted(subject, wide, render(d.name, scene_of(subject, wide, 64, 1), sheet, folder));
-  return render(d.name, scene_of(subject, view, sheet.size, sheet.samples), sheet, folder);
+  const View view = fitted(subject, wide, render(scene_of(subject, wide, 64, 1), device));
+  return render(scene_of(subject, view, sheet.size, sheet.samples), device);
 }
 
 void copy_into(Image& sheet, const Image& tile, int left, int top) {
@@ -160,8 +158,7 @@ void write_label(Image& sheet, std::string text, int left, int top, int width) {
 }
 
 void make(const Sheet& sheet) {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("sundog-formula-sheet-{}", ::getpid());
-  fs::create_directories(folder);
+  const DeviceInfo device = select_devices(enumerate_devices(plain_environment()), {sheet.device}).at(0);
   const int count = static_cast<int>(formula_list().size()),
             rows = (count + sheet.columns - 1) / sheet.columns;
   const int row_height = sheet.size + (sheet.names ? label_height : 0);
@@ -170,13 +167,12 @@ void make(const Sheet& sheet) {
   for (int i = 0; i < count; ++i) {
     const FormulaDefinition& d = formula_list()[static_cast<std::size_t>(i)];
     const int left = i % sheet.columns * sheet.size, top = i / sheet.columns * row_height;
-    copy_into(all, picture_of(d, sheet, folder), left, top);
+    copy_into(all, picture_of(d, sheet, device), left, top);
     if (sheet.names) write_label(all, d.name, left, top + sheet.size, sheet.size);
     fmt::print("{} of {}: {}\n", i + 1, count, d.name);
     std::fflush(stdout);
   }
   write_image(all, sheet.out);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// What the programs that trace the same rays with sundog and with a peer share: a model on a device, and its
-// rays by kind.
+// A model on a device, and its rays by kind, for programs that trace them with sundog and a peer.
 #pragma once
 
 #include "base/arguments.h"
@@ -32,11 +31,11 @@ struct PeerModel {
   Device device;
   RayTracer tracer;
 
-  /// Of which class sundog's tracer is: "wide" or "compact".
+  /// The class of sundog's tracer: "wide" or "compact".
   const char* tracer_name() const;
   /// The rays of a frame in which 65 % of them meet the model.
   std::vector<RaySet> rays(const RayOptions& options);
-  /// What a program's JSON says of it.
+  /// The model, the device and the tracer, for JSON.
   nlohmann::json facts() const;
 };
 

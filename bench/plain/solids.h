@@ -1,7 +1,10 @@
-// The exact solids of kernels/shared/shapes.h as a plain C++ program would have them: scalar floats, one ray.
+// The exact solids of kernels/shared/shapes.h as a plain C++ program would have them: one ray, in scalar
+// floats, or in double precision to check others against.
 #pragma once
 #include <glm/glm.hpp>
+#include <vector>
 
+#include "bench/plain/any_solid.h"
 #include "shared/bvh.h"
 
 namespace sundog::plain {
@@ -18,5 +21,9 @@ struct SolidHit {
 
 /// The nearest crossing of a unit solid, in its own space.
 bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, SolidHit& hit);
+
+/// Every crossing of the line o + t d with a unit solid, in order of t.
+std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, const glm::dvec3& o,
+                                           const glm::dvec3& d);
 
 }  // namespace sundog::plain

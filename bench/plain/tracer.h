@@ -13,7 +13,7 @@ struct Hit {
   glm::vec3 ng{0};  // object space, outward, not normalised
 };
 
-/// What finds hits for the integrator.
+/// Finds hits for the integrator.
 class HitFinder {
  public:
   virtual ~HitFinder() = default;

@@ -21,14 +21,14 @@ constexpr int most_crossings = 64;  // vanished interfaces, or filters, along on
 
 float greatest(const vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-// What the integrator works with.
+// The integrator's scene, tracer and counters.
 struct World {
   const CompiledScene& scene;
   const HitFinder& finder;
   RayCounts& counts;
 };
 
-// What a ray meets next.
+// The next surface on a ray.
 struct Encounter {
   bool found = false;
   Hit hit;
@@ -80,7 +80,7 @@ Encounter next_surface(const World& world, Ray ray, MediaStack& media) {
   }
 }
 
-/// What one transmissive interface lets through along a straight line.
+/// The share of light that passes one transmissive interface straight on.
 vec3 filter(const CompiledScene& scene, const Material& material, const Hit& hit, const vec3& wi, u32 here,
             u32 there) {
   vec3 through = rgb(material.transmission);

@@ -95,8 +95,8 @@ Plane<T> filtered(const Plane<T>& in, const Weights& across, const Weights& down
   return one_way(one_way(in, across, 1, 0), down, 0, 1);
 }
 
-/// What the eye leaves of fine patterns, by its contrast sensitivity to lightness, red-green and blue-yellow:
-/// sums of Gaussians, of which the last colour has two.
+/// Filters each opponent channel by the eye's contrast sensitivity: a Gaussian for lightness and red-green,
+/// the sum of two for blue-yellow.
 Plane<dvec3> blurred(const Plane<dvec3>& opponents, double pixels_per_degree) {
   const dvec3 narrow(0.0047, 0.0053, 0.04);
   const double wide = 0.025, first = 34.1, second = 13.5;
@@ -153,7 +153,7 @@ Features features_of(const Plane<double>& lightness, double pixels_per_degree) {
   return {strength(slope), strength(bend)};
 }
 
-/// What is compared of a picture.
+/// Colours and features of a picture, for comparison.
 struct Looks {
   Plane<dvec3> colors;
   Features features;

@@ -51,7 +51,7 @@ double reach(const CompiledScene& scene, const HostRay& ray, double t, u32 insta
   return rounding * result;
 }
 
-/// The same where nothing is met: by the end of the ray, or of the scene.
+/// reach() of a ray that hits nothing: at the end of the ray or of the scene.
 double reach_of_none(const CompiledScene& scene, const HostRay& ray) {
   const float4& ball = scene.info.scene_center;
   const double length = glm::length(ray.direction);
@@ -82,7 +82,8 @@ std::vector<Copy> moved_copies(const HostRay& ray, double distance) {
   return copies;
 }
 
-/// What a ray and its moved copies find. `found`: what the tracer in question says of it; infinite for none.
+/// Hits of a ray and its moved copies in double precision. `found`: the distance by the checked tracer;
+/// infinite for none.
 struct Findings {
   std::vector<Copy> copies;
   double nearest = unlimited, farthest = 0;

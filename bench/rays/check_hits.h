@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// What a device found, by rays; for sets that ask for any hit `occluded` alone, else `hits` alone.
+/// A device's answers, in the order of the rays: `occluded` alone for sets that ask for any hit, else `hits`.
 struct Answers {
   std::vector<Hit> hits;
   std::vector<u32> occluded;
@@ -30,7 +30,7 @@ struct HitCheck {
 /// differ from the plain tracer's count as wrong unseen.
 HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers);
 
-/// The same with another tracer in the plain one's place.
+/// check_hits() with another tracer in place of the plain one.
 HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers,
                     const plain::HitFinder& plain);
 
@@ -41,7 +41,7 @@ HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers
 /// rounding decides.
 bool is_right(const CompiledScene& scene, const Ray& ray, const Hit& hit);
 
-/// The same for whether there is any hit.
+/// Whether `occluded` is right within rounding.
 bool is_right(const CompiledScene& scene, const Ray& ray, bool occluded);
 
 }  // namespace sundog

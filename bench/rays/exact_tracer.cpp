@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "bench/rays/exact_solids.h"
+#include "bench/plain/solids.h"
 
 namespace sundog {
 namespace {
@@ -77,7 +77,7 @@ std::vector<HostHit> cross_instance(const CompiledScene& scene, u32 index, const
     });
   } else {
     for (const auto& [t, ng] :
-         solid_crossings(instance.shape, instance.parameters, ray.origin, ray.direction))
+         plain::solid_crossings(instance.shape, instance.parameters, ray.origin, ray.direction))
       if (t > ray.t_min && t < ray.t_max) {
         HostHit hit;
         hit.t = t;

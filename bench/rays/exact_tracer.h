@@ -24,7 +24,7 @@ struct HostHit {
 /// Nearest hit with t in (t_min, t_max), through the two-level BVH.
 std::optional<HostHit> trace_host(const CompiledScene& scene, const HostRay& ray);
 
-/// The same without the BVH: every instance, every block of its mesh.
+/// trace_host() without the BVH: tries every instance and every block of its mesh.
 std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostRay& ray);
 
 /// Every crossing of one instance's surface, nearest first, t in (t_min, t_max).

@@ -9,7 +9,8 @@
 
 namespace sundog {
 
-/// What to find out of a ray, and how. `coherent`: the rays of a work-item (16 in a row) run close together.
+/// The kind of answer, and how rays are traced. `coherent`: 16 rays in a row, of one work-item, run close
+/// together.
 struct RayQuery {
   bool any = false;  // only whether there is a hit
   bool coherent = false;

@@ -26,14 +26,14 @@ struct SelfCheck {
 /// Never throws; a driver that crashes takes the process along, so `on_stage` hears what is tried next.
 SelfCheck check_device(const DeviceInfo& info, const std::function<void(const std::string&)>& on_stage);
 
-/// What there is beside a device or a driver: a sound one, so that this one can be left out; some that nobody
-/// asked to look at; none that works.
+/// The devices or drivers beside a failed one. sound: one works, so the failed one can be left out. unasked:
+/// some were not checked. none: no other works.
 enum class Others { sound, unasked, none };
 
-/// What a person can do about a problem of a driver, by what it says; empty where the problem names its mend.
+/// A remedy for a driver's problem, chosen by the problem's text; empty where that text names one.
 std::string advice(const std::string& problem, Others others);
 
-/// The same of a driver whose devices were listed alone.
+/// A remedy for a driver that failed while its devices were listed.
 std::string driver_advice(const std::string& problem, Others others);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// What a report must say about the machine for its figures to mean anything.
+// Facts about the machine and its load that a report's figures depend on.
 #pragma once
 #include <string>
 #include <utility>

@@ -1,4 +1,4 @@
-// What a benchmark found, as plain values. A benchmark fills a Report; the writers below turn any Report into
+// A benchmark's results as plain values. A benchmark fills a Report; the writers below turn any Report into
 // text, JSON, CSV or a page, and know no benchmark.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -49,7 +49,7 @@ struct Field {
 /// Appends a row; a name that the table has no column for gets one.
 void add_row(Table& table, const std::vector<Field>& fields);
 
-/// What each bench tells of a way: time, runs, cores, load, problem.
+/// The columns that every bench has for a way: time, runs, cores, load, problem.
 std::vector<Field> run_fields(const MeasuredWay& way);
 
 struct CurvePoint {

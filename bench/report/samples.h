@@ -50,9 +50,9 @@ struct MeasuredWay {
   bool noisy = false;  // too few quiet runs could be had: the least disturbed of the others count too
 
   bool is_good() const { return problem.empty() && !seconds().runs.empty(); }
-  /// Of the runs that count.
+  /// Seconds of the runs that count.
   Spread seconds() const;
-  /// Of figures that were noted at each run, the first one too, those of the runs that count.
+  /// Those of `figures`, one for each run and the first for the warm-up, whose runs count.
   template <class T>
   std::vector<T> counted(const std::vector<T>& figures) const {
     std::vector<T> all;

@@ -29,7 +29,7 @@ std::vector<float> made_values(std::size_t count) {
   return values;
 }
 
-/// What read_values() sums up, work-item by work-item, for one round through the values.
+/// The sums that read_values() must return for one round through the values, by work-item.
 std::vector<i32> sums_of(const std::vector<float>& values, unsigned width) {
   std::vector<i32> sums(values.size() / width / reads, 0);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -39,7 +39,7 @@ std::vector<i32> sums_of(const std::vector<float>& values, unsigned width) {
   return sums;
 }
 
-/// What multiply_and_add() writes for an item.
+/// The value that multiply_and_add() must write for an item.
 i32 chain_sum(std::size_t item, unsigned width, unsigned chains, std::size_t rounds) {
   i32 sum = 0;
   for (unsigned c = 0; c < chains; ++c)
@@ -70,7 +70,7 @@ std::vector<std::string> types_of(const DeviceInfo& info) {
 
 }  // namespace
 
-/// What all kernels share.
+/// The open device, and inputs of all kernels.
 struct DevicePeaks::Opened {
   Device device;
   std::vector<float> values;
@@ -227,7 +227,7 @@ void DevicePeaks::measure(const MeasureOptions& options) {
   add_launches();
   for (std::size_t i = 0; i < subjects_.size() && !options.is_stopped(); ++i) {
     if (options.on_step) options.on_step(subjects_[i].name + ", building", 0);
-    // What fails here fails again at the first run, and is a row then.
+    // A failure here repeats at the first run, which reports it as a row.
     std::vector<Subject> one{subjects_[i]};
     if (!prepared(one, subjects_[i].prepare)) continue;
     subjects_[i].prepare = {};

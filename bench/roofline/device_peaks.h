@@ -1,4 +1,4 @@
-// What a device does at most: bytes and operations a second, and the time that a launch takes.
+// A device's measured limits: bytes and operations a second, and the time of a launch.
 #pragma once
 #include <functional>
 #include <memory>

@@ -4,9 +4,9 @@
 
 namespace sundog {
 
-/// Of a ray, in the mean. Each ray walks alone through the scene's tree, near children first (bench/plain),
-/// and what it meets is counted as the kernels have it: an fma as two operations; comparisons, minima, whole
-/// numbers and what only follows a hit are not counted, nor are the equations of solids.
+/// Mean work of a ray. Each ray walks alone through the scene's tree, near children first (bench/plain).
+/// Nodes and triangles that it visits count as the kernels have them, with an fma as two operations;
+/// comparisons, minima, integers, work after a hit and the equations of solids do not count.
 struct RayWork {
   double nodes = 0, blocks = 0, instances = 0;  // that it comes to
   double operations = 0;

@@ -38,7 +38,7 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return all;
 }
 
-/// What is called of NVIDIA's management library (its API reference, "Device Queries").
+/// Functions of NVIDIA's management library (its API reference, "Device Queries").
 struct Nvml {
   using Handle = void*;
   int (*start)() = nullptr;

@@ -13,8 +13,8 @@ namespace sundog {
 /// when it is there.
 class EnergyMeter {
  public:
-  /// Of all processors together if one of the devices is one, and of each GPU. `system`: "/sys", or a copy of
-  /// its files.
+  /// Measures each GPU, and all processors together if a device is one. `system`: "/sys", or a copy of its
+  /// files.
   explicit EnergyMeter(std::span<const DeviceInfo> devices, const std::string& system = "/sys");
 
   /// Since it was made; below 0: nothing counts them for one of the devices.

@@ -1,4 +1,4 @@
-// What the machine's processors do while something is timed, for this process and for others.
+// Measures the processor time of this process and of others during a timed run.
 #pragma once
 #include <deque>
 #include <functional>

@@ -35,16 +35,16 @@ struct MeasureOptions {
   bool is_stopped() const { return stop && stop->load(); }
 };
 
-/// What slowed a run of the way: "busy", other programs or a lack of cores, or "slow clock"; "": nothing.
-/// Cores and the clock count where others of its runs had more and took less time.
+/// The cause that slowed a run: "busy" (other programs, or too few cores), "slow clock", or "" for none.
+/// Cores and the clock count where other runs of the way had more and took less time.
 std::string disturbance(const MeasuredWay& way, const Run& run, double limit);
 
 /// Does what comes before all subjects; where a device fails in it, that is their problem. Whether it did
 /// not.
 bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work);
 
-/// What two runs in a row agree on, so that one spoiled run is no reference for others. Throws DeviceError
-/// where none of the first few do.
+/// A result that two runs in a row agree on, so that one spoiled run is no reference. Throws DeviceError if
+/// no two of the first few runs agree.
 template <class T, class Make, class Same>
 T confirmed(const Make& make, const Same& same) {
   T last = make();

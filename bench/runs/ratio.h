@@ -12,23 +12,22 @@ struct Ratio {
   bool is_enough = true;  // runs for an interval of 95 %, and so for a verdict
 
   bool is_known() const { return value > 0; }
-  /// Of the other way: "faster", "slower" or "not told apart".
+  /// Whether the other way is "faster", "slower" or "not told apart".
   const char* verdict() const;
 };
 
-/// Of ways that took turns: runs with the same place in the order make a pair, a run that was left out takes
-/// its pair along. The interval is that of the median of the pairs' ratios; six pairs are the fewest for a
-/// verdict.
+/// The ratio of ways that took turns. Runs at the same place in the order make a pair; a run that was left
+/// out removes its pair. The interval is that of the median of the pairs' ratios; a verdict needs six pairs.
 Ratio paired_ratio(const std::vector<Run>& base, const std::vector<Run>& other);
 
 /// Runs of a call of the program.
 using Calls = std::vector<std::vector<double>>;
 
-/// Of ways that were measured in calls of their own. Calls differ by more than the runs within one do (by
-/// where the memory lies, and the machine's state), so six or more of each are taken as a sample: the
-/// interval is by bootstrap of the medians of their medians (Efron and Tibshirani, "An Introduction to the
-/// Bootstrap", 1993, chapter 13). With fewer it is that of the ranges of all runs, each widened by its width
-/// at both ends; six runs are the fewest for a verdict.
+/// The ratio of ways that were measured in separate calls. Calls differ by more than the runs within one (by
+/// memory layout and the machine's state), so six or more of each are taken as a sample: the interval is by
+/// bootstrap of the medians of their medians (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993,
+/// chapter 13). With fewer it is that of the ranges of all runs, each widened by its width at both ends; a
+/// verdict needs six runs.
 Ratio ratio_of_calls(const Calls& base, const Calls& other);
 
 }  // namespace sundog

@@ -104,7 +104,7 @@ class Candidate {
     double& most = frames_->times().cached ? costs.open : costs.compile;
     most = std::max(most, start_seconds_);
   }
-  /// What each of its frames must be.
+  /// Sets the film that each frame must equal.
   void expect(const Film& film) { expected_ = &film; }
   /// Seconds: the frame's, or of the kernel that it is about, which takes too little to be seen in the frame.
   /// Throws DeviceError for another picture than is expected.

@@ -12,14 +12,19 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An option that mends an error; programs add their own name for it.
+enum class Remedy { none, outside_files, native_code, part };
+
 /// The scene or a file it names is bad (exit 3). `place` is a JSON pointer, "line 12", or "byte 80".
 struct SceneError : std::runtime_error {
-  SceneError(std::string file_, std::string place_, std::string what_)
+  SceneError(std::string file_, std::string place_, std::string what_, Remedy remedy_ = Remedy::none)
       : std::runtime_error(file_ + (place_.empty() ? "" : ": " + place_) + ": " + what_),
         file(std::move(file_)),
         place(std::move(place_)),
-        reason(std::move(what_)) {}
+        reason(std::move(what_)),
+        remedy(remedy_) {}
   std::string file, place, reason;
+  Remedy remedy;
 };
 
 /// No such device, or the device failed (exit 4). `status` is the OpenCL error code, 0 when there is none.

@@ -26,7 +26,7 @@ void parse(const std::string& text, std::deque<Fault>& faults) {
   static const std::regex form(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9})(\+)?)?)");
   std::smatch match;
   if (!std::regex_match(text, match, form))
-    throw UsageError("faults on demand: wanted KIND[=VALUE][>SIZE]@WHERE[#N], found " + text);
+    throw UsageError("SUNDOG_FAULTS: wanted KIND[=VALUE][>SIZE]@WHERE[#N], found " + text);
   Fault& fault = faults.emplace_back();
   fault.kind = match[1];
   fault.where = match[6];

@@ -21,7 +21,7 @@ using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 /// The space of an EXR's colours.
 enum class ExrSpace { srgb, acescg };
 
-/// What a file is to hold besides its pixels, and how it holds them. Formats ignore what they do not know.
+/// How a file stores its pixels, and its metadata. Formats ignore options that they cannot store.
 struct FileOptions {
   ExrColor color = ExrColor::half;
   ExrSpace space = ExrSpace::srgb;
@@ -64,7 +64,7 @@ bool keeps_texts(const std::filesystem::path& path);
 /// Throws UsageError for an extension that `write_image` refuses. Call it before a long render.
 void check_image_path(const std::filesystem::path& path, bool with_aovs);
 
-/// The same for more pixels than the format of that file can hold.
+/// Throws UsageError for a size that the format of that file cannot hold.
 void check_image_size(const std::filesystem::path& path, int width, int height);
 
 /// Reads an image as linear RGBA floats (8-bit and 16-bit PNG/JPEG are decoded from sRGB, unless a PNG states

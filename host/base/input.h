@@ -28,7 +28,7 @@ std::string read_input(const std::filesystem::path& path, std::uintmax_t most = 
 bool leads_outside(const std::filesystem::path& file, const std::filesystem::path& named);
 
 /// The remedy, as the end of a message.
-inline constexpr const char* outside_hint = "allow files outside of it if it is to be read all the same";
+inline constexpr const char* outside_hint = "allow outside files if it is to be read all the same";
 
 /// Identifies a file on a disk, whatever its name or links.
 struct FileIdentity {

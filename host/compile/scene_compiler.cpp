@@ -183,7 +183,7 @@ CompiledScene begin(const SceneDescription& scene, const dvec3& origin) {
   return out;
 }
 
-/// What follows from all parts: lights of meshes, the tree over lights, photons.
+/// Adds the tables that need all parts: lights of meshes, the tree over lights, photons.
 void finish(const SceneDescription& scene, const Lights& lights, const Instances& instances,
             CompiledScene& out) {
   MeshLights with_meshes = add_mesh_lights(scene, out.origin, {lights.lights, out.instances});

@@ -70,7 +70,7 @@ struct Kernel {
   }
 };
 
-/// What a driver reports about a kernel on its device; 0: unknown.
+/// A driver's figures for a kernel on its device; 0: unknown.
 struct KernelLimits {
   std::size_t work_group = 0;  // maximum group size: the device's, or less if registers limit it
   std::size_t preferred_multiple = 0;

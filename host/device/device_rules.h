@@ -1,4 +1,4 @@
-// What a device's programs get beyond those of other devices, by what it reports: one table.
+// Compiler options and definitions by device, chosen by the names that it reports: one table.
 #pragma once
 #include <span>
 #include <string_view>
@@ -23,8 +23,7 @@ std::span<const DeviceRule> device_rules();
 
 const DeviceRule& rule_of(const DeviceInfo& device);
 
-/// What a GPU of that row reports, as far as its programs depend on it. Throws UsageError with the names that
-/// there are.
+/// A GPU that matches that row, as far as programs depend on it. Throws UsageError with the known names.
 DeviceInfo typical_gpu(std::string_view name);
 
 }  // namespace sundog

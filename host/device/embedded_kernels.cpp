@@ -43,7 +43,7 @@ std::string embedded_kernel(const std::string& path, const std::filesystem::path
     try {
       return read_file(folder / path);
     } catch (const IoError& error) {
-      throw MissingKernelFile(fmt::format("{} (the folder of kernel files)", error.what()), "");
+      throw MissingKernelFile(fmt::format("{} (SUNDOG_KERNEL_DIR)", error.what()), "");
     }
   }
   const auto files = embedded_kernels();

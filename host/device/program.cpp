@@ -42,9 +42,8 @@ std::filesystem::path made_folder(const char* variable, const std::string& folde
 void dump_source(const std::string& folder, const KernelText& text) {
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(text.entry).stem().string(), source = text.expanded();
-  write_file(
-      made_folder("the folder of kernel texts", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
-      source);
+  write_file(made_folder("SUNDOG_DUMP_KERNELS", folder) / fmt::format("{}-{:.8}.cl", stem, hash128(source)),
+             source);
 }
 
 /// Writes a program's compiler log and options to HostEnvironment::build_log. A program built with several
@@ -55,9 +54,9 @@ void keep_log(const ProgramRecord& record, const std::string& options, const std
   if (folder.empty()) return;
   const std::string stem = std::filesystem::path(record.entry()).stem().string();
   const DeviceInfo& info = record.device;
-  write_file(made_folder("the folder of build logs", folder) /
-                 fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform, info.device,
-                             hash128(options + "\n" + record.key)),
+  write_file(made_folder("SUNDOG_BUILD_LOG", folder) / fmt::format("{}-{}.{}-{:.8}.txt", stem, info.platform,
+                                                                   info.device,
+                                                                   hash128(options + "\n" + record.key)),
              fmt::format("program  {}\ndevice   {}\ndriver   {}, {}\noptions  {}\nstatus   {}\n\n"
                          "== log ==\n{}\n\n== source ==\n{}",
                          record.entry(), info.label(), info.driver, info.version, options,
@@ -177,7 +176,7 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   keep_log(record, options, report.log, status);
   if (status == CL_SUCCESS) return;
   if (options_are_bad(record, context, device))
-    throw BuildError(fmt::format("the build options '{}': {} builds nothing with them: {} ({})",
+    throw BuildError(fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})",
                                  value_of(record.device.environment).build_options, record.device.label(),
                                  cl_status_name(status), first_error(report.log)),
                      report.log);

@@ -29,7 +29,7 @@ struct Made {
   }
 };
 
-/// Text whose lines are told where they come from.
+/// Collects lines, with #line directives if wanted.
 class Text {
  public:
   explicit Text(bool lines) : lines_(lines) {}

@@ -17,7 +17,7 @@ bool is_plain(const std::string& path);
 /// directives name the plain file. Throws BuildError "file:line:column: what".
 std::string in_lanes(const std::string& path, const ReadFile& read, bool lines);
 
-/// Of the sources of this folder: equal revisions make the same text of the same files.
+/// The revision of this folder's sources: equal revisions generate equal text from equal files.
 const char* revision();
 
 /// Reports what varies in each generated function, why, and the function's cost.

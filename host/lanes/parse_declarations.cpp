@@ -1,4 +1,4 @@
-// What stands outside functions.
+// Parses declarations outside functions: structures, constants, function heads.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -34,7 +34,7 @@ ExpressionPtr Parser::made(Kind kind, Type type, const Place& where) const {
   return e;
 }
 
-/// Of a vector's parts.
+/// The type of a vector's components.
 const Type& Parser::part_type(const Type& vector) const {
   return types_.at(vector.part == Type::Kind::real      ? "float"
                    : vector.part == Type::Kind::integer ? "int"

@@ -126,7 +126,7 @@ bool Specialisation::varies(const Expression& e, const Frames& frames) {
   }
 }
 
-/// What stands right of &&, || and ? is computed for the lanes that ask for it.
+/// Whether the operands vary. Operands right of a varying &&, || or ? are inside a divergent branch.
 bool Specialisation::parts_vary(const Expression& e, const Frames& frames) {
   const bool first = varies(*e.of[0], frames);
   bool v = first || is_by_hand(e.type);
@@ -192,7 +192,7 @@ bool Specialisation::call_varies(const Expression& e, const Frames& frames) {
       fail(e.of[i]->place,
            fmt::format("{}: '{}' is uniform, but is given what varies", f.name, parameters[i]->name));
     if (!is_own_pointer(parameters[i]) || parameters[i]->type.constant) continue;
-    // What is written there varies with what is given, and where lanes part.
+    // The callee's output varies if an argument varies or the lanes have diverged.
     if (any_of(vary) || parted) {
       make_vary(root_of(*e.of[i]).variable, e.place, fmt::format("{} writes to it", f.name));
       vary[i] = true;

@@ -156,7 +156,7 @@ std::string Writer::simple(const Expression& e) {
   return name;
 }
 
-/// What `write` writes, in the lanes of `mask` alone.
+/// Calls `write` with the mask narrowed to `mask`; returns its text.
 std::string Writer::under(const std::string& mask, const Write& write) {
   const std::string outer = mask_;
   mask_ = fresh("m");
@@ -328,7 +328,7 @@ std::string Writer::varying_vector_binary(const Expression& e) {
 
 std::string Writer::varying_binary(const Expression& e) {
   const Expression &a = *e.of[0], &b = *e.of[1];
-  // What divides, or is shifted by, lanes that are off must not trap.
+  // Lanes that are off must not trap, so they divide by 1.
   if ((e.text == "/" || e.text == "%") && e.type.is_whole() && varies(b)) {
     const std::string by = lanes(b), one = fmt::format("({})(1)", type_text(e.type, true));
     const std::string mask = s_.masked ? mask_ : "ALL_LANES";

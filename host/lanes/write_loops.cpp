@@ -39,7 +39,7 @@ void Writer::loop(const Statement& s) {
   if (parts || rounds) loops_.push_back(entry);
   mask_ = entry.lanes;
 
-  // What the condition needs first, and the condition; what the step does.
+  // Statements that compute the condition, the condition itself, and the step.
   std::vector<std::string> tests;
   const std::size_t begin = out_.size();
   if (asked && !asks_lanes) tests.push_back(plain(*asked));

@@ -54,7 +54,7 @@ void decode(ImageDescription& image) {
   image.encoded.shrink_to_fit();
 }
 
-/// What a model names and cannot be decoded becomes one white pixel.
+/// Decodes the image. An image of a model that cannot be decoded becomes one white pixel.
 void decode_or_white(ImageDescription& image, std::string& failure, FrameCache* cache) {
   try {
     if (cache && !image.encoded.empty())

@@ -26,7 +26,7 @@ void apply_overrides(json& document, const fs::path& file, const std::vector<std
   for (const std::string& setting : overrides) try {
       apply_override(document, setting, file);
     } catch (const SceneError& error) {
-      throw SettingError(error.file, error.place, error.reason);
+      throw SettingError(error.file, error.place, error.reason, error.remedy);
     }
 }
 
@@ -87,7 +87,7 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
   return source;
 }
 
-/// What reading a file's document takes.
+/// Inputs and logs of reading a file's document.
 struct Reading {
   const fs::path& file;
   const std::vector<std::string>& overrides;
@@ -120,11 +120,13 @@ auto explained(const json& document, const Reading& reading, const Read& read) {
     if (const auto frame = reading.options.frame; frame && !error.place.starts_with("/animate"))
       if (const std::string track = track_of(document, error.place); !track.empty())
         throw SceneError(error.file, error.place,
-                         fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track));
+                         fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track),
+                         error.remedy);
     for (const std::string& setting : reading.overrides)
       if (overlap(pointer_of(document, setting), error.place))
         throw SettingError(error.file, error.place,
-                           fmt::format("{} (changed by the setting {})", error.reason, setting));
+                           fmt::format("{} (changed by the setting {})", error.reason, setting),
+                           error.remedy);
     throw;
   }
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "shapes.h"
@@ -75,28 +74,7 @@ std::string fading(const LightDescription& light, dvec3& color) {
   return fmt::format(" fade_distance {} fade_power 2", text(std::sqrt(light.falloff.x / light.falloff.z)));
 }
 
-// A rectangle is a spot light with the cosine's fall-off, far smaller than its distance, with the shadows of
-// its extent.
-std::string area_light(const LightDescription& light, const AreaGrid& grid) {
-  if (light.type != LightType::rectangle || grid.side < 2)
-    throw Unsupported("a light with an extent: POV-Ray's shines without the cosine of its surface");
-  constexpr double near = 0.01;  // from here on light falls off by the square
-  const dvec3 along = glm::normalize(light.direction),
-              color = light.color * light.intensity *
-                      (light.size.x * light.size.y / (2 * std::numbers::pi * near * near));
-  dvec3 u = glm::cross(light.up, along);
-  u = glm::normalize(glm::length(u) > 1e-6 ? u : glm::cross(dvec3(0, 0, 1), along));
-  const dvec3 v = glm::cross(along, u);
-  return fmt::format(
-      "light_source {{ {} color {} fade_distance {} fade_power 2 spotlight point_at {} radius 89 falloff "
-      "89.9 "
-      "tightness 1 area_light {} {} {} {}{}{} }}\n",
-      text(light.position), rgb(color), text(near), text(light.position + along), text(u * light.size.x),
-      text(v * light.size.y), grid.side, grid.side,
-      grid.adaptive < 0 ? "" : fmt::format(" adaptive {}", grid.adaptive), grid.jitter ? " jitter" : "");
-}
-
-std::string light_source(const LightDescription& light, const AreaGrid& grid) {
+std::string light_source(const LightDescription& light) {
   dvec3 color = light.color * light.intensity;
   const std::string fade = fading(light, color);
   const dvec3 along = glm::normalize(light.direction);
@@ -114,19 +92,19 @@ std::string light_source(const LightDescription& light, const AreaGrid& grid) {
     case LightType::rectangle:
     case LightType::disk:
     case LightType::sphere:
-      return area_light(light, grid);
+      throw Unsupported("a light with an extent: POV-Ray's shines without the cosine of its surface");
     case LightType::ambient:
       break;
   }
   return "";
 }
 
-std::string lights(const SceneDescription& scene, const AreaGrid& grid) {
+std::string lights(const SceneDescription& scene) {
   dvec3 ambient{0};
   std::string out;
   for (const LightDescription& light : scene.lights) {
     if (light.type == LightType::ambient) ambient += light.color * light.intensity;
-    out += light_source(light, grid);
+    out += light_source(light);
   }
   return fmt::format(
              "global_settings {{ assumed_gamma 1.0 max_trace_level {} adc_bailout {} ambient_light {} }}\n",
@@ -271,8 +249,8 @@ std::string write_object(const SceneDescription& scene, const Object& object, Ab
 
 }  // namespace
 
-std::string from_scene(const SceneDescription& scene, Absorption absorption, const AreaGrid& grid) {
-  std::string out = "#version 3.7;\n" + lights(scene, grid) + camera(scene) + background(scene);
+std::string from_scene(const SceneDescription& scene, Absorption absorption) {
+  std::string out = "#version 3.7;\n" + lights(scene) + camera(scene) + background(scene);
   std::set<int> meshes;
   for (const Object& object : scene.objects)
     if (const auto* mesh = std::get_if<MeshShape>(&object.shape))

@@ -12,16 +12,7 @@ namespace sundog::povray {
 /// `fade_power`, which is cheaper but forgets a stretch that ends at another solid's surface.
 enum class Absorption { media, fade };
 
-/// How POV-Ray sees a light with an extent: points in a grid, of which it takes more where those at the
-/// corners of its cells differ (`adaptive` halvings come first). Its light falls off by the cosine at the
-/// middle of the light, and a surface is lit from there alone, so only shadows are those of an extent.
-struct AreaGrid {
-  int side = 0;       // points a side; 0: lights with an extent are Unsupported
-  int adaptive = -1;  // below 0: all points
-  bool jitter = false;
-};
-
-/// What the scene uses that POV-Ray cannot express alike.
+/// Thrown for a feature of the scene that POV-Ray cannot express.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -31,6 +22,6 @@ struct Unsupported : std::runtime_error {
 /// medium entered last, and its second interface bends nothing. Meshes are not cut (slow there); where they
 /// overlap, too, the one entered last counts. A material with "shadow": "opaque" becomes one that casts no
 /// shadow and an invisible double that does. Throws Unsupported.
-std::string from_scene(const SceneDescription& scene, Absorption absorption, const AreaGrid& grid = {});
+std::string from_scene(const SceneDescription& scene, Absorption absorption);
 
 }  // namespace sundog::povray

@@ -36,13 +36,13 @@ std::string installed_version() {
 }
 
 Run run(const std::string& scene, int width, int height, int threads, const std::filesystem::path& folder,
-        const std::string& name, const std::string& sampling) {
+        const std::string& name) {
   std::filesystem::create_directories(folder);
   const auto file = [&](const char* extension) { return (folder / (name + extension)).string(); };
   write_file(file(".pov"), scene);
   const std::string command =
-      fmt::format("povray '+I{}' '+O{}' +W{} +H{} +WT{} -D {} +FN16 File_Gamma=1.0 > '{}' 2>&1", file(".pov"),
-                  file(".png"), width, height, threads, sampling, file(".log"));
+      fmt::format("povray '+I{}' '+O{}' +W{} +H{} +WT{} -D -A +FN16 File_Gamma=1.0 > '{}' 2>&1", file(".pov"),
+                  file(".png"), width, height, threads, file(".log"));
   const int status = std::system(command.c_str());
   const std::string log = read_file(file(".log"));
   if (status != 0)

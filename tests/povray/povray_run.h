@@ -19,12 +19,9 @@ struct Run {
   std::uint64_t rays = 0, shadow_tests = 0;
 };
 
-/// POV-Ray's options for one sample a pixel, at its centre.
-inline constexpr const char* at_centres = "-A";
-
-/// Renders with `sampling`, options of POV-Ray. Files go to `folder` (made if missing) as `name`.pov,
+/// Renders one sample a pixel, at its centre. Files go to `folder` (made if missing) as `name`.pov,
 /// .png and .log. Throws std::runtime_error with the end of POV-Ray's log when it fails.
 Run run(const std::string& scene, int width, int height, int threads, const std::filesystem::path& folder,
-        const std::string& name, const std::string& sampling = at_centres);
+        const std::string& name);
 
 }  // namespace sundog::povray

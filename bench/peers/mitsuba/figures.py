@@ -43,13 +43,6 @@ def region_errors(picture):
     return np.sqrt(region_means(picture.variance) / pixels)
 
 
-def errors_by_parts(picture):
-    """How much greater the regions' errors are by how the means of whole parts differ, root mean square: 1 where pixels are independent."""
-    parts = np.array([region_means(part) for part in picture.parts])
-    variance = parts.var(0, ddof=1) / len(parts)
-    return float(np.sqrt((variance / region_errors(picture)**2)[1:].mean()))
-
-
 def beyond(z):
     """The chance that a normal number is farther from 0 than z."""
     return math.erfc(z / math.sqrt(2))

@@ -19,7 +19,7 @@ namespace {
 using PeerRay = TinyBvhRay;
 using PeerNode = tinybvh_kernels::BVHNode;
 
-// What its files expect to stand before them.
+// Declarations that tinybvh's kernel files need before them.
 constexpr const char* prelude = R"(
 struct BVHNode { float4 lmin, lmax, rmin, rmax; };
 struct Ray { float4 O, D, rD, hit; };

@@ -45,8 +45,8 @@ struct Contestant {
   std::vector<double> mrays;
 };
 
-/// Those of its kernels that the checkout has and the driver builds; the others are reported on stderr. They
-/// trace what `rays` holds when they are run, the first `count` of which count.
+/// The kernels that the checkout has and the driver builds; the others are reported on stderr. They trace the
+/// first `count` of `rays` as these are at the time of a run.
 std::vector<Contestant> tinybvh_kernels_of(const TinyBvhOptions& options, Device& device,
                                            const TinyBvhTables& tables, Buffer<TinyBvhRay>& rays,
                                            const std::size_t& count);

@@ -83,7 +83,7 @@ json listed_devices(const std::vector<std::string>& variables, double seconds, s
   return json::array();
 }
 
-/// What may be advised depends on whether something else works. `unasked`: there are more than these rows.
+/// Adds "advice" to each row; it depends on whether another row works. `unasked`: the caller left rows out.
 void add_advice(json& rows, bool unasked, const auto& advice_on, const auto& is_sound) {
   const Others others = std::ranges::any_of(rows, is_sound) ? Others::sound
                         : unasked                           ? Others::unasked
@@ -157,7 +157,7 @@ json check_one(const std::string& index, double seconds) {
   return check_json(failed);
 }
 
-/// What a SPEC may ask of a row.
+/// The row as a DeviceInfo, as far as pick_devices() reads one.
 DeviceInfo as_device(const json& row) {
   DeviceInfo device;
   device.platform = row.at("platform");

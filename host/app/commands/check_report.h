@@ -1,4 +1,4 @@
-// What `sundog check` prints.
+// The text report of `sundog check`.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

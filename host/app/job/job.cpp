@@ -57,7 +57,8 @@ std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::ve
   return chosen;
 }
 
-/// What each rank has of what the command means; ranks without are warned of while another has some.
+/// Collects the devices that the command chooses on each rank. Warns of ranks without any if another has
+/// some.
 class Choice {
  public:
   explicit Choice(Mailbox& job) : job_(job), ranks_(static_cast<std::size_t>(job.size())) {}

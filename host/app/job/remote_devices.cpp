@@ -87,7 +87,7 @@ std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
   return std::make_shared<const CompiledScene>(compile(*open_frames(settings)->read(frame)));
 }
 
-/// The same of a scene of which frames have been rendered.
+/// Compiles a frame of an animation; keeps the scene's files and tables for the next frame.
 std::shared_ptr<const CompiledScene> load_frame(const json& settings, const std::string& of_all,
                                                 KeptOpen& kept) {
   if (kept.frames_settings != of_all) kept.frames = open_frames(settings);
@@ -136,7 +136,7 @@ class BorrowedWorker : public DeviceWorker {
   SceneWorker& worker_;
 };
 
-/// What a worker refers to while it makes a frame. The lock ends first.
+/// Keeps alive all that a worker refers to during a frame. The lock is last, so it is released first.
 struct ServedFrame {
   RenderOptions options;
   std::shared_ptr<const CompiledScene> scene;

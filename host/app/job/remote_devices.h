@@ -20,7 +20,7 @@ namespace sundog {
 /// The scene of a frame at one of the times while its shutter is open.
 std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const Moment& moment);
 
-/// What a process needs to render a part of the command's frame on `device` (Message::open).
+/// The settings by which another process renders a part of the command's frame on `device` (Message::open).
 nlohmann::json remote_settings(const RenderCommand& command, const DeviceInfo& device);
 
 /// A device that stays open from frame to frame, used by one thread at a time.
@@ -29,7 +29,7 @@ struct KeptDevice {
   std::shared_ptr<SceneWorker> worker;  // null: nobody has asked for it yet
 };
 
-/// What a process that serves several devices, or several frames, keeps from one to the next. Any thread.
+/// Scenes and devices that a serving process keeps open between frames. Used by any thread.
 struct KeptOpen {
   std::mutex mutex;                            // for what follows
   std::string scene_settings;                  // that the scene was loaded by

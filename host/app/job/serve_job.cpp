@@ -1,5 +1,5 @@
-// What the ranks above 0 do: each channel that rank 0 opens is served by a thread, in which a device works,
-// or which passes everything on to a worker process (--isolate).
+// Serves rank 0 of an MPI job from another rank: one thread for each channel that rank 0 opens. The thread
+// renders on a device, or passes messages on to a worker process (--isolate).
 #include <unistd.h>
 
 #include <atomic>

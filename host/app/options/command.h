@@ -9,7 +9,7 @@ namespace sundog {
 
 class Arguments;
 
-/// What a command line asks for.
+/// A command line, ready to run.
 struct Command {
   std::function<int()> run;  // returns the exit status; errors are exceptions
   /// Whether the process's first thread runs it. Else it has a thread of its own: drivers that work in the

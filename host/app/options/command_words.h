@@ -27,7 +27,7 @@ const CommandWords& check_words(const CommandWords& root, int argc, const char* 
 /// "(see sundog bench rays --help)"
 std::string see_help(const CommandWords& command);
 
-/// Of those that are not hidden.
+/// Names of the commands that help lists.
 std::vector<std::string> command_names(const CommandWords& parent);
 
 }  // namespace sundog

@@ -38,12 +38,12 @@ double parse_amount(const char* option, const std::string& text, double most = 1
 /// "WxH", each from 1 to the greatest edge.
 std::pair<int, int> parse_size(const std::string& text);
 
-/// The same as the overrides of a scene that make its image so.
+/// parse_size() as overrides of a scene's image size.
 std::vector<std::string> parse_image_size(const std::string& text);
 
 /// The options of a picture's colours as overrides of a scene.
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture);
-/// The same for a picture without a scene.
+/// The options of a picture's colours, for a picture without a scene.
 ToneMap parse_tone_map(const PictureOptions& picture);
 
 /// Refuses what is not of the form JSON_POINTER=VALUE.

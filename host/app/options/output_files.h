@@ -1,4 +1,4 @@
-// What a command would write over by mistake.
+// Checks of output files before a command runs: their formats, and that no output overwrites an input.
 #pragma once
 #include <string>
 #include <vector>
@@ -33,10 +33,10 @@ void check_picture(const PictureOptions& picture, bool with_aovs);
 /// name or by a link. Empty names are none; "-" is the standard output, or input.
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-/// The same for what was read or named on the way: a scene's textures and models, and what those name.
+/// Throws UsageError where an output is a file that was read meanwhile: a texture, a model, a file of theirs.
 void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
 
-/// What `load` returns, unless it has read one of the outputs.
+/// Returns load(). Throws UsageError if it read one of the outputs.
 template <class Load>
 auto load_beside(const std::vector<std::string>& outputs, const Load& load) {
   const ReadLog log;

@@ -1,4 +1,4 @@
-// What this program hands down to the layers below (base/environment.h), with its own way to start itself.
+// Makes the HostEnvironment (base/environment.h) that this program passes to the layers below.
 #pragma once
 #include <memory>
 #include <vector>

@@ -25,7 +25,22 @@ namespace {
 void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  tell(fmt::format("sundog: {}\n", with_option_names(std::move(message))));
+  tell(fmt::format("sundog: {}\n", message));
+}
+
+/// The end of a message: the option by which the user mends the error.
+std::string option_for(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::none:
+      break;
+    case Remedy::outside_files:
+      return " (--allow-outside-files)";
+    case Remedy::native_code:
+      return " (--allow-native-code)";
+    case Remedy::part:
+      return " (--tiles)";
+  }
+  return "";
 }
 
 /// The end of a message about memory, where the process may not have all of the machine's.
@@ -47,7 +62,7 @@ std::string thread_limit(std::string_view message) {
 }  // namespace
 
 int exit_status_of(const std::function<int()>& command, bool speaks) {
-  const auto fail = [&](ExitStatus status, const char* message) {
+  const auto fail = [&](ExitStatus status, const std::string& message) {
     if (speaks) write_message(message);
     return status;
   };
@@ -56,9 +71,9 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
   } catch (const UsageError& error) {
     return fail(exit_usage, error.what());
   } catch (const SettingError& error) {
-    return fail(exit_usage, error.what());
+    return fail(exit_usage, error.what() + option_for(error.remedy));
   } catch (const SceneError& error) {
-    return fail(exit_scene, error.what());
+    return fail(exit_scene, error.what() + option_for(error.remedy));
   } catch (const DeviceError& error) {
     return fail(exit_device, error.what());
   } catch (const BuildError& error) {
@@ -66,9 +81,9 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
     if (speaks && !error.log.empty()) tell(error.log + (error.log.ends_with('\n') ? "" : "\n"));
     return exit_build;
   } catch (const std::bad_alloc&) {
-    return fail(exit_failure, ("out of memory" + memory_limit()).c_str());
+    return fail(exit_failure, "out of memory" + memory_limit());
   } catch (const std::exception& error) {
-    return fail(exit_failure, (error.what() + thread_limit(error.what())).c_str());
+    return fail(exit_failure, error.what() + thread_limit(error.what()));
   }
 }
 

@@ -1,4 +1,4 @@
-// What goes wrong becomes one line on stderr and an exit status: the one place that catches everything.
+// Turns exceptions into one line on stderr and an exit status. Nothing else catches all of them.
 #pragma once
 #include <functional>
 

@@ -1,4 +1,4 @@
-// What the program was built from.
+// The revision of the sources that the program was built from.
 #pragma once
 
 namespace sundog {

@@ -11,13 +11,13 @@
 
 namespace sundog {
 
-/// What is to be saved: a frame as its file shows it and what it was developed from.
+/// A frame to save: the image as its file shows it, and the film that it was developed from.
 struct Picture {
   const Image& image;  // by shown_in(), of image_channels() of the file
   const AovImages& aovs;
   const Film& film;
   std::uint64_t key = 0;             // of the scene, for a checkpoint
-  std::filesystem::path checkpoint;  // may be used in need for a complete film; empty: none was asked for
+  std::filesystem::path checkpoint;  // takes the film if `path` cannot be written; empty: none was asked for
   bool checkpoint_kept = false;      // the frame is there
   std::string format = "png";        // of image_formats(), where the path is "-"
   FileOptions file = {};
@@ -39,7 +39,7 @@ void warn_of_halves(const std::filesystem::path& path, const Image& image, const
 /// happened and where it is.
 void save_image(const Picture& picture, const std::filesystem::path& path);
 
-/// The same for a part of a frame.
+/// Writes a part of a frame to `path`; keeps it elsewhere if that fails, as save_image() does.
 void save_part(const Picture& picture, const PartHeader& header, const std::filesystem::path& path);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// What a scene holds, in numbers: for `sundog info` and the statistics of a render.
+// Counts and sizes of a scene's contents, for `sundog info` and the statistics of a render.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 

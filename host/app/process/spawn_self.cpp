@@ -60,7 +60,7 @@ class SpawnedSelf : public StartedProgram {
 
 constexpr const char* own_link = "/proc/self/exe";
 
-/// What the kernel was told to start. Relative where the user's shell said so: nothing changes the folder.
+/// The path by which this program was started. It may be relative; no code changes the working directory.
 const char* started_file() {
   return reinterpret_cast<const char*>(
       ::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr): an address

@@ -20,7 +20,7 @@ std::filesystem::path program_file();
 pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
                  const std::vector<std::string>& variables = {});
 
-/// The same for the layers below (base/environment.h).
+/// spawn_self() as a StartProgram for the layers below (base/environment.h).
 std::unique_ptr<StartedProgram> start_self(std::vector<std::string> arguments,
                                            std::vector<HandedDown> descriptors);
 

@@ -1,4 +1,4 @@
-// What the environment says to drivers and to sundog, for reports.
+// Environment variables that drivers and sundog read, for reports.
 #pragma once
 #include <string>
 #include <utility>

@@ -6,16 +6,13 @@
 #include <span>
 #include <string>
 
-#include "app/process/option_words.h"
-
 namespace sundog {
 
 /// A terminal that is gone must not cost the frame: what nobody can read is no error.
 inline void tell(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 inline void print_warnings(std::span<const std::string> warnings) {
-  for (const std::string& warning : warnings)
-    tell(fmt::format("sundog: warning: {}\n", with_option_names(warning)));
+  for (const std::string& warning : warnings) tell(fmt::format("sundog: warning: {}\n", warning));
 }
 
 }  // namespace sundog

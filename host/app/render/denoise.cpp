@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* file_names[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1"};
 constexpr int cpu_device = 1, three_floats = 3;  // OIDN_DEVICE_TYPE_CPU, OIDN_FORMAT_FLOAT3
 
-/// What may be the library, best first.
+/// Paths at which the library may be, best first.
 std::vector<std::string> candidates() {
   const char* named = std::getenv("SUNDOG_OIDN");
   if (!named || !*named) return {std::begin(file_names), std::end(file_names)};

@@ -19,7 +19,7 @@ class Denoiser {
 
  private:
   struct Calls;
-  /// The same for three channels, as a picture of its own.
+  /// Returns the three channels of `color` without noise.
   Image clean(const Image& color, const Image& albedo, const Image& normal) const;
   std::shared_ptr<const Calls> calls_;
 };

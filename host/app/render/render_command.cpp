@@ -51,7 +51,7 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
     all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
   if (typed.subsample) all.push_back("/render/subsample/on=true");
   if (typed.command.transparent) all.push_back("/image/transparent=true");
-  // What may end early begins with a sample of each pixel.
+  // A render that may end early takes one sample of each pixel first.
   if (typed.adaptive.empty() && !typed.subsample && (!typed.time_limit.empty() || !typed.noise.empty()))
     all.push_back("/render/progressive=true");
   for (const std::string& setting : typed.command.overrides) {

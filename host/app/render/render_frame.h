@@ -26,7 +26,7 @@ struct KeptHalo {
   std::shared_ptr<const HaloMap> map;
 };
 
-/// What the frames of one run share.
+/// State that the frames of one run share.
 struct Setup {
   const StopOnSignal& stop;
   Mailbox* job = nullptr;  // the other processes that mpirun has started
@@ -50,14 +50,15 @@ struct LoadedScene {
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);
 
-/// Of the file that the command writes. Throws UsageError for a region that is not within the scene's
+/// Width and height of the file that the command writes. Throws UsageError for a region outside the scene's
 /// picture.
 std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene);
 
 /// The files that one frame may write.
 std::vector<std::string> output_files(const RenderCommand& command);
 
-/// Until the frame begins there is nothing to save. (In a job the other ranks want to be told.)
+/// Lets a signal end the process at once, because nothing is to be saved before the frame begins. Not in a
+/// job, where other ranks must hear of it.
 void stop_loses_nothing(const RenderCommand& command, const Setup& setup);
 
 /// How the scene file is read.

@@ -31,7 +31,7 @@
 namespace sundog {
 namespace {
 
-/// What the parts of a frame must have in common besides the scene's file.
+/// Settings that all parts of a frame must share, besides the scene's file.
 std::map<std::string, std::string> settings_of(const RenderCommand& command, const CompiledScene& scene) {
   std::map<std::string, std::string> settings;
   for (const std::string& setting : command.overrides) {

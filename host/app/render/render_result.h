@@ -14,7 +14,7 @@ namespace sundog {
 /// Where --verbose shows how the samples were spread: "out.png" -> "out.samples.png".
 std::string samples_file(const RenderCommand& command);
 
-/// What the command's frame takes memory for.
+/// The outputs that decide how much memory the command's frame takes.
 FrameOutput frame_output(const RenderCommand& command, const ImageSettings& image, bool passes);
 
 /// The frame's camera, with `next` for motion.

@@ -27,14 +27,14 @@
 namespace sundog {
 namespace {
 
-/// What is written again and again needs a file's name.
+/// --write-every replaces its file, so it refuses streams.
 void check_write_every(const RenderCommand& command) {
   if (command.write_every > 0 &&
       (command.part || is_standard_stream(command.out) || is_pipe_or_device(command.out)))
     throw UsageError(fmt::format("-o {}: --write-every wants an image file", command.out));
 }
 
-/// What is done to a whole picture, and words in its file.
+/// Checks options that need a whole picture (--denoise, --far, AOVs) or a format with texts (--metadata).
 void check_extras(const RenderCommand& command) {
   if (command.part && (command.denoise || command.metadata))
     throw UsageError(
@@ -54,7 +54,7 @@ void check_extras(const RenderCommand& command) {
   if (command.denoise) static_cast<void>(Denoiser());
 }
 
-/// What would otherwise be found out after the render.
+/// Refuses outputs that could not be written, before the render rather than after it.
 void check_outputs(const RenderCommand& command) {
   if (command.part && !command.out.ends_with(".part"))
     throw UsageError(
@@ -80,7 +80,7 @@ void check_frames(const RenderCommand& command) {
       throw UsageError("--frames writes numbered files: wanted a name for them, found -");
 }
 
-/// Of this process, or of rank 0 of a job.
+/// Renders in this process, or as rank 0 of a job. Returns the exit status.
 int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox* job) {
   const Stopwatch clock;
   Setup setup{stop, job, {}, nullptr};

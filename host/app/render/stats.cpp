@@ -29,7 +29,7 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
           {"complete", result.complete}};
 }
 
-/// Of a frame in passes; null for others.
+/// Sampling figures of a frame in passes; null for other frames.
 json sampling_json(const SceneDescription& scene, const RenderResult& result) {
   if (result.film.taken.empty()) return nullptr;
   const SamplingFigures figures = sampling_figures(

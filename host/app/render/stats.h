@@ -1,4 +1,4 @@
-// What a render did, for --stats and --verbose.
+// Reports of a finished render, for --stats and --verbose.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 

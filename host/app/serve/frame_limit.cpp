@@ -9,8 +9,8 @@ namespace {
 
 constexpr int most_shown_edge = 65500;  // of a JPEG
 
-/// Of a session's frame: sums and samples of its pixels, the picture, the one on its way to the pages.
-/// Measured from 2048x2048 to 4096x4096.
+/// Bytes of a session's frame per pixel: film, picture, and the copy that is sent to pages. Measured from
+/// 2048x2048 to 4096x4096.
 constexpr std::uint64_t bytes_a_shown_pixel = 130;
 
 double gigabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e9; }

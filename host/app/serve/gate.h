@@ -1,6 +1,6 @@
-// What a request must bring before the viewer's server looks at it further: a name of this server as its
-// Host, a page of this server as its Origin, the token, a method without effects where it asks for none.
-// Pure: no socket, no clock.
+// Admits requests to the viewer's server. A request must name this server as its Host, one of its pages as
+// its Origin, and the token; requests that change nothing must use a method without effects. Pure: no socket,
+// no clock.
 #pragma once
 #include <filesystem>
 #include <map>

@@ -1,4 +1,4 @@
-// What the viewer tells its pages, as JSON text.
+// Messages from the viewer's server to its pages, as JSON text.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -18,7 +18,7 @@ nlohmann::json devices_message(const std::vector<DeviceInfo>& all, const std::ve
 /// The whole document, and what was made of it.
 nlohmann::json scene_message(const SceneDocument& document);
 
-/// What the picture shows that the document may leave open: the camera's place, the objects in their order,
+/// Values that a document may leave out and the reader has chosen: the camera's place, the order of objects,
 /// the intervals of fields.
 nlohmann::json resolved_json(const SceneDescription& scene);
 

@@ -72,8 +72,8 @@ class SceneDocument {
 /// Sets or removes one value. Throws UsageError for a pointer that leads nowhere.
 void apply_change(nlohmann::json& document, const Change& change);
 
-/// What follows `sundog render` to make the picture of `now` out of the file: --set options where they lead
-/// from `opened` to it, else nothing.
+/// Arguments of `sundog render` that make the picture of `now` from the file: --set options that turn
+/// `opened` into `now`. Nothing if no --set options do.
 std::optional<std::vector<std::string>> settings_between(const nlohmann::json& opened,
                                                          const nlohmann::json& now,
                                                          const std::filesystem::path& file);

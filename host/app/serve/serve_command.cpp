@@ -30,7 +30,7 @@ struct ServeOptions {
   std::vector<std::string> devices, hosts;
 };
 
-/// What is shown where no scene is named.
+/// The scene that the viewer opens when the command names none.
 constexpr const char* first_scene = R"({
   "camera": {"position": [1.5, 1.05, -2.6], "target": [0, -0.02, 0], "fov": 44},
   "image": {"width": 640, "height": 640, "background": {"bottom": [0.01, 0.012, 0.02], "top": [0.11, 0.14, 0.2]}},

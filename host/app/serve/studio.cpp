@@ -18,7 +18,7 @@ using nlohmann::json;
 
 namespace {
 
-/// What a page sends is of no file.
+/// Stands for the file's name in errors about JSON that a page has sent.
 constexpr const char* page_file = "the page";
 
 std::string text_of(const json& message, const char* key) {

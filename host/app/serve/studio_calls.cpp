@@ -1,5 +1,5 @@
-// What a page asks the studio over HTTP: the schema and the lists that its panels are made of, files that go
-// out, scenes that come in. Each call has the token in its header; only POST changes anything.
+// The studio's HTTP calls: the schema and lists that pages build their panels from, downloads, uploads of
+// scenes. Each call carries the token in its header; only POST changes state.
 #include <fmt/format.h>
 
 #include "app/commands/formulas_command.h"
@@ -28,7 +28,7 @@ WebAnswer plain(int status, std::string text) {
 
 WebAnswer json_answer(const json& value) { return {200, json_type, message_text(value), ""}; }
 
-/// Those channels of a settled frame that `sundog render` would write into that file.
+/// The channels of a settled frame that `sundog render` would write into that file.
 Image with_channels(const Image& image, int channels) {
   if (image.channels <= channels) return image;
   Image out(image.width, image.height, channels);

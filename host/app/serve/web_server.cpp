@@ -46,8 +46,8 @@ const WebLimits& WebServer::limits() const { return state_->limits; }
 
 namespace {
 
-/// What escapes a handler (there is no memory for its bytes) ends the connection that it served, and no
-/// other.
+/// Runs handlers until the server stops. False: an exception escaped a handler (no memory for its bytes); it
+/// ends that handler's connection alone.
 bool runs_to_its_end(asio::io_context& io) {
   try {
     io.run();

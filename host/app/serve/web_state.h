@@ -1,5 +1,5 @@
-// What a WebServer's connections share. This header and its two neighbours (web_socket.h, web_connection.h)
-// are included by web_server.cpp alone, which so is the one source that reads Boost.
+// State that a WebServer's connections share. Only web_server.cpp includes this header and its neighbours
+// web_socket.h and web_connection.h, so that one source alone includes Boost.
 #pragma once
 #include <atomic>
 #include <boost/asio/io_context.hpp>

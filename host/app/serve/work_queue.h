@@ -1,4 +1,4 @@
-// One thread that does what it is given, in turn. What waits is bounded, in number and in bytes.
+// A thread that runs tasks in order. The waiting tasks are bounded in number and in bytes.
 #pragma once
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace sundog {
 class WorkQueue {
  public:
   WorkQueue() : thread_([this] { run(); }) {}
-  /// What is waiting is dropped; what runs is waited for.
+  /// Drops waiting tasks; waits for the running one.
   ~WorkQueue() { stop(); }
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;

@@ -109,7 +109,7 @@ Primaries primaries(const Imf::Chromaticities& c) {
   return {v(c.red), v(c.green), v(c.blue), v(c.white)};
 }
 
-/// Of the first three channels.
+/// Multiplies the first three channels by `matrix`.
 void convert(Image& image, const glm::dmat3& matrix) {
   for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
     float* c = &image.data[i];
@@ -162,7 +162,7 @@ class Reader {
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
-  /// Those of the picture itself; others are further layers.
+  /// The channels of the picture itself; others are further layers.
   Suffixes color_channels() const {
     if (has("R") || has("G") || has("B")) return {"R", "G", "B", "A"};
     return {"Y", "A"};

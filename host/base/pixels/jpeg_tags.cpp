@@ -1,5 +1,5 @@
-// What a JPEG says of its colours and its density: in the JFIF header, as an ICC profile, and as Exif (CIPA
-// DC-008, 4.6: a TIFF header and directories of tags).
+// Reads a JPEG's colour space and density from its JFIF header, ICC profile and Exif (CIPA DC-008, 4.6: a
+// TIFF header and directories of tags).
 #include "base/colors/icc_profile.h"
 #include "base/pixels/image_codecs.h"
 

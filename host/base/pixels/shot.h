@@ -22,7 +22,7 @@ struct NextShot {
 };
 
 struct Shot {
-  /// Of column vectors. Camera space: x to the right, y up, z along the view, left-handed.
+  /// For column vectors. Camera space is left-handed: x to the right, y up, z along the view.
   glm::dmat4 world_to_camera{1};
   /// To (0, 0) in the picture's upper left corner and (1, 1) in its lower right, after the division by w.
   glm::dmat4 world_to_ndc{1};

@@ -15,7 +15,7 @@ namespace {
 
 SceneFile file_of(const SceneDescription& scene) { return {scene.file.string()}; }
 
-/// Of each mesh: itself, or null where no object places it.
+/// The scene's meshes; null for a mesh that no object places.
 std::vector<const Mesh*> placed_meshes(const SceneDescription& scene) {
   std::vector<const Mesh*> meshes(scene.meshes.size());
   for (const Object& object : scene.objects)

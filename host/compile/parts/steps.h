@@ -179,7 +179,7 @@ struct FieldInputs {
   SceneFile file{};
   bool paths = false, deep = false;
   std::vector<SdfDescription> fields{};
-  // Of deep views:
+  // Only for deep views:
   Known<SharedTable<Instance>> instances{};
   dvec3 origin{0};
   Unkeyed<u32> first_instance{};  // of fields

@@ -86,7 +86,7 @@ Bounds interval_of(const FieldInterval& field) {
   return box;
 }
 
-/// Of the object's material; 0 without a checkerboard.
+/// The edge of a cell of the object's checkerboard; 0 without one.
 double checker_size(const SceneDescription& scene, const Object& object) {
   if (object.material < 0) return 0;
   const MaterialDescription& material = scene.materials[static_cast<std::size_t>(object.material)];

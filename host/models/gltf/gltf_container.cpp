@@ -177,7 +177,8 @@ std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& u
       !fs::exists(path, ignored) && may_be_read(plain) && fs::exists(plain, ignored))
     path = plain;
   if (!may_be_read(path))
-    uri.fail(fmt::format("'{}' leads out of the model's folder: {}", text, outside_hint));
+    uri.fail(fmt::format("'{}' leads out of the model's folder: {}", text, outside_hint),
+             Remedy::outside_files);
   try {
     return read_source(path).bytes;
   } catch (const SceneError& error) {

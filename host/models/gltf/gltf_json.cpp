@@ -18,8 +18,8 @@ std::string escaped(std::string_view key) {
 
 }  // namespace
 
-void JsonAt::fail(const std::string& what) const {
-  models::fail(*source_, pointer_.empty() ? "/" : pointer_, what);
+void JsonAt::fail(const std::string& what, Remedy remedy) const {
+  throw SceneError(source_->path.string(), pointer_.empty() ? "/" : pointer_, what, remedy);
 }
 
 void JsonAt::want_object() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "models/source.h"
 
 namespace sundog::models {
@@ -46,7 +47,7 @@ class JsonAt {
   glm::dvec3 vector(const char* key, glm::dvec3 otherwise, Range range = {}) const;
 
   const std::string& pointer() const { return pointer_; }
-  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::none) const;
 
  private:
   void want_object() const;

@@ -270,8 +270,8 @@ void GltfMaterials::add_clearcoat(const JsonAt& at, Entry& entry) const {
   material.reflection += coat;
 }
 
-/// The same values as OpenPBR layers: used by every integrator for materials with layers, else by path
-/// tracing only.
+/// Adds the material's values as OpenPBR layers. Every integrator uses them for materials with layers; only
+/// path tracing does for others.
 void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const {
   const bool metal_map = entry.metal_rough && entry.values.metalness > 0;
   const bool always = has_layers(at);

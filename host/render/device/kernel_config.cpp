@@ -78,7 +78,7 @@ void define_features(const SceneFeatures& features, const Define& define) {
 #undef SUNDOG_DEFINE_FEATURE
 }
 
-/// What kernels with a definition do to a scene without it: shared/features.h.
+/// How a definition changes the result of a scene that does not need it: shared/features.h.
 enum class Effect { same, unlayered, rounds, mask, room, alters };
 
 Effect effect_of(const std::string& definition) {

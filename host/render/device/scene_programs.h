@@ -14,8 +14,8 @@ struct SceneProgram {
   GeneratedFiles generated;
 };
 
-/// Those of the integrator, of AOVs, of photons and camera media where the scene has them, of `bench rays`
-/// where something is traced. Pure.
+/// The programs of the integrator and of AOVs; of photons and camera media if the scene has them; of `bench
+/// rays` if something is traced. Pure.
 std::vector<SceneProgram> scene_programs(const CompiledScene& scene, const DeviceInfo& device);
 
 }  // namespace sundog

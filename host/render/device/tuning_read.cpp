@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-constexpr const char* kept = "as tunings are exported";
+constexpr const char* kept = "one as in an export of tunings";
 
 /// Reads a value of scene_class().
 std::string scene_class_from(const JsonValue& value) {

@@ -22,7 +22,8 @@ std::uint32_t block_of(std::string_view bytes) {
   return block;
 }
 
-/// What has no name is called by its place, so that it has an id of its own; the last is for what has none.
+/// Names unnamed entries by their index, so that each has an id of its own. Appends "default", for surfaces
+/// without an entry.
 std::vector<std::string> completed(std::vector<std::string> names, std::string_view kind) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i].empty()) names[i] = fmt::format("{} {}", kind, i);

@@ -68,15 +68,14 @@ inline bool all_flags(const std::vector<std::uint8_t>& flags) {
   return std::ranges::all_of(flags, [](std::uint8_t flag) { return flag <= 1; });
 }
 
-/// What has become of a pixel. The film's weights say how many samples count.
+/// The state of a pixel. The film's weights say how many samples count.
 enum class PixelState : std::uint8_t { empty, looked_at, sampled, interpolated };
 
-/// What a pixel shows, for its neighbours' expected errors: red, green and blue, to which what is missing of
-/// alpha is added (red) and from which it is taken (green), and the sum of their squares. They are added up
-/// at once.
+/// A pixel's mean colour and the sum of its squares, for the expected errors of its neighbours. Missing alpha
+/// is added to red and taken from green. A vector type, so that neighbours are summed in one operation.
 using Seen [[gnu::vector_size(16)]] = float;
 
-/// What a film holds of each pixel besides its samples' sum and weight.
+/// The arrays that a film needs besides the sum and the weight of each pixel's samples.
 struct FilmNeeds {
   AovLayout layout = {};
   bool shows_surfaces = false;  // the layout's vectors
@@ -94,7 +93,7 @@ struct Film : FilmNeeds {
   std::vector<float4> aovs;        // the layout's vectors a pixel
   std::vector<u32> rays;           // of each pixel
   std::vector<std::uint8_t> done;  // 1: the pixel has a sample or more; in a pass, all of the pass
-  // Of a film that grows:
+  // Only in a film that grows:
   std::vector<u32> taken;          // samples of each pixel; 0 where it is interpolated
   std::vector<PixelState> states;  // of each pixel
   std::vector<float4> earlier;     // the sums before a pixel's last pass; w = weight
@@ -134,16 +133,16 @@ struct Film : FilmNeeds {
 /// The AOVs `render` can make.
 const std::vector<std::string>& aov_names();
 
-/// What a film holds for them.
+/// The arrays that a film needs for these AOVs.
 FilmNeeds film_needs(const std::vector<std::string>& names);
 
 /// Whether they need `aovs` of a film. The others come of the samples' sums alone.
 bool show_surfaces(const std::vector<std::string>& names);
 
-/// What a pixel holds for these AOVs.
+/// The layout of a pixel's vectors for these AOVs.
 AovLayout aov_layout(const std::vector<std::string>& names);
 
-/// Those that a denoiser takes: albedo and normal as the pixels' samples see them.
+/// The AOVs that a denoiser takes: albedo and normal as the pixels' samples see them.
 constexpr const char *feature_albedo = "denoise_albedo", *feature_normal = "denoise_normal";
 
 /// The pixels' ways to the next frame (render/film/motion.h).

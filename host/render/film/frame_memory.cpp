@@ -32,8 +32,8 @@ std::uint64_t aov_floats(const std::string& name) {
              : 1;
 }
 
-/// What an encoder has at once beside the image: samples as it takes them, and the file's bytes, where the
-/// picture is noise that no compression makes smaller; twice, where they grow.
+/// Bytes a pixel that an encoder allocates beside the image: converted samples, and the file, taken as
+/// incompressible noise. A growing buffer counts twice.
 std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
   const fs::path extension = fs::path(output.file).extension();
   if (output.file.empty()) return 0;
@@ -43,18 +43,18 @@ std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
   return extension == ".pfm" || extension == ".PFM" ? 12 : 3 + 2 * 3;
 }
 
-// What a frame in passes holds besides: the film of all passes, with surfaces, what has become of pixels,
-// their colours, and between passes their expected errors and the list of those that get more samples.
+// Further bytes a pixel of a frame in passes: the film of all passes, surfaces, states, colours; between
+// passes the expected errors and the list of pixels that get more samples.
 constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 + 4 + 20 + 8 + 8;
 
 // Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
 // frames are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 10;
 
-// What the denoiser makes of the colours; and alpha as a picture of its own, and what it makes of that.
+// The denoised colours; alpha as a picture of its own, and its denoised copy.
 constexpr std::uint64_t denoised_bytes = 12, denoised_alpha_bytes = 24;
 
-// What Open Image Denoise 2.5 takes a pixel of a small picture: its network's layers.
+// Bytes a pixel that Open Image Denoise 2.5 takes for its network's layers with a small picture.
 constexpr std::uint64_t denoiser_bytes = 600;
 
 }  // namespace

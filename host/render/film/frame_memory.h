@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// What a frame is rendered to.
+/// A frame's outputs, as far as they take memory.
 struct FrameOutput {
   std::string file;  // its extension says what is encoded; ".part": a part of the frame; empty: nothing
   std::vector<std::string> aovs;
@@ -18,7 +18,7 @@ struct FrameOutput {
   int bits = 8;              // of a PNG
 };
 
-/// What a denoiser may take for its own, beside the pictures that it is given and makes.
+/// The most memory that a denoiser may take, beside its input and output pictures.
 constexpr std::uint64_t most_denoiser_bytes = std::uint64_t{1} << 30;
 
 /// Bytes a pixel where most is taken: while a checkpoint is written, or the image; without a denoiser's own.

@@ -92,7 +92,8 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
                     "others",
                     missing.size() > 1 ? "s" : "", listed(missing), count, missing.size() > 1 ? "are" : "is",
                     missing.size() > 1 ? "each" : "it",
-                    missing.size() > 1 ? "I" : std::to_string(missing.front())));
+                    missing.size() > 1 ? "I" : std::to_string(missing.front())),
+        Remedy::part);
 }
 
 /// Copies the pixels that are done.

@@ -17,7 +17,7 @@ namespace sundog {
 /// more than there are bands have none.
 std::vector<RowRange> part_rows(int height, const PartOfFrame& part);
 
-/// What a part's file holds besides its pixels.
+/// The header of a part's file.
 struct PartHeader {
   PartOfFrame part;
   std::uint64_t key = 0;                        // hash_scene(): of the scene with its settings

@@ -224,7 +224,8 @@ PartFile read_part(const std::filesystem::path& path) {
   std::string bytes = read_input(path, most_frame_bytes);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
   if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
-    throw refuse("is no part of a frame: a render of one part writes them");
+    throw SceneError(path.string(), "", "is no part of a frame: a render of one part writes them",
+                     Remedy::part);
   const std::string damaged = "is damaged: render this part again";
   if (bytes.size() < checksum_digits) throw refuse(damaged.c_str());
   const std::string sum = bytes.substr(bytes.size() - checksum_digits);

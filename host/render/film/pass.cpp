@@ -120,8 +120,8 @@ void take_pixels(Film& film, const Pass& pass, Film made) {
   }
 }
 
-/// Of a pixel with one sample, which tells nothing of its error: how much the colours of the 3x3 pixels
-/// around vary. Infinite where no other pixel is known.
+/// Writes the variance of the colours of the 3x3 pixels around `p`, for a pixel whose one sample says nothing
+/// of its error. Infinite where no other pixel is known.
 void write_variance_around(const Film& film, std::size_t p, float* variance) {
   const int width = film.width, x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
   float count = 0, sums[3] = {0, 0, 0}, squares[3] = {0, 0, 0};

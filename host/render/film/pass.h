@@ -23,7 +23,7 @@ struct Pass {
 /// The pixels of an image, x | y << 16, in an order in which neighbours stay together.
 std::vector<u32> all_pixels(int image_width, int image_height);
 
-/// Those of all_pixels() whose value, of values row by row, is above that of their block of 4x4.
+/// The pixels of all_pixels() whose value is above the limit of their block of 4x4. Values are row by row.
 std::vector<u32> pixels_above(const std::vector<float>& limits, const std::vector<float>& values,
                               int image_width, int image_height);
 

@@ -1,4 +1,5 @@
-// What makes tiles: a device of this process, one in a worker process of its own, or one of another machine.
+// The interface of workers, which render tiles: on a device of this process, in a worker process, or on
+// another machine.
 #pragma once
 #include <atomic>
 #include <map>
@@ -44,7 +45,7 @@ struct StopFlags {
   bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
 };
 
-/// What a worker did, told when it is asked for and at the end.
+/// A worker's statistics so far.
 struct WorkerFigures {
   std::map<std::string, KernelTimes> kernels;
   double readback_seconds = 0;

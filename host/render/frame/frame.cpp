@@ -1,26 +1,16 @@
+// A worker's part of a frame, on its own thread: takes tiles from the queue, renders them, puts them into the
+// film.
 #include "render/frame/frame.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <atomic>
 
 #include "base/error.h"
 #include "device/cl_status.h"
-#include "render/film/checkpoint.h"
 
 namespace sundog {
 namespace {
 
 using Phase = Frame::Phase;
-
-// A launch in flight may take this long after the frame's end before its thread is left behind; keeping the
-// compiled kernels for the next time may take longer, unless someone waits for the program to stop.
-constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
-constexpr double look_again = 0.02;
-
-// Progress is reported with each tile, and this often while tiles take longer.
-constexpr double progress_seconds = 0.1;
 
 // Below so many pixels, a tile for which resources do not suffice is not made smaller.
 constexpr std::uint64_t least_pixels = 1024;
@@ -29,13 +19,6 @@ void set_phase(Frame& frame, std::size_t i, Phase phase) {
   const std::lock_guard lock(frame.mutex);
   frame.workers[i].phase = phase;
   frame.changed.notify_all();
-}
-
-/// The caller holds the frame's mutex.
-void report_progress(Frame& frame) {
-  if (!frame.options.on_progress) return;
-  frame.since_progress = Stopwatch();
-  frame.options.on_progress({frame.pixels_done, frame.pass_pixels, frame.clock.seconds()});
 }
 
 /// The pixels of a tile, one each.
@@ -48,7 +31,7 @@ void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   }
 }
 
-/// What a worker is asked for; nothing when the frame is over.
+/// The request for a tile, with the earlier samples of its pixels; nothing when the frame is over.
 std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   TileRequest request;
   request.tile = tile;
@@ -82,68 +65,6 @@ std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
                 request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * at));
   });
   return request;
-}
-
-/// Shows the picture so far, every so often.
-void show_picture(Frame& frame) {
-  if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
-  Film film;
-  {
-    const std::lock_guard lock(frame.mutex);
-    if (!has_pixels(frame)) return;
-    film = film_so_far(frame);
-  }
-  frame.options.on_picture(frame.options.region ? film.cut(frame.inner) : film);
-  frame.since_picture = Stopwatch();
-}
-
-/// Tells how far the frame is while no tile is finished, so that a callback can end it.
-void show_progress(Frame& frame) {
-  const std::lock_guard lock(frame.mutex);
-  if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
-}
-
-/// Whether the frame may end at its time limit. In several passes it first makes a whole one to show, and
-/// gets further than a checkpoint that it began with: else it would not if its kernels are compiled for
-/// longer. The caller holds its mutex.
-bool may_end(const Frame& frame) {
-  if (!in_passes(frame.plan.settings)) return true;
-  return frame.film.stage > 0 && std::ranges::any_of(frame.workers, [](const Frame::Worker& worker) {
-           return worker.report.pixels > 0;
-         });
-}
-
-/// Ends the frame when its time is over. The caller holds its mutex.
-void look_at_clock(Frame& frame) {
-  if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
-  if (!may_end(frame)) return;
-  frame.limited = true;
-  frame.stop = true;
-  frame.queue.close();
-}
-
-/// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
-void keep_checkpoint(Frame& frame) {
-  const RenderOptions& options = frame.options;
-  const bool now = options.keep_now && options.keep_now->exchange(false);
-  if (checkpoint_path(options).empty()) return;
-  if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
-  frame.since_checkpoint = Stopwatch();
-  Film film, made;
-  Pass pass;
-  {
-    const std::lock_guard lock(frame.mutex);
-    if (frame.pixels_done == frame.pixels_kept) return;
-    frame.pixels_kept = frame.pixels_done;
-    film = frame.film;
-    pass = frame.pass;
-    made = frame.made;
-  }
-  try {
-    write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
-  } catch (const IoError&) {
-    // What keeps it from being written is reported at the end, if the frame does not come to its end.
-  }
 }
 
 void take_figures(Frame& frame, std::size_t i) {
@@ -259,43 +180,6 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   frame.workers[i].phase = Phase::working;
 }
 
-/// Waits until the frame is over, and retires workers that hang.
-void watch(Frame& frame) {
-  while (!frame.queue.wait(look_again)) {
-    show_progress(frame);
-    look_for_stop(frame);
-    {
-      const std::lock_guard lock(frame.mutex);
-      look_at_clock(frame);
-    }
-    keep_checkpoint(frame);
-    show_picture(frame);
-    for (std::size_t i = 0; i < frame.workers.size(); ++i) {
-      const double seconds = frame.workers[i].device->overdue();
-      if (seconds <= 0) continue;
-      const std::string why = fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
-                                          frame.workers[i].device->info().label(), seconds);
-      retire_worker(frame, i, why, std::make_exception_ptr(DeviceError(why)));
-    }
-  }
-}
-
-/// Gives those that may soon be gone the time for it.
-void wait_for_threads(Frame& frame, bool stopped) {
-  const bool in_haste = stopped && frame.options.in_haste;
-  std::unique_lock lock(frame.mutex);
-  const auto wait = [&](double seconds, Phase phase) {
-    frame.changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
-      return std::ranges::none_of(frame.workers, [&](const Frame::Worker& worker) {
-        return !worker.failed && worker.phase == phase &&
-               !(phase == Phase::working && worker.device->compiles());
-      });
-    });
-  };
-  wait(stopped && !in_haste ? stop_grace : launch_grace, Phase::working);
-  if (!in_haste) wait(stopped ? stop_grace : closing_grace, Phase::closing);
-}
-
 }  // namespace
 
 void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
@@ -325,12 +209,6 @@ void work_on_frame(Frame& frame, std::size_t i) {
   take_figures(frame, i);
 }
 
-void look_for_stop(Frame& frame) {
-  if (!frame.options.stop || !frame.options.stop->load()) return;
-  frame.stop = true;
-  frame.queue.close();
-}
-
 void leave_frame(Frame& frame, std::size_t i, bool closes) {
   set_phase(frame, i, Phase::closing);
   try {
@@ -340,17 +218,6 @@ void leave_frame(Frame& frame, std::size_t i, bool closes) {
     // The device is gone either way; the frame keeps its finished tiles.
   }
   set_phase(frame, i, Phase::gone);
-}
-
-void watch_frame(Frame& frame, bool wait) {
-  watch(frame);
-  const bool stopped = frame.stop.exchange(true);
-  if (!wait) wait_for_threads(frame, stopped);
-  std::unique_lock lock(frame.mutex);
-  const auto is_gone = [](const Frame::Worker& worker) { return worker.phase == Phase::gone; };
-  if (wait) frame.changed.wait(lock, [&] { return std::ranges::all_of(frame.workers, is_gone); });
-  for (Frame::Worker& worker : frame.workers) worker.report.abandoned = !is_gone(worker);
-  frame.over = true;
 }
 
 }  // namespace sundog

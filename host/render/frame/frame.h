@@ -27,7 +27,8 @@ struct CoarsePasses {
                              // before; 0: not known
 };
 
-/// What the threads share. It lives until the last of them is gone, which may be after the frame's end.
+/// State that the frame's threads share. It lives until the last thread has left, perhaps after the frame's
+/// end.
 struct Frame : std::enable_shared_from_this<Frame> {
   /// `film` is empty: begin_pass() or continue_pass() come next.
   Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds)
@@ -63,7 +64,7 @@ struct Frame : std::enable_shared_from_this<Frame> {
   std::optional<std::size_t> timed;  // that worker
   double readback = 0;
   std::exception_ptr last_error;
-  // Of the pass: its pixels, those that are done, those in the checkpoint.
+  // Pixels of the pass: all, those that are done, those in the checkpoint.
   std::uint64_t pass_pixels = 0, pixels_done = 0, pixels_kept = 0;
   std::uint64_t key = 0;        // the checkpoint's
   std::string checkpoint_left;  // RenderResult::checkpoint_left
@@ -101,10 +102,10 @@ void work_on_frame(Frame& frame, std::size_t i);
 /// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
 void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
-/// What there is of the picture, with what is done of the pass in hand.
+/// The film of the complete passes, with the finished tiles of the pass in hand.
 Film film_so_far(const Frame& frame);
 
-/// Takes that from a frame that is over.
+/// Moves film_so_far() out of a frame that is over.
 Film take_film(Frame& frame);
 
 /// Whether there is a pixel of the frame.
@@ -112,6 +113,15 @@ inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || fra
 
 /// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
 void look_for_stop(Frame& frame);
+
+/// Reports how far the frame is. The caller holds its mutex.
+void report_progress(Frame& frame);
+
+/// Ends the frame at its time limit. The caller holds its mutex.
+void look_at_clock(Frame& frame);
+
+/// Retires workers whose launches are overdue.
+void retire_hanging(Frame& frame);
 
 /// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
 /// worker if `closes`; otherwise writes its compiled kernels to the cache.

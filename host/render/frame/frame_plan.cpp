@@ -47,7 +47,7 @@ void check_shares(const Split& split, const std::vector<WorkerPlan>& devices) {
                                devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
 }
 
-/// Of a checkpoint: the scene and the region; 0 without one.
+/// The key of the frame's checkpoint, by scene and region; 0 without a checkpoint.
 std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options) {
   if (checkpoint_path(options).empty()) return 0;
   const std::uint64_t key = hash_scene(scene);
@@ -105,10 +105,13 @@ void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devi
   if (devices.empty()) throw DeviceError("no device to render on");
   check_shares(options.split, devices);
   check_region(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
+  const auto whole = [&](const char* what) {
+    return fmt::format("{} cannot be rendered in parts: leave out the part {}/{}", what, options.part.index,
+                       options.part.count);
+  };
   if (in_passes(scene.sampling) && options.part.count > 1)
-    throw UsageError("a frame that is adaptive, subsampled or progressive is made whole: leave the part out");
-  if (options.region && options.part.count > 1)
-    throw UsageError("a region is made whole: leave the part out");
+    throw UsageError(whole("a frame that is adaptive, subsampled or progressive"));
+  if (options.region && options.part.count > 1) throw UsageError(whole("a region"));
 }
 
 std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,

@@ -1,4 +1,5 @@
-// What a frame is to be, before a device works on it. Internal to the render layer.
+// Plans a frame: checks its options, then makes its film, passes, tiles and workers. Internal to the render
+// layer.
 #pragma once
 #include <memory>
 #include <vector>

@@ -1,4 +1,4 @@
-// What a frame is made by, and what comes of it.
+// A frame's result, and the plans of the workers that render it.
 #pragma once
 #include <exception>
 #include <functional>
@@ -33,7 +33,7 @@ struct RenderResult {
 
 class DeviceWorker;
 
-/// What makes tiles, and what is known of it before it is opened.
+/// A worker to open, and what is known of its device and speed before.
 struct WorkerPlan {
   DeviceInfo info;
   int processor = -1;  // devices with the same number run on the same cores (plan.h)

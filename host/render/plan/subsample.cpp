@@ -126,7 +126,7 @@ void take_mattes(Film& film, std::size_t corner, std::size_t p) {
   const float share = film.sums[corner].w > 0 ? film.sums[p].w / film.sums[corner].w : 0;
   float4* pixel = &film.aovs[film.layout.vectors() * p + film.layout.surfaces];
   const float4* of = &film.aovs[film.layout.vectors() * corner + film.layout.surfaces];
-  // Of each pair the first is an id.
+  // A pair is an id and a share.
   for (std::size_t k = 0; k < MATTE_VECTORS; ++k)
     pixel[k] = {of[k].x, of[k].y * share, of[k].z, of[k].w * share};
 }

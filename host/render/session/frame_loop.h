@@ -24,7 +24,7 @@ struct DeviceThread {
   bool closed = false;                 // the worker, behind a frame
   bool leave = false, gone = false;
   bool abandoned = false;  // a frame did not wait for it, and nobody does
-  // Of the last frame that was rendered to its end; 0: it made nothing.
+  // Speed in the last frame that was finished; 0: the thread rendered nothing.
   double pixels_a_second = 0, measured_pixels = 0;
 };
 
@@ -59,8 +59,7 @@ class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
   bool closing = false;
 
  protected:
-  // What else a thread does, between frames and after one that is not rendered to its end. The caller holds
-  // the mutex by `lock`.
+  // Other work of a thread, between frames and after an abandoned one. The caller holds the mutex by `lock`.
   virtual bool has_errand(const DeviceThread&) const { return false; }
   virtual void run_errand(std::unique_lock<std::mutex>&, DeviceThread&) {}
   virtual void after_frame(std::unique_lock<std::mutex>&, DeviceThread&,

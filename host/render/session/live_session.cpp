@@ -1,6 +1,6 @@
+// See live_session.h. The control thread first, then the device threads.
 #include <algorithm>
 
-#include "base/error.h"
 #include "render/session/live_session.h"
 
 namespace sundog {
@@ -206,12 +206,7 @@ void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
   const std::shared_ptr<SessionFrame> mine = current;
   lock.unlock();
   Frame& frame = *mine->frame;
-  for (std::size_t i = 0; i < frame.workers.size(); ++i)
-    if (const double seconds = frame.workers[i].device->overdue(); seconds > 0) {
-      const std::string why = frame.workers[i].device->info().label() +
-                              ": a launch has not come back for too long: the driver hangs";
-      retire_worker(frame, i, why, std::make_exception_ptr(DeviceError(why)));
-    }
+  retire_hanging(frame);
   std::string failure;
   {
     const std::lock_guard frame_lock(frame.mutex);

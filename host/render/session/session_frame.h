@@ -24,7 +24,7 @@ struct SessionFrame {
   CompileWork compiled;  // for this generation
 };
 
-/// What a frame is begun with.
+/// The inputs of a session's frame.
 struct FrameOrder {
   std::shared_ptr<const CompiledScene> scene;
   SessionSettings settings;
@@ -55,7 +55,7 @@ FrameSamples samples_of(const Frame& frame, unsigned wanted);
 /// The picture so far; to the bit that of the film when it is settled. The caller holds the frame's mutex.
 Image picture_of(const Frame& frame);
 
-/// What the frame's workers do and did. The caller holds its mutex.
+/// The activity of the frame's workers. The caller holds its mutex.
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over);
 
 }  // namespace sundog

@@ -59,7 +59,7 @@ std::optional<std::size_t> item_index(const json& array, std::string_view token)
   return found;
 }
 
-/// What a token leads to; null: nothing.
+/// The child that a token names; null: none.
 const json* child_of(const json& parent, const std::string& token) {
   if (parent.is_array()) {
     const auto index = item_index(parent, token);

@@ -14,14 +14,14 @@ namespace sundog {
 void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::json value,
                const std::filesystem::path& file, std::string_view subject);
 
-/// The same of an override "JSON_POINTER=VALUE". VALUE is JSON, or else taken as a string. Throws UsageError
-/// for text of another form.
+/// set_value() by an override "JSON_POINTER=VALUE". VALUE is JSON, else a string. Throws UsageError for text
+/// of another form.
 void apply_override(nlohmann::json& document, std::string_view setting, const std::filesystem::path& file);
 
 /// The pointer with indices in place of items' names.
 std::string resolve_names(const nlohmann::json& document, std::string_view pointer);
 
-/// The same of an override's pointer.
+/// resolve_names() of an override's pointer.
 std::string pointer_of(const nlohmann::json& document, std::string_view setting);
 
 /// Whether the value at `longer` is that at `shorter` or a part of it.

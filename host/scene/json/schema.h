@@ -28,7 +28,7 @@ using Names = std::span<const std::string_view>;
 /// "a, b or c", each in quotes.
 std::string list_names(Names names, std::string_view conjunction = "or");
 
-/// What the schema says of one value.
+/// The schema's rule for one value.
 struct SchemaRule {
   enum class Type { any, object, array, string, number, integer, boolean };
   Type type = Type::any;

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "base/error.h"
 #include "base/names.h"
 
 namespace sundog {
@@ -71,8 +70,8 @@ std::string join_pointer(std::string_view pointer, std::string_view key) {
   return result;
 }
 
-void JsonValue::fail(std::string_view reason) const {
-  throw SceneError(context_->file.string(), pointer_, std::string(reason));
+void JsonValue::fail(std::string_view reason, Remedy remedy) const {
+  throw SceneError(context_->file.string(), pointer_, std::string(reason), remedy);
 }
 
 void JsonValue::warn(std::string_view reason) const {

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/named_values.h"
 #include "scene/json/schema.h"
 
@@ -26,8 +27,8 @@ inline constexpr Range at_least_0{.low = 0};
 
 class FrameCache;
 
-/// What the values of one file share. `asked`, when set, collects the keys asked for, by kind of object: a
-/// test compares them with the JSON Schema.
+/// Settings and logs that the values of one file share. If set, `asked` collects the keys that readers ask
+/// for, by kind of object: a test compares them with the JSON Schema.
 struct JsonContext {
   std::filesystem::path file;
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
@@ -60,7 +61,7 @@ class JsonValue {
   const std::string& pointer() const { return pointer_; }
 
   /// Throws SceneError at this place.
-  [[noreturn]] void fail(std::string_view reason) const;
+  [[noreturn]] void fail(std::string_view reason, Remedy remedy = Remedy::none) const;
   /// Adds a one-line warning with this place.
   void warn(std::string_view reason) const;
   /// Throws "wanted `what`, found <this value, shortened>".

@@ -43,7 +43,7 @@ IceBlock read_block(JsonObject& object) {
   return block;
 }
 
-// Of a recipe that is only checked the mesh is empty.
+// Returns an empty mesh if it only checks the recipe.
 Mesh read_ice_block(JsonObject& object, bool checks) {
   const IceBlock block = read_block(object);
   std::string part;

@@ -32,7 +32,7 @@ glm::dvec2 turn_by(double share);
 /// one that the lines beside it have no room for, and more than `most_steps`.
 Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double cos_turn);
 
-/// The same curve from its other end.
+/// The curve, from its last point to its first.
 Profile reversed(const Profile& profile);
 
 /// The area on the left of a curve, closed by a straight line: positive if it runs counterclockwise.

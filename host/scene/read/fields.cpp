@@ -58,7 +58,8 @@ SdfNode read_native(JsonObject& object) {
   if (!object.value().context().native_code)
     object.value().fail(
         "this field is OpenCL C, which the driver would run as it stands; if you trust the file, "
-        "allow native code");
+        "allow native code",
+        Remedy::native_code);
   SdfNode node;
   node.kind = SdfNode::Kind::native;
   node.code = read_text(object, "code");

@@ -1,5 +1,4 @@
-// What reading one frame of an animation after another keeps: files that are not read again, meshes that are
-// not made again.
+// Keeps files and generated meshes between frames of an animation, so that they are read and made once.
 #pragma once
 #include <functional>
 #include <map>

@@ -103,7 +103,8 @@ class SceneReader {
   fs::path find_file(const JsonValue& value) const {
     const fs::path file = scene_.file.parent_path() / value.text();
     if (file != scene_.file && !root_.context().outside_files && leads_outside(scene_.file, file))
-      value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint));
+      value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint),
+                 Remedy::outside_files);
     require_readable(file, scene_.file, value.pointer());
     return file;
   }

@@ -57,7 +57,8 @@ void read_wraps(JsonObject& object, TextureDescription& texture) {
 fs::path find_image(const JsonValue& value) {
   const fs::path scene = value.context().file, file = scene.parent_path() / value.text();
   if (!value.context().outside_files && leads_outside(scene, file))
-    value.fail("\"" + value.text() + "\" leads out of the scene's folder: " + outside_hint);
+    value.fail("\"" + value.text() + "\" leads out of the scene's folder: " + outside_hint,
+               Remedy::outside_files);
   require_readable(file, scene, value.pointer());
   return file;
 }

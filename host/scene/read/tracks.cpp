@@ -136,7 +136,7 @@ Track read_track(const JsonValue& value) {
   });
 }
 
-/// Of component c, from key `key` to the next.
+/// The slope of component c from key `key` to the next.
 double secant(const Track& track, std::size_t key, std::size_t c) {
   const TrackKey &from = track.keys[key], &to = track.keys[key + 1];
   return (to.values[c] - from.values[c]) / (to.frame - from.frame);

@@ -91,7 +91,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
        "/camera/fov: wanted a number above 0 and below 180"},
       {{"render", scene, "-o", out, "--set", "/camera/fvo=30"}, "unknown key \"fvo\""},
       {{"render", scene, "-o", out, "--set", "/objects/7/radius=1"},
-       "--set /objects/7/radius=1 leads nowhere"},
+       "the setting /objects/7/radius=1 leads nowhere"},
       {{"render", scene, "--stats", "-o", out}, "--stats wants a value (FILE), found the option -o"},
       {{"render", scene, "-o", out, "--size", "--quiet"},
        "--size wants a value (WxH), found the option --quiet"},

@@ -80,8 +80,8 @@ TEST_CASE("parts that do not make one frame are refused, with status 3 and the r
     const char* says;
   };
   for (const Case& c :
-       {Case{{"1.part"}, "part 2 of 2 is missing: render it with --tiles 2/2 and with the"},
-        Case{{"third.part"}, "parts 1, 3 of 3 are missing: render each with --tiles I/3 and with the"},
+       {Case{{"1.part"}, "part 2 of 2 is missing: render it as part 2/2 and with the"},
+        Case{{"third.part"}, "parts 1, 3 of 3 are missing: render each as part I/3 and with the"},
         Case{{"1.part", "none.part"}, "none.part: cannot be read: No such file or directory"},
         Case{{"1.part", "2.part", "again.part"}, "is part 2 of 2, and so is "},
         Case{{"1.part", "samples.part"}, "it is rendered with samples 3, the other samples 2"},

@@ -224,7 +224,7 @@ TEST_CASE("options that the compiler refuses are an error that names the variabl
         changed(cache.with(on), [](HostEnvironment& e) { e.build_options = "--no-such-option"; });
     Device device(info);
     CHECK_THROWS_WITH(build_text(device, add_kernel),
-                      ContainsSubstring("the build options '--no-such-option': " + info.label()));
+                      ContainsSubstring("SUNDOG_BUILD_OPTIONS '--no-such-option': " + info.label()));
   });
 }
 

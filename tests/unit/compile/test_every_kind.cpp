@@ -3,7 +3,7 @@
 #include <random>
 
 #include "bench/plain/any_solid.h"
-#include "bench/rays/exact_solids.h"
+#include "bench/plain/solids.h"
 #include "catch.h"
 #include "every_kind.h"
 #include "formula/evaluate.h"
@@ -111,7 +111,7 @@ TEST_CASE("by its distance a solid is crossed where its equations have it") {
     for (int i = 0; i < 1500; ++i) {
       const dvec3 o = 3.0 * dvec3(uniform(), uniform(), uniform()),
                   d = dvec3(uniform(), uniform(), uniform()) - 0.5 * o;
-      const auto expected = solid_crossings(unit.shape, unit.parameters, o, d);
+      const auto expected = plain::solid_crossings(unit.shape, unit.parameters, o, d);
       const auto crossings = crossings_by_distance(unit, o, d);
       others += crossings.size() != expected.size();  // by rounding, along a surface
       for (std::size_t k = 0; k < std::min(crossings.size(), expected.size()); ++k, ++found) {

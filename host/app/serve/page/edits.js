@@ -1,5 +1,5 @@
 // The document between page and server: as the server has confirmed it, and on top the page's own edits that are on their way or wait.
-// What the page shows is always the one with the others applied, so that nothing is applied twice and nothing is lost.
+// The page shows the confirmed document with those edits applied, so that none is applied twice and none is lost.
 import {apply, leadsToSame} from './pointer.js';
 
 const most = 200;  // changes of one message

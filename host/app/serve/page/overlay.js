@@ -1,4 +1,4 @@
-// What lies over the picture, projected with its camera: lights and the interval of the selected field, which can be dragged.
+// Draws lights and the selected field's interval over the picture, projected with its camera. Both can be dragged.
 import {html, useRef, useStore} from './ui.js';
 import {store} from './store.js';
 import {project, unproject, add, sub, dot, scale} from './camera.js';

@@ -1,4 +1,4 @@
-// What the page knows: the document as the server and the person have it, what the server said of it, and what is selected.
+// The page's state: the document of the server and of the user, the server's answers, and the selection.
 // Changes are drawn here at once and sent one message at a time (edits.js); texts belong to their editors meanwhile (drafts.js).
 import {Drafts} from './drafts.js';
 import {Edits} from './edits.js';
