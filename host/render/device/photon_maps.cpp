@@ -10,6 +10,7 @@
 
 #include "base/environment.h"
 #include "base/faults.h"
+#include "shared/sampler.h"
 
 namespace sundog {
 namespace {
@@ -53,6 +54,42 @@ void append(std::vector<T>& list, const std::vector<T>& more) {
   list.insert(list.end(), more.begin(), more.end());
 }
 
+/// Each sample of a map looks at all of its share of the beams.
+std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
+
+/// Of the photons' beams those that are there, in order; of more than `most` as many, drawn in proportion to
+/// their flux at even steps, so that all of them have the same flux.
+std::vector<float4> draw_beams(const std::vector<float4>& beams, std::size_t most, u32 number) {
+  const auto flux_of = [&](std::size_t i) {
+    const float4& flux = beams[i + 2];
+    const double greatest = double(std::max({flux.x, flux.y, flux.z}));
+    return beams[i].w > 0 && std::isfinite(greatest) ? greatest : 0;
+  };
+  std::size_t count = 0;
+  double all = 0;
+  for (std::size_t i = 0; i < beams.size(); i += 3) {
+    const double flux = flux_of(i);
+    count += flux > 0;
+    all += flux;
+  }
+  const double step = count > most ? all / static_cast<double>(most) : 0;
+  double next = step * hash_u32(number) * 0x1p-32, sum = 0;
+  std::vector<float4> drawn;
+  for (std::size_t i = 0; i < beams.size(); i += 3) {
+    const double flux = flux_of(i);
+    if (!(flux > 0)) continue;
+    sum += flux;
+    const double times = step > 0 ? std::max(std::ceil((sum - next) / step), 0.0) : 1;
+    if (times == 0) continue;
+    next += times * step;
+    const auto factor = static_cast<float>(step > 0 ? times * step / flux : 1);
+    float4 light = beams[i + 2];
+    light.x *= factor, light.y *= factor, light.z *= factor;
+    append(drawn, {beams[i], beams[i + 1], light});
+  }
+  return drawn;
+}
+
 }  // namespace
 
 double shrunk_radius(u32 number) {
@@ -72,7 +109,7 @@ bool PhotonMaps::prepare(const PhotonTracer& tracer, const StopFlags& flags, u32
 void PhotonMaps::make_room(const PhotonTracer& tracer) {
   if (landed_.count > 0) return;
   Device& device = tracer.device;
-  landed_ = device.make<float4>(2 * std::size_t{photons_a_launch});
+  landed_ = device.make<float4>(std::size_t{scatters_ ? 5u : 2u} * photons_a_launch);
   cells_ = device.make<u32>(photons_a_launch);
   const std::vector<u32> outside(2 * lights_);
   light_media_ = device.upload(std::span<const u32>(outside));
@@ -104,6 +141,7 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
   const std::size_t count = plan_.count;
   std::vector<float4> landed(2 * count);
   std::vector<u32> cells(count);
+  std::vector<float4> beams(scatters_ ? 3 * count : 0);
   Made made;
   made.map.number = number;
   made.map.radius = static_cast<float>(plan_.radius * shrunk_radius(number));
@@ -113,11 +151,16 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
     trace(tracer, {number, first, last, plan_.count, targets_, made.map.inverse_edge, 0, 0});
     const std::size_t begin = first, some = last - first;
     tracer.device.read(landed_, std::span(landed).subspan(2 * begin, 2 * some));
+    if (scatters_) tracer.device.read(landed_, std::span(beams).subspan(3 * begin, 3 * some), 2 * some);
     tracer.device.read(cells_, std::span(cells).subspan(begin, some));
   }
   const auto lost = static_cast<u32>(std::ranges::count(cells, NO_PHOTON));
   made.map.cell_mask = std::bit_ceil(std::max(plan_.count - lost, least_cells)) - 1;
   made.photons = sort_photons(landed, cells, made.map.cell_mask, made.cells);
+  made.map.first_beam = static_cast<u32>(made.photons.size());
+  append(made.photons, draw_beams(beams, beams_of(plan_.count), number));
+  made.map.beams = static_cast<u32>(made.photons.size() - made.map.first_beam) / 3;
+  if (made.map.beams % 2 != 0) made.photons.push_back({});  // the next map's photons have two rows each
   return made;
 }
 

@@ -173,6 +173,33 @@ TEST_CASE("photons bring what paths find by chance, from every light that has an
   });
 }
 
+TEST_CASE("photons bring into mist what paths find there by chance") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const Shining shining : {of_sphere, of_rectangle, of_sun}) {
+      // All of the mist below the ball, where the light through it comes together.
+      SceneDescription scene = ball_scene(shining, -0.05, 256);
+      scene.camera.target = {-0.05, 0.1, 0};
+      scene.camera.fov = 16;
+      scene.render.photons = 16384;
+      scene.render.photon_radius = 0.04;
+      scene.materials[0].diffuse = dvec3(0);
+      scenes::place(scene, BoxShape{{1.5, 0.6, 1.5}}, scenes::add_dielectric(scene, 1, {0.1, 0.1, 0.1}, -1),
+                    glm::translate(glm::dmat4(1), {0, 0.6, 0}));
+      scene.materials.back().shadow_filter = true;
+      scene.media.back().scattering = {0.5, 0.3, 0.1};
+      scene.media.back().anisotropy = 0.4;
+      for (LightDescription& light : scene.lights) light.hidden = false;
+      add_lamps(scene);
+      const Mean brought = mean_on(device, scene);
+      scene.render.caustics = false;
+      scene.render.samples = 8192;
+      const Mean met = mean_on(device, scene);
+      CAPTURE(int(shining), brought.error, met.error);
+      for (const int i : {0, 1, 2}) CHECK(brought.value[i] == Approx(met.value[i]).epsilon(0.03));
+    }
+  });
+}
+
 TEST_CASE("lights without extent light what is behind glass") {
   on_picture_devices([&](const DeviceInfo& device) {
     for (const Shining shining : {of_point, of_spot, of_parallel}) {
