@@ -60,10 +60,12 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   }
 #if HAS_SCATTERING
   EACH_LANE(i, starts.lanes & MASK_OF(photons.beam.length > 0.0f)) {
-    const float3 flux = get3(&photons.beam.flux, i) * REAL_LANE(photons.beam.scattered, i);
+    const float light = REAL_LANE(photons.beam.scattered, i);
+    const u32 slice = photon_slice(REAL_LANE(starts.time, i));
+    const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons.beam.sent_on, i);
     beams[3u * i] = (float4)(get3(&photons.beam.o, i), REAL_LANE(photons.beam.length, i));
-    beams[3u * i + 1u] = (float4)(get3(&photons.beam.d, i), (float)photon_slice(REAL_LANE(starts.time, i)));
-    beams[3u * i + 2u] = (float4)(flux, (float)MASK_LANE(photons.beam.sent_on, i));
+    beams[3u * i + 1u] = (float4)(get3(&photons.beam.d, i), (float)slice_and_sent);
+    beams[3u * i + 2u] = (float4)(get3(&photons.beam.flux, i) * light, light);
   }
 #endif
 }

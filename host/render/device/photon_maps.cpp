@@ -57,35 +57,28 @@ void append(std::vector<T>& list, const std::vector<T>& more) {
 /// Each sample of a map looks at all of its share of the beams.
 std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
 
-/// Of the photons' beams those that are there, in order; of more than `most` as many, drawn in proportion to
-/// their flux at even steps, so that all of them have the same flux.
+/// Of the photons' beams those that are there, in order; of more than `most` as many, drawn at even steps in
+/// the light that media scatter of them.
 std::vector<float4> draw_beams(const std::vector<float4>& beams, std::size_t most, u32 number) {
-  const auto flux_of = [&](std::size_t i) {
-    const float4& flux = beams[i + 2];
-    const double greatest = double(std::max({flux.x, flux.y, flux.z}));
-    return beams[i].w > 0 && std::isfinite(greatest) ? greatest : 0;
-  };
+  const auto light_of = [&](std::size_t i) { return std::isfinite(beams[i].w) ? double(beams[i].w) : 0; };
   std::size_t count = 0;
   double all = 0;
-  for (std::size_t i = 0; i < beams.size(); i += 3) {
-    const double flux = flux_of(i);
-    count += flux > 0;
-    all += flux;
+  for (std::size_t i = 2; i < beams.size(); i += 3) {
+    count += light_of(i) > 0;
+    all += light_of(i);
   }
   const double step = count > most ? all / static_cast<double>(most) : 0;
   double next = step * hash_u32(number) * 0x1p-32, sum = 0;
   std::vector<float4> drawn;
-  for (std::size_t i = 0; i < beams.size(); i += 3) {
-    const double flux = flux_of(i);
-    if (!(flux > 0)) continue;
-    sum += flux;
-    const double times = step > 0 ? std::max(std::ceil((sum - next) / step), 0.0) : 1;
-    if (times == 0) continue;
+  for (std::size_t i = 2; i < beams.size(); i += 3) {
+    const double light = light_of(i), times = step > 0 ? std::ceil((sum + light - next) / step) : 1;
+    sum += light;
+    if (!(light > 0 && times > 0)) continue;
     next += times * step;
-    const auto factor = static_cast<float>(step > 0 ? times * step / flux : 1);
-    float4 light = beams[i + 2];
-    light.x *= factor, light.y *= factor, light.z *= factor;
-    append(drawn, {beams[i], beams[i + 1], light});
+    const auto factor = static_cast<float>(step > 0 ? times * step / light : 1);
+    float4 flux = beams[i];
+    flux.x *= factor, flux.y *= factor, flux.z *= factor;
+    append(drawn, {beams[i - 2], beams[i - 1], flux});
   }
   return drawn;
 }

@@ -14,9 +14,11 @@ HAVING(HAS_CAUSTICS)
 static inline void scatter_beam(const PathState* path, const Stretch* s, UNIFORM __global const float4* beam,
                                 UNIFORM float radius, int slice, int deepest, SampledSpectrum* sum) {
   const float4 begin = beam[0], way = beam[1], flux = beam[2];
+  const int slice_and_sent = (int)way.w;
   const float3 d = way.xyz, to = begin.xyz - s->o, normal = cross(s->d, d);
   const float sine2 = dot(normal, normal), apart = dot(to, normal);
-  if (apart * apart < radius * radius * sine2 && (int)flux.w <= deepest && (int)way.w == slice) {
+  if (apart * apart < radius * radius * sine2 && slice_and_sent / (int)PHOTON_SLICES <= deepest &&
+      slice_and_sent % (int)PHOTON_SLICES == slice) {
     const float at = dot(cross(to, d), normal) / sine2, of_beam = dot(cross(to, s->d), normal) / sine2;
     if (at > 0.0f && at < s->length && of_beam > 0.0f && of_beam < begin.w) {
       const float turned = phase_pdf(s->g, -dot(s->d, d)) / real_max(real_sqrt(sine2), BEAM_SINE);
@@ -26,8 +28,8 @@ static inline void scatter_beam(const PathState* path, const Stretch* s, UNIFORM
   }
 }
 
-// The light of photons that the stretch scatters towards its beginning. Each sample of a pixel takes its
-// share of its map's beams, which those of one map are alike for.
+// The light of photons that the stretch scatters towards its beginning. Each sample of a pixel looks at its
+// quarter of the beams of its map, which all pixels share.
 HAVING(HAS_CAUSTICS)
 static SampledSpectrum gather_beams(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
                                     const Stretch* s) {

@@ -178,8 +178,8 @@ TEST_CASE("photons bring into mist what paths find there by chance") {
     for (const Shining shining : {of_sphere, of_rectangle, of_sun}) {
       // All of the mist below the ball, where the light through it comes together.
       SceneDescription scene = ball_scene(shining, -0.05, 256);
-      scene.camera.target = {-0.05, 0.1, 0};
-      scene.camera.fov = 16;
+      scene.camera.target = {-0.05, 0.3, 0};
+      scene.camera.fov = 50;
       scene.render.photons = 16384;
       scene.render.photon_radius = 0.04;
       scene.materials[0].diffuse = dvec3(0);
