@@ -174,6 +174,7 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
     full_ = next > number && bytes > room;
     if (full_) break;
     made.map.first_cell = static_cast<u32>(cells.size());
+    made.map.first_beam += static_cast<u32>(photons.size());
     const auto before = static_cast<u32>(photons.size() / 2);
     for (u32& begin : made.cells) begin += before;
     maps.push_back(made.map);
