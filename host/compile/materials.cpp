@@ -73,11 +73,13 @@ std::vector<u32> add_media(const SurfaceInputs& in, Surfaces& out) {
   return index_of;
 }
 
+bool differs_in_index(const Medium& a, const Medium& b) {
+  return a.absorption.w != b.absorption.w || a.spectrum != b.spectrum;
+}
+
 /// Whether some media of the scene differ in index, so that interfaces refract.
 bool bends_light(const std::vector<Medium>& media) {
-  return std::ranges::any_of(media, [&](const Medium& m) {
-    return m.absorption.w != media[0].absorption.w || m.spectrum != media[0].spectrum;
-  });
+  return std::ranges::any_of(media, [&](const Medium& m) { return differs_in_index(m, media[0]); });
 }
 
 /// Whether a thin material's facets scatter transmitted paths. Partial opacity is seen straight through, so
@@ -90,10 +92,13 @@ bool is_frosted(const SurfaceInputs& in, const MaterialDescription& material) {
 }
 
 /// Whether shadow rays stop at a material. Paths themselves find light through refracting interfaces and
-/// frosted walls (as do photons), so shadow rays passing straight through would count it twice.
-bool stops_shadows(const SurfaceInputs& in, const MaterialDescription& material, bool bends) {
-  const bool by_path = (in.paths && bends && material.medium >= 0) || is_frosted(in, material);
-  return material.shadow_opaque || (by_path && (!material.shadow_filter || in.caustics));
+/// frosted walls (as do photons), so shadow rays passing straight through would count it twice. `bends`: some
+/// medium of the scene refracts; `of_world`: the material's has the index of the world.
+bool stops_shadows(const SurfaceInputs& in, const MaterialDescription& material, bool bends, bool of_world) {
+  const bool frosted = is_frosted(in, material);
+  const bool by_path = (in.paths && bends && material.medium >= 0) || frosted;
+  const bool filters = material.shadow_filter && (!in.caustics || (of_world && !frosted));
+  return material.shadow_opaque || (by_path && !filters);
 }
 
 /// Whether light passes fuzz or a coat on its way through a material.
@@ -168,7 +173,8 @@ u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
     const MaterialDescription& material = surface_for(in.paths, any);
     Material packed = make_material(material, media);
     if (is_frosted(in, material)) packed.flags |= MATERIAL_FROSTED;
-    if (stops_shadows(in, material, bends))
+    const bool of_world = !differs_in_index(out.media.rows()[packed.medium], out.media.rows()[0]);
+    if (stops_shadows(in, material, bends, of_world))
       packed.flags |= MATERIAL_SHADOW_OPAQUE;
     else if (in.paths && passes_layers(material))
       out.features.layer_filters = true;

@@ -22,6 +22,10 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     if (number < launch->last) MASK_LANE(lanes, i) = -1;
   }
   EACH_LANE(i, lanes) cells[first - launch->first + i] = NO_PHOTON;
+#if HAS_SCATTERING
+  __global float4* beams = landed + 2u * (launch->last - launch->first) + 3u * (first - launch->first);
+  EACH_LANE(i, lanes) beams[3u * i] = (float4)(0.0f);
+#endif
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
   Photons photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
   Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
@@ -54,11 +58,22 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     }
     lanes = going;
   }
+#if HAS_SCATTERING
+  EACH_LANE(i, starts.lanes & MASK_OF(photons.beam.length > 0.0f)) {
+    const float light = REAL_LANE(photons.beam.scattered, i);
+    const u32 slice = photon_slice(REAL_LANE(starts.time, i));
+    const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons.beam.sent_on, i);
+    beams[3u * i] = (float4)(get3(&photons.beam.o, i), REAL_LANE(photons.beam.length, i));
+    beams[3u * i + 1u] = (float4)(get3(&photons.beam.d, i), (float)slice_and_sent);
+    beams[3u * i + 2u] = (float4)(get3(&photons.beam.flux, i) * light, light);
+  }
+#endif
 }
 
 // Reads the scene and the media at the lights; writes what has become of the photons [launch.first,
 // launch.last): to landed, two rows a photon, where it has landed, on an object as it stood when the shutter
-// opened, the direction that it came from, and its flux; to cells, its cell's number, or NO_PHOTON.
+// opened, the direction that it came from, and its flux, and after those of all photons, in media that
+// scatter, three rows a photon: its beam, or zeros; to cells, its cell's number, or NO_PHOTON.
 __kernel void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
                             __global float4* restrict landed, __global u32* restrict cells,
                             const PhotonLaunch launch) {

@@ -33,14 +33,19 @@ SUNDOG_SHARED_SIZE(PhotonTarget, 32)
 
 // 32 bytes: one map. Its photons are hashed by cubes with edges of two radii; those of a cube are contiguous
 // in the table `photons`, in order of their numbers, perhaps mixed with those of colliding cubes.
-// photon_cells holds the start of each cell's photons, and the end.
+// photon_cells holds the start of each cell's photons, and the end. After them the table `photons` has the
+// map's beams, ways of photons through media that scatter, three rows each: where a beam begins and its
+// length; its direction, and its slice of time + PHOTON_SLICES times how often the photon had been sent on;
+// its flux, and the light that the medium scatters of it.
 typedef struct PhotonMap {
   u32 number;
   u32 first_cell;      // in photon_cells
   u32 cell_mask;       // number of cells, a power of two, minus 1
   float radius;        // photons within it count
   float inverse_edge;  // 1 / a cube's edge
-  u32 pad0, pad1, pad2;
+  u32 first_beam;      // its first row in photons
+  u32 beams;
+  u32 pad0;
 } PhotonMap;
 SUNDOG_SHARED_SIZE(PhotonMap, 32)
 

@@ -35,7 +35,7 @@ def _turned(camera, across, up, nearer):
 
 def _send_pictures(reference, session):
     """Sends each new picture until the view is closed or gone."""
-    revision = -1
+    revision = 0
     while True:
         session.wait_for_change(revision, 0.5)
         view = reference()

@@ -10,6 +10,7 @@
 
 #include "base/environment.h"
 #include "base/faults.h"
+#include "shared/sampler.h"
 
 namespace sundog {
 namespace {
@@ -53,6 +54,35 @@ void append(std::vector<T>& list, const std::vector<T>& more) {
   list.insert(list.end(), more.begin(), more.end());
 }
 
+/// Each sample of a map looks at all of its share of the beams.
+std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
+
+/// Of the photons' beams those that are there, in order; of more than `most` as many, drawn at even steps in
+/// the light that media scatter of them.
+std::vector<float4> draw_beams(const std::vector<float4>& beams, std::size_t most, u32 number) {
+  const auto light_of = [&](std::size_t i) { return std::isfinite(beams[i].w) ? double(beams[i].w) : 0; };
+  std::size_t count = 0;
+  double all = 0;
+  for (std::size_t i = 2; i < beams.size(); i += 3) {
+    count += light_of(i) > 0;
+    all += light_of(i);
+  }
+  const double step = count > most ? all / static_cast<double>(most) : 0;
+  double next = step * hash_u32(number) * 0x1p-32, sum = 0;
+  std::vector<float4> drawn;
+  for (std::size_t i = 2; i < beams.size(); i += 3) {
+    const double light = light_of(i), times = step > 0 ? std::ceil((sum + light - next) / step) : 1;
+    sum += light;
+    if (!(light > 0 && times > 0)) continue;
+    next += times * step;
+    const auto factor = static_cast<float>(step > 0 ? times * step / light : 1);
+    float4 flux = beams[i];
+    flux.x *= factor, flux.y *= factor, flux.z *= factor;
+    append(drawn, {beams[i - 2], beams[i - 1], flux});
+  }
+  return drawn;
+}
+
 }  // namespace
 
 double shrunk_radius(u32 number) {
@@ -72,7 +102,7 @@ bool PhotonMaps::prepare(const PhotonTracer& tracer, const StopFlags& flags, u32
 void PhotonMaps::make_room(const PhotonTracer& tracer) {
   if (landed_.count > 0) return;
   Device& device = tracer.device;
-  landed_ = device.make<float4>(2 * std::size_t{photons_a_launch});
+  landed_ = device.make<float4>(std::size_t{scatters_ ? 5u : 2u} * photons_a_launch);
   cells_ = device.make<u32>(photons_a_launch);
   const std::vector<u32> outside(2 * lights_);
   light_media_ = device.upload(std::span<const u32>(outside));
@@ -104,6 +134,7 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
   const std::size_t count = plan_.count;
   std::vector<float4> landed(2 * count);
   std::vector<u32> cells(count);
+  std::vector<float4> beams(scatters_ ? 3 * count : 0);
   Made made;
   made.map.number = number;
   made.map.radius = static_cast<float>(plan_.radius * shrunk_radius(number));
@@ -113,11 +144,16 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
     trace(tracer, {number, first, last, plan_.count, targets_, made.map.inverse_edge, 0, 0});
     const std::size_t begin = first, some = last - first;
     tracer.device.read(landed_, std::span(landed).subspan(2 * begin, 2 * some));
+    if (scatters_) tracer.device.read(landed_, std::span(beams).subspan(3 * begin, 3 * some), 2 * some);
     tracer.device.read(cells_, std::span(cells).subspan(begin, some));
   }
   const auto lost = static_cast<u32>(std::ranges::count(cells, NO_PHOTON));
   made.map.cell_mask = std::bit_ceil(std::max(plan_.count - lost, least_cells)) - 1;
   made.photons = sort_photons(landed, cells, made.map.cell_mask, made.cells);
+  made.map.first_beam = static_cast<u32>(made.photons.size());
+  append(made.photons, draw_beams(beams, beams_of(plan_.count), number));
+  made.map.beams = static_cast<u32>(made.photons.size() - made.map.first_beam) / 3;
+  if (made.map.beams % 2 != 0) made.photons.push_back({});  // the next map's photons have two rows each
   return made;
 }
 
@@ -138,6 +174,7 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
     full_ = next > number && bytes > room;
     if (full_) break;
     made.map.first_cell = static_cast<u32>(cells.size());
+    made.map.first_beam += static_cast<u32>(photons.size());
     const auto before = static_cast<u32>(photons.size() / 2);
     for (u32& begin : made.cells) begin += before;
     maps.push_back(made.map);

@@ -23,6 +23,7 @@ class PhotonMaps {
   explicit PhotonMaps(const CompiledScene& scene)
       : plan_(scene.photons_by),
         targets_(static_cast<u32>(scene.photon_targets.size())),
+        scatters_(scene.features.scattering),
         lights_(scene.lights.size()) {}
 
   /// Makes the maps for the samples [first, last) and stores them in `tracer.kernels.tables`, as far as there
@@ -46,7 +47,8 @@ class PhotonMaps {
   bool fill(const PhotonTracer& tracer, const StopFlags& flags, u32 number);
 
   PhotonPlan plan_;
-  u32 targets_ = 0;  // rows of the scene's photon_targets; 0: no photons
+  u32 targets_ = 0;        // rows of the scene's photon_targets; 0: no photons
+  bool scatters_ = false;  // photons leave beams in media
   std::size_t lights_ = 0;
   u32 first_map_ = 0, end_map_ = 0;  // maps in the tables
   u32 wanted_end_ = 0;

@@ -23,6 +23,10 @@ typedef struct PhotonSearch {
   u32 at, end, stride;
 } PhotonSearch;
 
+static inline __global const PhotonMap* map_of_sample(const Scene* scene, u32 sample) {
+  return scene->photon_maps + (photon_map_of(sample) - scene->photon_maps[0].number);
+}
+
 // The photons of the map that the sample looks at.
 static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* at, u32 depth, float time,
                                         const SurfaceInteractions* s, u32 i) {
@@ -34,7 +38,7 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
 #if HAS_TURNS
   search.n *= rsqrt(dot(search.n, search.n));
 #endif
-  search.map = scene->photon_maps[photon_map_of(sample) - scene->photon_maps[0].number];
+  search.map = *map_of_sample(scene, sample);
   const bool on_field = HAS_SDF && instance >= scene->info->instance_count;
   search.flat = search.map.radius * (on_field ? 1.0f : PHOTON_FLAT);
   search.low = photon_cube(search.p - search.map.radius, search.map.inverse_edge);
@@ -115,5 +119,12 @@ static inline MASK next_photon(const Scene* scene, PhotonSearches* searches, MAS
     MASK_LANE(found, i) = -1;
   }
   return found;
+}
+
+static inline MASK photon_slices_of(const SceneRays* rays) {
+  const REAL time = time_of_rays(rays);
+  MASK slices = NO_LANES;
+  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(slices, i) = (int)photon_slice(REAL_LANE(time, i));
+  return slices;
 }
 #endif

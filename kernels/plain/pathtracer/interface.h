@@ -51,6 +51,11 @@ PhotonSearch search_photons(UNIFORM const Scene* scene, const SampleAt* at, int 
                             const SurfaceInteraction* s, HERE);
 bool next_photon(UNIFORM const Scene* scene, PhotonSearch* search, HERE, float3* wi, float3* flux);
 
+// The map of photons that a sample looks at, and their slice of time.
+CONSTANT u32 PHOTON_SLICES;
+UNIFORM __global const PhotonMap* map_of_sample(UNIFORM const Scene* scene, UNIFORM u32 sample);
+CALLED(photon_slices_of) int photon_slice_of(const SceneRay* ray);
+
 // Rays that leave surfaces.
 float3 leave_relief(const SurfaceInteraction* s, float3 wi, float* way);
 float3 leaving_normal(const SurfaceInteraction* s);

@@ -2,13 +2,25 @@
 // mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others.
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
+#include "plain/pathtracer/stretch.cl"
 
 CONSTANT int NOT_DIMMED;
+
+// One of the stretches on which a medium scatters a photon that was mirrored or bent, chosen by how much
+// light each of them scatters.
+typedef struct Beam {
+  float3 o, d, flux;  // flux: over this stretch's part of the light
+  float length;       // may be infinite
+  int sent_on;        // how often the photon was
+  float scattered;    // light on all stretches so far
+  float number;       // in [0, 1), to choose by
+} Beam;
 
 typedef struct Photon {
   PathState path;  // throughput is the flux; depth 1 + what has sent the photon on
   bool bent;       // it has been mirrored or bent
   int dimmed;      // the light whose falling off with distance is still to come, or NOT_DIMMED
+  HAVING(HAS_SCATTERING) Beam beam;
 } Photon;
 
 // A photon that has landed, with the light that it brings.
@@ -21,8 +33,16 @@ typedef struct Landing {
 
 ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at, float3 flux,
                                         int dimmed) {
-  Photon photon = {start_path(scene, at), false, dimmed};
+  Photon photon;
+  photon.path = start_path(scene, at);
   photon.path.throughput = spectrum_of(&photon.path.wavelengths, flux);
+  photon.bent = false;
+  photon.dimmed = dimmed;
+  if (HAS_SCATTERING) {
+    photon.beam.length = 0.0f;
+    photon.beam.scattered = 0.0f;
+    photon.beam.number = numbers_at(at, (int)DIMENSION_STRETCH, true, false).x;
+  }
   return photon;
 }
 
@@ -66,14 +86,38 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
   return true;
 }
 
+// Perhaps takes the photon's stretch for its beam. A number that has made one choice is as good for the next.
+HAVING(HAS_SCATTERING)
+static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
+                               const Encounter* met, Photon* photon) {
+  const Stretch s = find_stretch(scene, begun, ray, met, &photon->path);
+  if (!photon->bent || !s.scatters) return;
+  const SampledSpectrum flux = photon->path.throughput * spectrum_over(s.decay, s.begin);
+  const float light = spectrum_greatest(flux) * lost_part(s.mean * s.length);
+  if (!(light > 0.0f)) return;
+  photon->beam.scattered += light;
+  const float chance = light / photon->beam.scattered;
+  const bool taken = photon->beam.number < chance;
+  photon->beam.number =
+      taken ? photon->beam.number / chance : (photon->beam.number - chance) / real_max(1.0f - chance, 1e-6f);
+  if (!taken) return;
+  photon->beam.o = s.o;
+  photon->beam.d = s.d;
+  photon->beam.length = s.length;
+  photon->beam.flux = spectrum_seen(scene, &photon->path.wavelengths, &flux) * (1.0f / light);
+  photon->beam.sent_on = photon->path.depth - 1;
+}
+
 // Moves the photon by one step. Returns whether it continues; `landed`: it ends on a surface that scatters
 // light.
 ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneRay* ray, Landing* landed,
                               UNIFORM u32* counts) {
   Encounter met;
   landed->is = false;
+  const BegunRay begun = begun_ray_of(ray);
   const bool unseen = meet_interfaces(scene, ray, false, &met, counts);
   forget_glow(ray);
+  if (HAS_SCATTERING) choose_beam(scene, &begun, ray, &met, photon);
   photon->path.throughput *= spectrum_kept(&photon->path.wavelengths, met.absorbed);
   if (unseen || !hit_anything(&met.hit)) return unseen;
   if (HAS_FOG) photon->path.throughput *= clear_of_fog(scene, &met);

@@ -1,69 +1,8 @@
 // Media that scatter, on the way of a path to its next interface: each stretch of a ray gets light from one
 // lamp, at a place that is chosen for it, and may end the ray at another, from where the path continues.
-#include "plain/pathtracer/light_parts.cl"
+#include "plain/pathtracer/gather_beams.cl"
 #include "plain/pathtracer/next_event.cl"
 #include "plain/pathtracer/roulette.cl"
-
-// What a ray is before it goes to its next interface.
-typedef struct BegunRay {
-  float t_min;
-  HAVING(HAS_SCATTERING) float since;
-  HAVING(HAS_SCATTERING) int media_low, media_high, crossings;
-} BegunRay;
-
-static inline BegunRay begun_ray_of(const SceneRay* ray) {
-  BegunRay begun;
-  begun.t_min = ray->t_min;
-  if (HAS_SCATTERING) {
-    begun.since = ray->since;
-    begun.media_low = ray->media_low;
-    begun.media_high = ray->media_high;
-    begun.crossings = ray->crossings;
-  }
-  return begun;
-}
-
-// A stretch of a ray in a medium.
-typedef struct Stretch {
-  bool scatters;
-  float3 o, d;                 // where it begins
-  float length;                // to the next interface
-  float begin;                 // length in the medium before it, for absorption
-  SampledSpectrum decay;       // light lost per unit of length
-  SampledSpectrum scattering;  // light scattered
-  float g;                     // mean cosine of turns
-  float mean;                  // of the decay's colours
-  SampledSpectrum shares;      // of the colours, in the choice of the place where the path is scattered
-  SampledSpectrum drawn;       // and of the one that gets light
-} Stretch;
-
-HAVING(HAS_SCATTERING)
-static inline Stretch find_stretch(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
-                                   const Encounter* met, const PathState* path) {
-  Stretch s;
-  s.scatters = false;
-  s.o = along(ray->o, begun->t_min, ray->d);
-  s.d = ray->d;
-  s.length = real_max(met->hit.t - begun->t_min, 0.0f);
-  s.begin = begun->t_min - begun->since;
-  s.g = 0.0f;
-  float3 decay = (float3)(0.0f), scattering = decay;
-  EACH_ALIKE(int, index, met->before) {
-    const float4 some = scene->media[index].scattering;
-    if (some.x + some.y + some.z > 0.0f) {
-      s.scatters = true;
-      decay = scene->media[index].absorption.xyz;
-      scattering = some.xyz;
-      s.g = some.w;
-    }
-  }
-  s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
-  s.decay = spectrum_of(&path->wavelengths, decay);
-  s.scattering = spectrum_of(&path->wavelengths, scattering);
-  s.shares = shares_of(path->throughput);
-  s.drawn = shares_of(where_positive(path->throughput, s.scattering));
-  return s;
-}
 
 // What arrives at the distance `at` of light that comes from the stretch's end, and is scattered there.
 static inline SampledSpectrum scattered_at(const PathState* path, const Stretch* s, float at) {
@@ -155,7 +94,7 @@ static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, 
   const Scattered here = {
       true, s->o, s->d, s->length, at, s->mean, next_pdf(s->decay, s->drawn, s->length, at)};
   path->scattered = here;
-  forget_gathered(path);
+  if (HAS_CAUSTICS) note_gathered(path, false, (float3)(0.0f));
   path->pdf = pdf * phase_pdf(s->g, cosine);
   path->from = along(s->o, at, s->d);
   path->straight = false;
@@ -186,8 +125,11 @@ static bool scatter_on_stretch(UNIFORM const Scene* scene, PathState* path, cons
   if (!any(s.scatters)) return false;
   const int dimension = (int)DIMENSION_STRETCH + (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                         begun->crossings * (int)DIMENSIONS_A_CROSSING;
-  if (scene->info->light_count > 0u && s.scatters && path->depth <= (int)scene->info->max_depth)
-    path->radiance += light_on_stretch(scene, path, begun, ray, &s, dimension, counts);
+  if (s.scatters && path->depth <= (int)scene->info->max_depth) {
+    if (scene->info->light_count > 0u)
+      path->radiance += light_on_stretch(scene, path, begun, ray, &s, dimension, counts);
+    if (HAS_CAUSTICS) path->radiance += gather_beams(scene, path, ray, &s);
+  }
   const Numbers v = numbers_at(&path->at, dimension + 4, true, true);
   const float chosen = by_share(s.decay, s.shares, v.y);
   const float at = chosen > 0.0f ? depth_of_lost(v.x) / nonzero(chosen) : INFINITY;

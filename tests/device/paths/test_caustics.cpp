@@ -55,6 +55,23 @@ SceneDescription ball_scene(Shining shining, double x, int samples) {
   return scene;
 }
 
+// A view of mist below the ball, where the light through it comes together over a black floor.
+SceneDescription mist_scene(Shining shining, int samples) {
+  SceneDescription scene = ball_scene(shining, -0.05, samples);
+  scene.camera.target = {-0.05, 0.02, 0};
+  scene.camera.fov = 6;
+  scene.image.width = scene.image.height = 24;
+  scene.render.photons = 16384;
+  scene.render.photon_radius = 0.02;
+  scene.materials[static_cast<std::size_t>(scene.objects[0].material)].diffuse = dvec3(0);
+  scenes::place(scene, BoxShape{{1.5, 0.6, 1.5}}, scenes::add_dielectric(scene, 1, {0.1, 0.1, 0.1}, -1),
+                glm::translate(glm::dmat4(1), {0, 0.6, 0}));
+  scene.materials.back().shadow_filter = true;
+  scene.media.back().scattering = {0.5, 0.3, 0.1};
+  scene.media.back().anisotropy = 0.4;
+  return scene;
+}
+
 double reflectance(double cos_i, double eta) {
   const double cos_t = std::sqrt(std::max(0.0, 1 - (1 - cos_i * cos_i) / (eta * eta)));
   const double s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
@@ -169,6 +186,36 @@ TEST_CASE("photons bring what paths find by chance, from every light that has an
       const Mean met = mean_on(device, scene);
       CAPTURE(int(shining), brought.value.x, met.value.x);
       CHECK(brought.value.x == Approx(met.value.x).epsilon(0.04));
+    }
+  });
+}
+
+TEST_CASE("photons bring into mist what paths find there by chance") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const Shining shining : {of_sphere, of_rectangle, of_sun}) {
+      SceneDescription scene = mist_scene(shining, 256);
+      for (LightDescription& light : scene.lights) light.hidden = false;
+      add_lamps(scene);
+      const Mean brought = mean_on(device, scene);
+      scene.render.caustics = false;
+      scene.render.samples = 4096;
+      const Mean met = mean_on(device, scene);
+      for (const int i : {0, 1, 2}) {
+        CAPTURE(int(shining), i);
+        CHECK(brought.value[i] == Approx(met.value[i]).epsilon(0.04));
+      }
+    }
+  });
+}
+
+TEST_CASE("lights without extent light mist behind glass") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const Shining shining : {of_point, of_spot, of_parallel}) {
+      SceneDescription scene = mist_scene(shining, 64);
+      INFO(int(shining));
+      const double all = mean_on(device, scene).value.x;
+      scene.render.caustics = false;
+      CHECK(all > 1.2 * mean_on(device, scene).value.x);
     }
   });
 }

@@ -1,0 +1,54 @@
+// Light that photons bring into media. A photon scatters light all along its way through a medium, as a beam,
+// and a stretch of a path gets the light of those beams that pass within a radius of it (Jarosz and others
+// 2011, "A Comprehensive Theory of Volumetric Radiance Estimation using Photon Points and Beams", equation
+// 38).
+#include "plain/pathtracer/light_parts.cl"
+#include "plain/pathtracer/stretch.cl"
+
+#define BEAM_SINE 0.01f  // beams that are nearly parallel to a path count as if they met it at this angle
+
+HAVING(HAS_SCATTERING);
+
+// Adds what the stretch scatters of a beam towards its beginning, over the scattering and twice the radius.
+HAVING(HAS_CAUSTICS)
+static inline void scatter_beam(const PathState* path, const Stretch* s, UNIFORM __global const float4* beam,
+                                UNIFORM float radius, int slice, int deepest, SampledSpectrum* sum) {
+  const float4 begin = beam[0], way = beam[1], flux = beam[2];
+  const int slice_and_sent = (int)way.w;
+  const float3 d = way.xyz, to = begin.xyz - s->o, normal = cross(s->d, d);
+  const float sine2 = dot(normal, normal), apart = dot(to, normal);
+  if (apart * apart < radius * radius * sine2 && slice_and_sent / (int)PHOTON_SLICES <= deepest &&
+      slice_and_sent % (int)PHOTON_SLICES == slice) {
+    const float at = dot(cross(to, d), normal) / sine2, of_beam = dot(cross(to, s->d), normal) / sine2;
+    if (at > 0.0f && at < s->length && of_beam > 0.0f && of_beam < begin.w) {
+      const float turned = phase_pdf(s->g, -dot(s->d, d)) / real_max(real_sqrt(sine2), BEAM_SINE);
+      *sum += spectrum_over(s->decay, s->begin + at + of_beam) * spectrum_of(&path->wavelengths, flux.xyz) *
+              turned;
+    }
+  }
+}
+
+// The light of photons that the stretch scatters towards its beginning. Each sample of a pixel looks at its
+// quarter of the beams of its map, which all pixels share.
+HAVING(HAS_CAUSTICS)
+static SampledSpectrum gather_beams(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
+                                    const Stretch* s) {
+  const int slice = photon_slice_of(ray), deepest = (int)scene->info->max_depth - path->depth;
+  SampledSpectrum sum = (SampledSpectrum)(0.0f);
+  float radius = 1.0f;
+  EACH_ALIKE(u32, sample, (u32)path->at.sample) {
+    __global const PhotonMap* map = map_of_sample(scene, sample);
+    const u32 turn = sample % PHOTON_MAP_SAMPLES;
+    radius = map->radius;
+    for (u32 i = map->beams * turn / PHOTON_MAP_SAMPLES; i < map->beams * (turn + 1u) / PHOTON_MAP_SAMPLES;
+         ++i)
+      scatter_beam(path, s, scene->photons + map->first_beam + 3u * i, map->radius, slice, deepest, &sum);
+  }
+  const float factor = (float)(PHOTON_MAP_SAMPLES * PHOTON_SLICES) / (2.0f * radius);
+  const SampledSpectrum light = path->throughput * s->scattering * sum * factor;
+  if (HAS_LIGHT_PARTS) {
+    const LobeShares shares = all_of_medium();
+    note_sent(path, &shares, false, light);
+  }
+  return light;
+}

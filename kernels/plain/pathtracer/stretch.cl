@@ -1,0 +1,63 @@
+// The stretch of a ray to its next interface, where that lies in a medium that scatters.
+#include "plain/pathtracer/path_state.cl"
+
+// What a ray is before it goes to its next interface.
+typedef struct BegunRay {
+  float t_min;
+  HAVING(HAS_SCATTERING) float since;
+  HAVING(HAS_SCATTERING) int media_low, media_high, crossings;
+} BegunRay;
+
+static inline BegunRay begun_ray_of(const SceneRay* ray) {
+  BegunRay begun;
+  begun.t_min = ray->t_min;
+  if (HAS_SCATTERING) {
+    begun.since = ray->since;
+    begun.media_low = ray->media_low;
+    begun.media_high = ray->media_high;
+    begun.crossings = ray->crossings;
+  }
+  return begun;
+}
+
+// A stretch of a ray in a medium.
+typedef struct Stretch {
+  bool scatters;
+  float3 o, d;                 // where it begins
+  float length;                // to the next interface
+  float begin;                 // length in the medium before it, for absorption
+  SampledSpectrum decay;       // light lost per unit of length
+  SampledSpectrum scattering;  // light scattered
+  float g;                     // mean cosine of turns
+  float mean;                  // of the decay's colours
+  SampledSpectrum shares;      // of the colours, in the choice of the place where the path is scattered
+  SampledSpectrum drawn;       // and of the one that gets light
+} Stretch;
+
+HAVING(HAS_SCATTERING)
+static inline Stretch find_stretch(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
+                                   const Encounter* met, const PathState* path) {
+  Stretch s;
+  s.scatters = false;
+  s.o = along(ray->o, begun->t_min, ray->d);
+  s.d = ray->d;
+  s.length = real_max(met->hit.t - begun->t_min, 0.0f);
+  s.begin = begun->t_min - begun->since;
+  s.g = 0.0f;
+  float3 decay = (float3)(0.0f), scattering = decay;
+  EACH_ALIKE(int, index, met->before) {
+    const float4 some = scene->media[index].scattering;
+    if (some.x + some.y + some.z > 0.0f) {
+      s.scatters = true;
+      decay = scene->media[index].absorption.xyz;
+      scattering = some.xyz;
+      s.g = some.w;
+    }
+  }
+  s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
+  s.decay = spectrum_of(&path->wavelengths, decay);
+  s.scattering = spectrum_of(&path->wavelengths, scattering);
+  s.shares = shares_of(path->throughput);
+  s.drawn = shares_of(where_positive(path->throughput, s.scattering));
+  return s;
+}
