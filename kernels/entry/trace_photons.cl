@@ -24,7 +24,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   EACH_LANE(i, lanes) cells[first - launch->first + i] = NO_PHOTON;
 #if HAS_SCATTERING
   __global float4* beams = landed + 2u * (launch->last - launch->first) + 3u * (first - launch->first);
-  EACH_LANE(i, lanes) beams[3u * i] = (float4)(0.0f);
+  EACH_LANE(i, lanes) beams[3u * i + 2u] = (float4)(0.0f);  // no light
 #endif
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
   Photons photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
@@ -73,7 +73,8 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
 // Reads the scene and the media at the lights; writes what has become of the photons [launch.first,
 // launch.last): to landed, two rows a photon, where it has landed, on an object as it stood when the shutter
 // opened, the direction that it came from, and its flux, and after those of all photons, in media that
-// scatter, three rows a photon: its beam, or zeros; to cells, its cell's number, or NO_PHOTON.
+// scatter, three rows a photon: its beam, the third row 0 without one; to cells, its cell's number, or
+// NO_PHOTON.
 __kernel void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
                             __global float4* restrict landed, __global u32* restrict cells,
                             const PhotonLaunch launch) {
