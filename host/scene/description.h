@@ -86,7 +86,7 @@ struct EnvironmentDescription {
   Image picture;              // image: equirectangular, zenith in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the sine of the elevation
   // Sky, and halo, which is a sky with ice crystals:
-  double sun_altitude = 40, sun_azimuth = 60;  // degrees: [-18, 90] ([0, 90] for a halo), and clockwise from ahead
+  double sun_altitude = 40, sun_azimuth = 60;  // degrees, from -18 (halo: 0); clockwise from ahead
   double sun_size = 0.53;                      // angular diameter in degrees; 0: no sun
   double turbidity = 3;                        // 2 very clear .. 10 hazy
   dvec3 ground{0.2};                           // albedo of the ground
