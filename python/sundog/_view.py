@@ -34,12 +34,12 @@ def _turned(camera, across, up, nearer):
 
 
 def _send_pictures(reference, session):
-    """Sends each new picture until the view is closed or gone."""
+    """Sends each new picture until the view is closed or gone, or the program ends."""
     revision = 0
     while True:
         session.wait_for_change(revision, 0.5)
         view = reference()
-        if view is None or view._closed.is_set():
+        if view is None or view._closed.is_set() or not threading.main_thread().is_alive():
             return
         snapshot = session.snapshot()
         if snapshot.revision != revision:
@@ -57,10 +57,11 @@ class View(anywidget.AnyWidget):
     parameters = traitlets.Dict().tag(sync=True)
 
     def __init__(self, scene, parameters=None, devices=None):
+        self._lock, self._closed = threading.Lock(), threading.Event()
+        self._session = None  # as long as there may be an error
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene(scene)
         if "/camera/position" not in self._scene or "/camera/target" not in self._scene:
             raise ValueError("sundog.view: the scene's camera wants a position and a target to be turned about")
-        self._lock, self._closed = threading.Lock(), threading.Event()
         self._session = Session(devices)
         size = [self._scene[f"/image/{side}"] if f"/image/{side}" in self._scene else usual
                 for side, usual in (("width", 640), ("height", 480))]
@@ -69,7 +70,8 @@ class View(anywidget.AnyWidget):
         super().__init__(width=size[0], height=size[1], parameters=sliders)
         self.on_msg(self._heard)
         self._session.start(self._scene)
-        threading.Thread(target=_send_pictures, args=(weakref.ref(self), self._session), daemon=True).start()
+        # No daemon: the interpreter would end it within the session.
+        threading.Thread(target=_send_pictures, args=(weakref.ref(self), self._session)).start()
 
     @property
     def scene(self):
@@ -106,9 +108,14 @@ class View(anywidget.AnyWidget):
 
     def close(self):
         self._closed.set()
-        self._session.cancel()
+        if self._session:
+            self._session.cancel()
         super().close()
 
     def _show(self, snapshot):
-        text = snapshot.error or f"{snapshot.samples} samples a pixel, {snapshot.seconds:.2f} s"
-        self.send({"text": text}, buffers=[snapshot.image._repr_png_()] if not snapshot.error else [])
+        image = snapshot.image
+        if snapshot.error:
+            self.send({"text": snapshot.error}, buffers=[])
+        elif image.width > 0:  # there is one
+            text = f"{snapshot.samples} samples a pixel, {snapshot.seconds:.2f} s"
+            self.send({"text": text}, buffers=[image._repr_png_()])

@@ -187,7 +187,6 @@ if child == 0:
     message = str(error_of(lambda: sundog.render(small())))
     os._exit(0 if "spawn" in message else 1)
 assert os.waitpid(child, 0)[1] == 0
-print("the package works")
 
 # Scenes of the package, and a live view of one, as its page would move it.
 assert "hollow_ice" in sundog.examples()
@@ -222,3 +221,5 @@ assert "fov" in error_of(lambda: view.set("/camera/fov", 500)).place
 view._heard(view, {"set": {"/camera/fov": 500}}, [])  # the page is told, and shows the scene before
 assert any("fov" in message["text"] for message, _ in sent) and view.scene["/camera/fov"] == 50
 view.close()
+
+print("the package works")
