@@ -10,8 +10,8 @@
 
 #include "compile/halo/halo_map.h"
 #include "compile/materials.h"
-#include "compile/sky.h"
-#include "compile/twilight.h"
+#include "compile/sky/sky.h"
+#include "compile/sky/twilight.h"
 #include "scene/pack.h"
 
 namespace sundog {

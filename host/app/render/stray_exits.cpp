@@ -111,8 +111,15 @@ std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDes
       "have an interior, but their meshes are not closed");
   say(found.flat, "has an interior, but its shape is not closed",
       "have an interior, but their shapes are not closed");
-  std::string all = fmt::format("{} rays left a solid that they had not entered", count);
-  if (sentences.empty() && !found.all.empty()) all += ": surfaces of " + found.all.list() + " may coincide";
+  const double pixels = double(scene.image.width) * scene.image.height;
+  std::string all =
+      fmt::format("{} rays, in at most {:.2g} % of the pixels, left a solid that they had not entered", count,
+                  100 * std::min(1.0, static_cast<double>(count) / pixels));
+  if (sentences.empty() && !found.all.empty())
+    all += fmt::format(
+        ": surfaces of {} may coincide; let one reach into the other, its medium with the higher "
+        "\"priority\" wins, or leave a gap",
+        found.all.list());
   sentences.insert(sentences.begin(), all);
   return sentences;
 }

@@ -4,8 +4,8 @@
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
-#include "compile/sky.h"
-#include "compile/twilight.h"
+#include "compile/sky/sky.h"
+#include "compile/sky/twilight.h"
 
 using namespace sundog;
 using glm::dvec3;

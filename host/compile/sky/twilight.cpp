@@ -1,5 +1,5 @@
 // See twilight.h. Lengths in km.
-#include "compile/twilight.h"
+#include "compile/sky/twilight.h"
 
 #include <tbb/parallel_for.h>
 

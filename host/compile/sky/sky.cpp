@@ -1,5 +1,5 @@
 // See sky.h.
-#include "compile/sky.h"
+#include "compile/sky/sky.h"
 
 #include <algorithm>
 #include <cmath>
