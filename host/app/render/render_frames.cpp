@@ -215,9 +215,9 @@ Outcome FrameRun::take(int number, std::optional<int> next) {
 }
 
 FramePointer FrameRun::loaded(int number) {
-  if (!ahead_.valid()) return load_frame(number);
-  FramePointer frame = ahead_.get();
-  return ahead_number_ == number ? std::move(frame) : load_frame(number);
+  if (ahead_.valid() && ahead_number_ == number) return ahead_.get();
+  ahead_ = {};  // of a frame that another process has
+  return load_frame(number);
 }
 
 FramePointer FrameRun::load_frame(int number) {

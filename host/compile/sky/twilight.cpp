@@ -218,7 +218,8 @@ class Scattered {
 
   /// The logarithm of the mean.
   Spectrum mean_at(int place, bool again) const {
-    const double root = (place / angles) / (heights - 1.0), height = top * root * root;
+    const int row = place / angles;
+    const double root = row / (heights - 1.0), height = top * root * root;
     const double angle = first_angle_ + 2 * reach * (place % angles) / (angles - 1.0);
     const dvec3 sun(std::sin(angle), std::cos(angle), 0);
     Spectrum mean{};
@@ -271,7 +272,8 @@ Twilight::Twilight(double turbidity, double sun_height) : light_(std::size_t(zen
   const Scattered scattered(air, sun_columns, sun_height);
   const dvec3 sun(std::cos(sun_height), std::sin(sun_height), 0);
   tbb::parallel_for(0, zenith_rows * azimuth_columns, [&](int i) {
-    const double zenith = angle_of_row((i / azimuth_columns) / (zenith_rows - 1.0)),
+    const int row = i / azimuth_columns;
+    const double zenith = angle_of_row(row / (zenith_rows - 1.0)),
                  azimuth = pi * (i % azimuth_columns) / (azimuth_columns - 1.0);
     const dvec3 d(std::sin(zenith) * std::cos(azimuth), std::cos(zenith),
                   std::sin(zenith) * std::sin(azimuth));
