@@ -82,7 +82,7 @@ struct DrawnFrame {
   u32 samples = 0;
 };
 
-DrawnFrame draw_frame(const RenderCommand& command, LoadedScene scene, const Setup& setup, TimeLedger& times);
+DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setup& setup, TimeLedger& times);
 
 /// Writes the frame's files. `clock` began with the frame. The scene is let go before the frame's time ends:
 /// freeing a large one takes its time, too.

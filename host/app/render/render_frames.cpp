@@ -205,11 +205,11 @@ Outcome FrameRun::take(int number, std::optional<int> next) {
   frame->from_step = {};
   settle();
   frame->times.waited += frame->from_step.seconds();
-  saving_ = std::async(overlaps ? std::launch::async : std::launch::deferred,
-                       [this, drawn = std::move(frame)]() mutable {
-                         save_frame(drawn->drawn, drawn->clock, drawn->times);
-                         return std::move(drawn);
-                       });
+  saving_ =
+      std::async(overlaps ? std::launch::async : std::launch::deferred, [drawn = std::move(frame)]() mutable {
+        save_frame(drawn->drawn, drawn->clock, drawn->times);
+        return std::move(drawn);
+      });
   if (!overlaps) settle();
   return Outcome::rendered;
 }
