@@ -218,7 +218,7 @@ while not any(buffers for _, buffers in sent) and time.monotonic() < deadline:
     time.sleep(0.01)
 assert sent and bytes(sent[-1][1][0]).startswith(b"\x89PNG"), sent
 assert "fov" in error_of(lambda: view.set("/camera/fov", 500)).place
-view._heard(view, {"set": {"/camera/fov": 500}}, [])  # the page is told, and shows the scene before
+view._heard(view, {"set": {"/camera/fov": 500}}, [])  # the page shows the error, and the scene before
 assert any("fov" in message["text"] for message, _ in sent) and view.scene["/camera/fov"] == 50
 view.close()
 

@@ -10,7 +10,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double unit = 20;  // kcd/m^2
+constexpr double unit = sky_unit / 1000;  // kcd/m^2
 
 dvec3 perez(const dvec3* c, double cos_zenith, double sun) {
   const double cosine = std::cos(sun);
@@ -21,13 +21,9 @@ dvec3 perez(const dvec3* c, double cos_zenith, double sun) {
   return value;
 }
 
-/// Converts luminance and chromaticity to linear sRGB (IEC 61966-2-1).
+/// Linear sRGB of luminance and chromaticity.
 dvec3 rgb_of(double luminance, double x, double y) {
-  const double X = x / y * luminance, Z = (1 - x - y) / y * luminance;
-  return glm::max(
-      dvec3(3.2406 * X - 1.5372 * luminance - 0.4986 * Z, -0.9689 * X + 1.8758 * luminance + 0.0415 * Z,
-            0.0557 * X - 0.2040 * luminance + 1.0570 * Z),
-      dvec3(0));
+  return glm::max(linear_srgb(x / y * luminance, luminance, (1 - x - y) / y * luminance), dvec3(0));
 }
 
 /// Chromaticity at the zenith: a cubic in the sun's angle with coefficients quadratic in turbidity.
@@ -42,6 +38,11 @@ double zenith_chromaticity(const double (&c)[3][4], double turbidity, double ang
 }
 
 }  // namespace
+
+dvec3 linear_srgb(double x, double y, double z) {
+  return {3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
+          0.0557 * x - 0.2040 * y + 1.0570 * z};
+}
 
 Sky::Sky(double turbidity, double sun_height)
     : turbidity_(turbidity), sun_zenith_(std::numbers::pi / 2 - sun_height) {

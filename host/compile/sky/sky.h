@@ -4,6 +4,12 @@
 
 namespace sundog {
 
+/// 1 of a sky's light, in cd/m^2.
+constexpr double sky_unit = 20000;
+
+/// Linear sRGB of CIE XYZ (IEC 61966-2-1). May be negative.
+glm::dvec3 linear_srgb(double x, double y, double z);
+
 /// The sky of Preetham, Shirley and Smits 1999 ("A Practical Analytic Model for Daylight"): Perez's formula
 /// for luminance and chromaticity, fitted to turbidity (2: very clear, 10: hazy) and solar altitude. Linear
 /// sRGB; 1 is 20 kcd/m^2, so that a white surface in the sun is about 1.

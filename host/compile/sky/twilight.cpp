@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compile/sky/sky.h"
 #include "scene/spectra/cie.h"
 
 namespace sundog {
@@ -28,7 +29,6 @@ constexpr Spectrum ozone_section = {0.03, 0.11, 0.36, 0.80, 1.70, 2.80, 3.60, 4.
 constexpr double ozone_column = 8.07e18, ozone_depth = 15;  // 300 DU as molecules a cm^2; km at its peak
 constexpr double haze_albedo = 0.9, haze_g = 0.76;
 constexpr double air_height = 8, haze_height = 1.2;  // in which they thin to 1/e
-constexpr double kilocandela_unit = 20;              // as in sky.cpp
 constexpr double night = 2e-4;                       // cd/m^2 (Leinert and others 1998)
 
 /// Amounts of air, haze and ozone: densities relative to their greatest, or columns of these in km.
@@ -243,7 +243,7 @@ class Scattered {
   std::vector<Spectrum> last_, all_;  // logarithms
 };
 
-/// Linear sRGB (IEC 61966-2-1) in the unit of sky.h.
+/// Linear sRGB in the unit of sky.h.
 dvec3 color_of(const Spectrum& light) {
   dvec3 xyz(0);
   const auto rows = cie_rows();
@@ -253,9 +253,8 @@ dvec3 color_of(const Spectrum& light) {
     if (band < 0 || band >= bands) continue;
     xyz += light[std::size_t(band)] * dvec3(rows[i].x, rows[i].y, rows[i].z);
   }
-  xyz *= 683 * SPECTRUM_STEP / (1000 * kilocandela_unit);
-  return {3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z, -0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z,
-          0.0557 * xyz.x - 0.2040 * xyz.y + 1.0570 * xyz.z};
+  xyz *= 683 * SPECTRUM_STEP / sky_unit;
+  return linear_srgb(xyz.x, xyz.y, xyz.z);
 }
 
 constexpr int zenith_rows = 96, azimuth_columns = 96;
@@ -277,8 +276,7 @@ Twilight::Twilight(double turbidity, double sun_height) : light_(std::size_t(zen
                  azimuth = pi * (i % azimuth_columns) / (azimuth_columns - 1.0);
     const dvec3 d(std::sin(zenith) * std::cos(azimuth), std::cos(zenith),
                   std::sin(zenith) * std::sin(azimuth));
-    light_[std::size_t(i)] =
-        glm::max(color_of(scattered.light(d, sun)), dvec3(0)) + dvec3(night / (1000 * kilocandela_unit));
+    light_[std::size_t(i)] = glm::max(color_of(scattered.light(d, sun)), dvec3(0)) + dvec3(night / sky_unit);
   });
 }
 
