@@ -118,6 +118,7 @@ void keep_freed_memory() {
   constexpr int largest_piece = 32 << 20, most = 256 << 20;  // freeing a larger block unmaps it
   ::mallopt(M_MMAP_THRESHOLD, largest_piece);
   ::mallopt(M_TRIM_THRESHOLD, most);
+  ::mallopt(M_MXFAST, 0);  // small blocks kept apart are joined again whenever a large one is freed
 #endif
 }
 

@@ -2,12 +2,10 @@
 // normals. Out: normals, with vertices split along creases; computed in parallel.
 #include "models/normals.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <compare>
 #include <limits>
@@ -17,6 +15,9 @@
 #include <span>
 #include <stdexcept>
 #include <utility>
+
+#include "models/angles.h"
+#include "models/corners.h"
 
 namespace sundog::models {
 namespace {
@@ -35,21 +36,6 @@ bool normalize(glm::dvec3 sum, glm::vec3& out) {
   return true;
 }
 
-uint32_t corner_vertex(const Mesh& mesh, uint32_t corner) {
-  return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
-}
-
-template <class Body>
-void in_parallel(std::size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
-}
-
-/// Large arrays are first touched by the threads that fill them: zeroing one takes longer than its use.
-template <class T>
-using Filled = std::unique_ptr<T[]>;
-
 /// Unit length, or 0 for a degenerate face.
 Filled<glm::vec3> face_normals(const Mesh& mesh) {
   auto normals = std::make_unique_for_overwrite<glm::vec3[]>(mesh.triangles.size());
@@ -60,17 +46,6 @@ Filled<glm::vec3> face_normals(const Mesh& mesh) {
   });
   return normals;
 }
-
-/// The corners that need a normal, grouped by point, in order: corners[first[p] .. first[p + 1]).
-struct CornersByPoint {
-  std::vector<uint32_t> first;
-  Filled<uint32_t> corners;
-
-  std::size_t points() const { return first.size() - 1; }
-  std::span<const uint32_t> around(std::size_t point) const {
-    return {corners.get() + first[point], first[point + 1] - first[point]};
-  }
-};
 
 /// Inputs shared by all points.
 struct Surroundings {
@@ -89,12 +64,6 @@ struct Surroundings {
     return glm::dot(glm::dvec3(face_normals[face]), glm::dvec3(face_normals[other])) >= cosine - 1e-7;
   }
   bool has_area(uint32_t corner) const { return face_normals[corner / 3] != glm::vec3(0); }
-  double angle(uint32_t corner) const {
-    const glm::dvec3 at = mesh.positions[corner_vertex(mesh, corner)];
-    const glm::dvec3 a = glm::dvec3(mesh.positions[neighbour(corner, 1)]) - at;
-    const glm::dvec3 b = glm::dvec3(mesh.positions[neighbour(corner, 2)]) - at;
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-  }
 };
 
 /// A vertex of the result. A vertex's first fan keeps it; each further one gets a copy.
@@ -188,11 +157,28 @@ class PointFans {
     }
   }
 
+  // Sets the angle of each corner, in radians.
+  void measure_angles(std::span<const uint32_t> corners) {
+    sines_.resize(corners.size());
+    cosines_.resize(corners.size());
+    angles_.resize(corners.size());
+    const auto position = [&](uint32_t vertex) { return glm::dvec3(shared_.mesh.positions[vertex]); };
+    for (uint32_t i = 0; i < corners.size(); ++i) {
+      const glm::dvec3 at = position(corner_vertex(shared_.mesh, corners[i]));
+      const glm::dvec3 a = position(shared_.neighbour(corners[i], 1)) - at;
+      const glm::dvec3 b = position(shared_.neighbour(corners[i], 2)) - at;
+      sines_[i] = glm::length(glm::cross(a, b));
+      cosines_[i] = glm::dot(a, b);
+    }
+    angles_of(sines_, cosines_, angles_);
+  }
+
   void sum_fans(std::span<const uint32_t> corners) {
+    measure_angles(corners);
     sums_.assign(corners.size(), glm::dvec3(0));
     for (uint32_t i = 0; i < corners.size(); ++i)
       if (shared_.has_area(corners[i]))
-        sums_[root(i)] += shared_.angle(corners[i]) * glm::dvec3(shared_.face_normals[corners[i] / 3]);
+        sums_[root(i)] += angles_[i] * glm::dvec3(shared_.face_normals[corners[i] / 3]);
   }
 
   // The common case: one vertex and one fan.
@@ -243,40 +229,10 @@ class PointFans {
   std::vector<uint32_t> fan_;                                     // union-find over the current corners
   std::array<std::array<uint32_t, 2>, most_faces_at_edge> ends_;  // the other points of few corners' edges
   std::vector<Spoke> spokes_;
+  std::vector<double> sines_, cosines_, angles_;  // of the current corners
   std::vector<glm::dvec3> sums_;
   std::vector<Claim> claims_;
 };
-
-CornersByPoint gather(const Mesh& mesh, const std::vector<bool>& has_normal,
-                      const std::vector<uint32_t>& points) {
-  const std::size_t corner_count = mesh.triangles.size() * 3;
-  const auto of_wanting = [&](std::size_t corner, const auto& use) {
-    const uint32_t vertex = corner_vertex(mesh, static_cast<uint32_t>(corner));
-    if (!has_normal[vertex]) use(points.empty() ? vertex : points[vertex]);
-  };
-  CornersByPoint by_point;
-  std::vector<uint32_t>& first = by_point.first;
-  first.assign(mesh.positions.size() + 1, 0);
-  in_parallel(corner_count, [&](std::size_t c) {
-    of_wanting(
-        c, [&](uint32_t point) { std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed); });
-  });
-  std::exclusive_scan(first.begin(), first.end(), first.begin(), 0u);
-  by_point.corners = std::make_unique_for_overwrite<uint32_t[]>(first.back());
-  // Each start advances to its end, which is the next start.
-  in_parallel(corner_count, [&](std::size_t c) {
-    of_wanting(c, [&](uint32_t point) {
-      by_point.corners[std::atomic_ref(first[point]).fetch_add(1, std::memory_order_relaxed)] =
-          static_cast<uint32_t>(c);
-    });
-  });
-  std::shift_right(first.begin(), first.end(), 1);
-  first[0] = 0;
-  in_parallel(by_point.points(), [&](std::size_t p) {
-    std::sort(by_point.corners.get() + first[p], by_point.corners.get() + first[p + 1]);
-  });
-  return by_point;
-}
 
 /// The points [first, last), whose corners are contiguous.
 struct Block {
@@ -360,13 +316,14 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
                       const std::vector<std::uint32_t>& point_of_vertex,
                       const std::vector<std::uint32_t>& groups) {
   if (mesh.triangles.size() > most_triangles) throw std::length_error("more than 2^30 triangles");
-  if (has_normal.empty()) has_normal.assign(mesh.positions.size(), !mesh.normals.empty());
+  if (has_normal.empty()) has_normal.assign(mesh.normals.size(), true);  // none, or one per vertex
   std::vector<glm::vec3>& normals = mesh.normals.values();
-  normals.resize(mesh.positions.size());
-  bool any = false, all = true;
+  // A vertex without a triangle keeps this.
+  normals.resize(mesh.positions.size(), has_normal.empty() ? any_direction : glm::vec3(0));
+  bool any = false, all = !has_normal.empty();
   for (std::size_t i = 0; i < has_normal.size(); ++i) {
     has_normal[i] = has_normal[i] && normalize(normals[i], normals[i]);
-    if (!has_normal[i]) normals[i] = any_direction;  // for vertices without a triangle
+    if (!has_normal[i]) normals[i] = any_direction;
     any = any || has_normal[i];
     all = all && has_normal[i];
   }
@@ -375,7 +332,8 @@ void complete_normals(Mesh& mesh, std::vector<bool> has_normal, double crease_de
     mesh.normals.clear();
     return;
   }
-  give_normals(mesh, gather(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex, groups);
+  give_normals(mesh, gather_corners(mesh, has_normal, point_of_vertex), crease_degrees, point_of_vertex,
+               groups);
 }
 
 std::vector<std::uint32_t> weld_positions(const Mesh& mesh) {

@@ -3,6 +3,7 @@
 
 #include "catch.h"
 #include "model_files.h"
+#include "models/angles.h"
 #include "models/normals.h"
 #include "models/polygon.h"
 
@@ -233,4 +234,21 @@ TEST_CASE("gzipped models load, and broken gzip data is named with its byte", "[
              ContainsSubstring("unpack to more than 64 MiB") && ContainsSubstring("gunzip"));
   CHECK_THAT(load_error(std::filesystem::path("/nowhere/a.obj")),
              ContainsSubstring("cannot be read: No such file"));
+}
+
+TEST_CASE("the angles of corners are arc tangents, thin and blunt corners included", "[models]") {
+  std::vector<double> sines, cosines;
+  for (const double scale : {1e-30, 1.0, 1e30})
+    for (int i = 0; i <= 1800; ++i) {
+      const double angle = pi * i / 1800;
+      sines.push_back(scale * (i == 0 || i == 1800 ? 1e-12 : std::sin(angle)));
+      cosines.push_back(scale * std::cos(angle));
+    }
+  std::vector<double> angles(sines.size());
+  models::angles_of(sines, cosines, angles);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double right = std::atan2(sines[i], cosines[i]);
+    if (!(std::abs(angles[i] - right) <= 1e-15 * right))
+      FAIL_CHECK(i << ": " << angles[i] << " for " << right);
+  }
 }

@@ -1,6 +1,7 @@
 // PLY, from small files written here.
 #include <cctype>
 #include <cstring>
+#include <limits>
 
 #include "catch.h"
 #include "model_files.h"
@@ -96,6 +97,37 @@ TEST_CASE("binary PLY triangles are read alike with a polygon among them, and re
   CHECK(x_of(mixed, 12346) == 12347.0f);
   CHECK_THAT(load_error("a.ply", file(-1, 40000)),
              ContainsSubstring("face 19999: vertex 40000, but there are 20003 vertices"));
+}
+
+TEST_CASE("a large binary PLY's vertices are read alike wherever they lie, and the first bad one is named",
+          "[models]") {
+  constexpr int vertices = 50000;
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::string more = "property double nx\nproperty double ny\nproperty double nz\n";
+  const auto file = [&](const std::vector<int>& lost, const std::vector<int>& beyond) {
+    std::string bytes = header("binary_little_endian", xyz + more, vertices, 1);
+    for (int i = 0; i < vertices; ++i) {
+      for (const float x : {std::ranges::count(lost, i) > 0 ? nan : float(i), 2.0f, float(i % 3)})
+        put(bytes, x, false);
+      for (const double n : {0.0, 0.0, std::ranges::count(beyond, i) > 0 ? 1e300 : 2.0}) put(bytes, n, false);
+    }
+    bytes += '\3';
+    for (const std::uint32_t corner : {0, 20000, 49999}) put(bytes, corner, false);
+    return bytes;
+  };
+  // At the edges of the parts that threads read.
+  const Mesh mesh = load_text("a.ply", file({16383, 16384, 16385, 32768}, {})).meshes.at(0);
+  REQUIRE(mesh.positions.size() == vertices);
+  for (const std::size_t i : {0, 16382, 16386, 20000, 32767, 32769, 49999}) {
+    CHECK(mesh.positions[i] == glm::vec3(float(i), 2, float(i % 3)));
+    CHECK(mesh.normals[i] == glm::vec3(0, 0, 1));
+  }
+  for (const std::size_t i : {16383, 16384, 16385}) CHECK(mesh.positions[i] == mesh.positions[16382]);
+  CHECK(mesh.positions[32768] == mesh.positions[32767]);
+  CHECK_THAT(load_error("a.ply", file({20000}, {})), ContainsSubstring("vertex 20000 has a coordinate"));
+  const std::string first = load_error("a.ply", file({}, {40000}));
+  for (int i = 0; i < 5; ++i) CHECK(load_error("a.ply", file({}, {40000, 45000, 49999})) == first);
+  CHECK_THAT(first, ContainsSubstring("beyond single precision's range"));
 }
 
 TEST_CASE("an ASCII PLY's polygons are triangulated and its normals made", "[models]") {

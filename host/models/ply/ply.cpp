@@ -8,12 +8,9 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <set>
 
-#include "models/far_mesh.h"
 #include "models/normals.h"
-#include "models/ply_cursor.h"
-#include "models/ply_layout.h"
+#include "models/ply/ply_vertices.h"
 #include "models/polygon.h"
 #include "models/readers.h"
 
@@ -28,17 +25,6 @@ bool faces_come_first(const PlyHeader& header) {
     if (is_face(element) || element.name == "vertex") return is_face(element);
   return false;
 }
-
-// The result so far.
-struct Content {
-  Mesh mesh;
-  dvec3 origin{0};                     // of the positions
-  std::vector<glm::vec3> face_colors;  // per triangle, if faces have colours and vertices have none
-  std::size_t dropped = 0;
-  std::size_t normals_of_no_number = 0, uvs_of_no_number = 0;
-  std::set<std::uint32_t> lost;  // NaN positions
-  std::vector<std::string> unread;
-};
 
 template <class Cursor>
 class DataReader {
@@ -92,82 +78,15 @@ class DataReader {
       cursor_.fail(fmt::format("{} of '{}' are too many", element.count, element.name));
   }
 
-  double bounded(double value) const {
-    if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
-      cursor_.fail(fmt::format("{} is beyond single precision's range", value));
-    return value;
-  }
-  float narrow(double value) const { return static_cast<float>(bounded(value)); }
-
-  // Reads an element's scalars into `values` and passes list items to `item(property number, value)`.
-  template <class Item>
-  void read_element(const PlyElement& element, const Layout& layout, Values& values, Item item) {
-    cursor_.begin_element(element.name);
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      const PlyProperty& property = element.properties[p];
-      if (property.count_type) {
-        const double length = cursor_.value(property, *property.count_type);
-        if (length < 0) cursor_.fail(fmt::format("{}: a list of length {}", property.name, length));
-        for (double i = 0; i < length; ++i) item(p, cursor_.value(property, property.type));
-      } else {
-        values[layout.slots[p]] =
-            slot_value(layout.slots[p], property.type, cursor_.value(property, property.type));
-      }
-    }
-    cursor_.end_element(element.name);
-  }
-
   void skip(const PlyElement& element) {
     if (element.properties.empty()) return;
     const Layout layout(element);
     Values values{};
     for (std::uint64_t i = 0; i < element.count; ++i)
-      read_element(element, layout, values, [](std::size_t, double) {});
+      read_element(cursor_, element, layout, values, [](std::size_t, double) {});
   }
 
-  // A NaN position is an error if a face uses it; until then it repeats the one before.
-  dvec3 position_of(const Values& v, const std::vector<dvec3>& before) {
-    const dvec3 position(bounded(v[px]), bounded(v[py]), bounded(v[pz]));
-    if (std::isfinite(glm::dot(position, dvec3(0)))) return position;
-    content_.lost.insert(static_cast<std::uint32_t>(before.size()));
-    return before.empty() ? dvec3(0) : before.back();
-  }
-
-  template <class Vector>
-  static Vector number_or_zero(const Vector& value, std::size_t& count) {
-    if (std::isfinite(glm::dot(value, Vector(0)))) return value;
-    ++count;
-    return Vector(0);
-  }
-
-  void read_vertices(const PlyElement& element) {
-    const Layout layout(element);
-    if (!layout.has[px] || !layout.has[py] || !layout.has[pz])
-      cursor_.fail("a vertex needs the properties x, y and z");
-    if (!content_.mesh.positions.empty()) cursor_.fail("a second element 'vertex'");
-    Mesh& mesh = content_.mesh;
-    std::vector<dvec3> positions;
-    positions.reserve(element.count);
-    bool fades = false;
-    mesh.source_vertex_count = element.count;
-    Values v{};
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      read_element(element, layout, v, [](std::size_t, double) {});
-      positions.push_back(position_of(v, positions));
-      if (layout.normals())
-        mesh.normals.push_back(number_or_zero(glm::vec3(narrow(v[nx]), narrow(v[ny]), narrow(v[nz])),
-                                              content_.normals_of_no_number));
-      if (layout.uvs())
-        mesh.uvs.push_back(
-            number_or_zero(glm::vec2(narrow(v[tu]), narrow(v[tv])), content_.uvs_of_no_number));
-      if (layout.colors()) mesh.colors.push_back(color_of(v));
-      fades = fades || (layout.has[alpha] && v[alpha] < 1);
-    }
-    if (fades) content_.unread.emplace_back("alpha of vertices");
-    content_.origin = near_origin(positions);
-    mesh.positions.reserve(positions.size());
-    for (const dvec3& p : positions) mesh.positions.emplace_back(p - content_.origin);
-  }
+  void read_vertices(const PlyElement& element) { VertexReader<Cursor>(element, content_).read(cursor_); }
 
   void read_faces(const PlyElement& element) {
     const Layout layout(element);
@@ -189,7 +108,7 @@ class DataReader {
     Values values{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       corners_.clear();
-      read_element(element, layout, values, [&](std::size_t p, double value) {
+      read_element(cursor_, element, layout, values, [&](std::size_t p, double value) {
         if (p != list) return;
         const bool restart = strips && value == -1;
         if (!restart && !(value >= 0 && value < static_cast<double>(count) && value == std::trunc(value)))

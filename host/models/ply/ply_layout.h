@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/ply_header.h"
+#include "models/ply/ply_header.h"
 
 namespace sundog::models::ply {
 

@@ -1,4 +1,4 @@
-#include "models/ply_layout.h"
+#include "models/ply/ply_layout.h"
 
 #include <algorithm>
 #include <cmath>

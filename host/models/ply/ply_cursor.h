@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "models/ply_header.h"
+#include "models/ply/ply_header.h"
 #include "models/text.h"
 
 namespace sundog::models {
@@ -39,6 +39,8 @@ class AsciiPlyCursor {
   static std::size_t least_bytes(PlyType) { return 2; }
   /// Bytes of an element whose lists have three values each; 0 where elements differ.
   static std::size_t bytes_of_triangles(const PlyElement&) { return 0; }
+  /// Bytes of an element without lists; 0 where elements differ.
+  static std::size_t bytes_of_scalars(const PlyElement&) { return 0; }
   void skip(std::size_t) {}
   std::size_t bytes_left() const { return text_.bytes_left() + 1; }  // the last line may lack its newline
   [[noreturn]] void fail(const std::string& what) const { text_.fail(what); }
@@ -81,6 +83,11 @@ class BinaryPlyCursor {
     for (const PlyProperty& p : element.properties)
       bytes += p.count_type ? size_of(*p.count_type) + 3 * size_of(p.type) : size_of(p.type);
     return bytes;
+  }
+  static std::size_t bytes_of_scalars(const PlyElement& element) {
+    const bool lists = std::ranges::any_of(element.properties,
+                                           [](const PlyProperty& p) { return p.count_type.has_value(); });
+    return lists ? 0 : bytes_of_triangles(element);
   }
   void skip(std::size_t bytes) { at_ += bytes; }
   std::size_t bytes_left() const { return source_.bytes.size() - at_; }

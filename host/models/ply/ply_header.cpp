@@ -1,5 +1,5 @@
 // Reads PLY's header (G. Turk, "The PLY polygon file format", 1994).
-#include "models/ply_header.h"
+#include "models/ply/ply_header.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,47 @@
+// The corners of a mesh, grouped by the point that they meet at.
+#pragma once
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "models/values/mesh.h"
+
+namespace sundog::models {
+
+inline std::uint32_t corner_vertex(const Mesh& mesh, std::uint32_t corner) {
+  return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
+}
+
+template <class Body>
+void in_parallel(std::size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+/// Large arrays are first touched by the threads that fill them: zeroing one takes longer than its use.
+template <class T>
+using Filled = std::unique_ptr<T[]>;
+
+/// The corners that need a normal, grouped by point, in order: corners[first[p] .. first[p + 1]).
+struct CornersByPoint {
+  std::vector<std::uint32_t> first;
+  Filled<std::uint32_t> corners;
+
+  std::size_t points() const { return first.size() - 1; }
+  std::span<const std::uint32_t> around(std::size_t point) const {
+    return {corners.get() + first[point], first[point + 1] - first[point]};
+  }
+};
+
+/// The corners of vertices without a normal. `has_normal`: a flag per vertex, or empty: none has. `points`:
+/// of each vertex; empty: each vertex is a point.
+CornersByPoint gather_corners(const Mesh& mesh, const std::vector<bool>& has_normal,
+                              const std::vector<std::uint32_t>& points);
+
+}  // namespace sundog::models
