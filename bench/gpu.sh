@@ -37,11 +37,11 @@ scenes=$root/scenes
 models=("$@")
 [[ $# -gt 0 ]] || models=("$scenes"/sundog/spruce_{needles,snow}.obj "$scenes/relief/ball.obj")
 frame_scenes=(spheres hollow_ice mandelbulb cornell_path glass_path frosted_panes)
-frame=(--size 1024x1024 --samples 64)
+frame_size=1024x1024
 small=64x64 bench=() rays=(--rays 1024) groups=() roof=()
 if [[ $quick ]]; then
   frame_scenes=(spheres cornell_path)
-  frame=(--size 16x16 --samples 1)
+  frame_size=16x16
   small=8x8 bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays) roof=(--rays 16 --megabytes 1)
 fi
 here=() failed=() missing=()
@@ -125,18 +125,19 @@ builds() {
   done
   rm -rf "$cache"
 }
-frames() {
-  local name run
-  for name in "${frame_scenes[@]}"; do
-    for run in 1 2 3; do  # the first one builds
-      "$sundog" render "$scenes/$name.json" --device "$device" "${frame[@]}" -q --stats "$out/frame-$name-$run.json" -o "$out/frame-$name.png" ||
-        return 1
-    done
-    for run in 2 3; do
-      echo "$name: $(stat_of "$out/frame-$name-$run.json" render) s, $(
-        awk -v pixels="${frame[1]}" -v samples="${frame[3]}" -v seconds="$(stat_of "$out/frame-$name-$run.json" render)" \
-          'BEGIN { split(pixels, side, "x"); printf "%.2f", side[1] * side[2] * samples / seconds / 1e6 }') Msamples/s"
-    done
+frames() {  # of a scene, with as many samples as a device draws in some seconds
+  local name=$1 run samples=1 stats took
+  for run in 1 2 3; do  # the first one builds
+    stats=$out/frame-$name-$run.json
+    "$sundog" render "$scenes/$name.json" --device "$device" --size "$frame_size" --samples "$samples" -q --stats "$stats" -o "$out/frame-$name.png" ||
+      return 1
+    took=$(stat_of "$stats" render)
+    if [[ $run == 1 ]]; then
+      [[ $quick ]] || samples=$(awk -v took="$took" 'BEGIN { n = int(8 / took); print n < 1 ? 1 : n > 64 ? 64 : n }')
+    else
+      echo "$name: $samples samples a pixel in $took s, $(awk -v size="$frame_size" -v samples="$samples" -v took="$took" \
+        'BEGIN { split(size, side, "x"); printf "%.2f", side[1] * side[2] * samples / took / 1e6 }') Msamples/s"
+    fi
   done
 }
 watts() {  # of the device beside the frames, and joules
@@ -168,7 +169,7 @@ if command -v nvidia-smi >/dev/null; then
   nvidia-smi --query-gpu=timestamp,power.draw --format=csv,noheader,nounits -lms 100 >"$out/power.csv" 2>/dev/null &
   power=$!
 fi
-part frames 120 frames
+for name in "${frame_scenes[@]}"; do part "$name-frames" 40 frames "$name"; done
 [[ ${power-} ]] && kill "$power"
 part workgroup 60 "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" \
   --json "$out/workgroup.json" --html "$out/workgroup.html"

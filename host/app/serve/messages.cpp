@@ -5,6 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scene/integrators.h"
+#include "scene/light_groups.h"
+
 namespace sundog {
 using nlohmann::json;
 
@@ -107,6 +110,8 @@ json resolved_json(const SceneDescription& scene) {
     if (objects.size() == most_objects) break;
     objects.push_back(object_json(scene, object));
   }
+  const bool apart = traces_paths(scene.render.integrator) && !scene.render.caustics;
+  const auto groups = apart ? light_groups(scene) : std::vector<std::string>();
   return {{"camera",
            {{"position", to_json(camera.position)},
             {"target", to_json(camera.target)},
@@ -117,6 +122,7 @@ json resolved_json(const SceneDescription& scene) {
           {"height", scene.image.height},
           {"samples", scene.render.samples},
           {"objects", std::move(objects)},
+          {"light_groups", groups},
           {"warnings", scene.warnings}};
 }
 

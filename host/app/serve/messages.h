@@ -19,7 +19,7 @@ nlohmann::json devices_message(const std::vector<DeviceInfo>& all, const std::ve
 nlohmann::json scene_message(const SceneDocument& document);
 
 /// Values that a document may leave out and the reader has chosen: the camera's place, the order of objects,
-/// the intervals of fields.
+/// the intervals of fields; the light groups whose light can be kept apart.
 nlohmann::json resolved_json(const SceneDescription& scene);
 
 nlohmann::json status_message(const Snapshot& now);

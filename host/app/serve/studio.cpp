@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
+#include "app/options/light_balance.h"
 #include "app/options/option_values.h"
 #include "app/options/pick_devices.h"
 #include "app/serve/folder.h"
@@ -12,6 +14,7 @@
 #include "base/limits.h"
 #include "render/device/tuning.h"
 #include "scene/json/parse.h"
+#include "scene/light_groups.h"
 
 namespace sundog {
 using nlohmann::json;
@@ -85,6 +88,7 @@ WebHandlers Studio::handlers() {
                                          {"most_upload_bytes", server_.limits().body_bytes}}));
       server_.send(client, message_text(devices_message(setup_.devices, setup_.picked)));
       server_.send(client, message_text(scene_message(document_)));
+      server_.send(client, message_text({{"is", "balance"}, {"client", 0}, {"lights", lights_}}));
       stream_.greet(client);
     });
   };
@@ -108,10 +112,25 @@ std::uint64_t Studio::version_of(Generation generation) {
 void Studio::begin_drawing() {
   const std::lock_guard lock(mutex_);
   drawn_ = document_.scene();
+  show_balance();
   const Generation generation = session_.start(drawn_, settings_);
   versions_[generation] = document_.version();
   constexpr std::size_t most_versions = 1000;
   if (versions_.size() > most_versions) versions_.erase(versions_.begin());
+}
+
+/// The caller holds the mutex.
+void Studio::show_balance() {
+  const std::vector<std::string> groups = light_groups(*drawn_);
+  std::vector<glm::vec3> factors;
+  for (const std::string& typed : lights_) {
+    const auto [name, factor] = parse_light(typed);
+    const std::size_t number = number_of_group(groups, name);
+    if (number == 0 && name != "rest") continue;  // an edit has taken it away
+    factors.resize(groups.size() + 1, glm::vec3(1));
+    factors[number] = factor;
+  }
+  session_.set_balance(std::move(factors));
 }
 
 void Studio::tell_scene() { server_.send_to_all(message_text(scene_message(document_))); }
@@ -145,6 +164,7 @@ void Studio::dispatch(ClientId client, const json& message) {
   if (what == "pick") return pick(client, message);
   if (what == "devices") return use_devices(message);
   if (what == "options") return set_options(message);
+  if (what == "balance") return balance(client, message);
   if (what == "scene") return server_.send(client, message_text(scene_message(document_)));
   if (what == "stop") return session_.cancel();
   if (what == "draw") return begin_drawing();
@@ -215,6 +235,22 @@ void Studio::set_options(const json& message) {
   begin_drawing();
   server_.send_to_all(message_text(
       {{"is", "options"}, {"split", split_}, {"work_group", work_group_}, {"coarse", settings_.coarse}}));
+}
+
+/// The first balance draws the picture anew, with groups kept apart; later ones only develop it.
+void Studio::balance(ClientId client, const json& message) {
+  std::vector<std::string> lights;
+  if (const auto list = message.find("lights"); list != message.end() && list->is_array())
+    for (const json& light : *list)
+      if (light.is_string() && lights.size() < most_light_groups + 1) lights.push_back(light);
+  for (const std::string& light : lights) parse_light(light);
+  {
+    const std::lock_guard lock(mutex_);
+    lights_ = lights;
+    show_balance();
+  }
+  if (!std::exchange(settings_.light_groups, true)) begin_drawing();
+  server_.send_to_all(message_text({{"is", "balance"}, {"client", client}, {"lights", lights}}));
 }
 
 void Studio::pick(ClientId client, const json& message) {

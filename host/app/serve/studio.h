@@ -42,6 +42,8 @@ class Studio {
   void step(ClientId client, const nlohmann::json& message, bool back);
   void use_devices(const nlohmann::json& message);
   void set_options(const nlohmann::json& message);
+  void balance(ClientId client, const nlohmann::json& message);
+  void show_balance();
   void pick(ClientId client, const nlohmann::json& message);
   void tell_scene();
   void refuse(ClientId client, const nlohmann::json& message, const std::string& place,
@@ -59,6 +61,7 @@ class Studio {
   Uploads uploads_;
   RenderSession session_;
   SessionSettings settings_;
+  std::vector<std::string> lights_;  // the balance of light groups, as `sundog mix --light` takes it
   std::string split_ = "dynamic", work_group_ = "auto";
   std::mutex mutex_;  // for what the threads share: versions_, drawn_
   std::map<Generation, std::uint64_t> versions_;

@@ -122,12 +122,16 @@ std::string Studio::command_line() const {
     text += quoted(file);
   else
     text += quoted(document_.file().stem().string() + ".json");  // the page says: save the scene first
-  text += " -o picture.png";
+  text += lights_.empty() ? " -o picture.png" : " -o picture.exr --aov light_groups";
   for (const DeviceInfo& device : setup_.picked) text += " --device " + quoted(device_spec(device));
   if (split_ != "dynamic") text += " --split " + quoted(split_);
   if (work_group_ != "auto") text += " --work-group " + quoted(work_group_);
   if (settings)
     for (const std::string& setting : *settings) text += " --set " + quoted(setting);
+  if (!lights_.empty()) {
+    text += " && sundog mix picture.exr -o picture.png";
+    for (const std::string& light : lights_) text += " --light " + quoted(light);
+  }
   return text;
 }
 

@@ -246,7 +246,7 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (weights_.count < pixels) weights_ = device_.make<float>(pixels);
-  const std::size_t sums = request.surfaces ? layout_.sums() : 0;
+  const std::size_t sums = layout_.sums();  // the kernel writes them, wanted or not
   if (film_.count < (1 + sums) * pixels) film_ = device_.make<float4>((1 + sums) * pixels);
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
@@ -259,7 +259,7 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   result.rays.resize(counted);
   if (request.first_sample > 0) {  // kernels initialise the others to 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
-    if (sums > 0) write_sums(request);
+    if (sums > 0 && request.surfaces) write_sums(request);
     device_.begin_write(weights_, std::span<const float>(request.weights));
     if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));
   }

@@ -263,4 +263,15 @@ Image Film::develop_aov(const std::string& name) const {
   return image;
 }
 
+Color Film::balanced_mean(std::size_t pixel, std::span<const glm::vec3> factors) const {
+  std::array<float, 3> color{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    PartValues parts = parts_of(*this, pixel, c);
+    for (std::size_t k = 0; k < std::min(parts.size(), factors.size()); ++k)
+      parts[k] *= factors[k][static_cast<int>(c)];
+    color[c] = sum_of(parts);
+  }
+  return {color[0], color[1], color[2]};
+}
+
 }  // namespace sundog

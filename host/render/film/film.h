@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -128,6 +129,9 @@ struct Film : FilmNeeds {
   /// The named AOV (one of aov_names()); pixels that are not done are 0. Parts of light sum to develop()'s
   /// colours, to the bit (fit_sum()).
   Image develop_aov(const std::string& name) const;
+  /// A pixel's mean with the light of each group (layout.groups) multiplied by its factor: first that of no
+  /// group, then the groups in order; those left out by 1.
+  Color balanced_mean(std::size_t pixel, std::span<const glm::vec3> factors) const;
 };
 
 /// The AOVs `render` can make.

@@ -1,7 +1,10 @@
 // See live_session.h. The control thread first, then the device threads.
 #include <algorithm>
 
+#include "render/film/group_names.h"
 #include "render/session/live_session.h"
+#include "scene/integrators.h"
+#include "scene/light_groups.h"
 
 namespace sundog {
 namespace {
@@ -30,6 +33,11 @@ Picked pick_on(SceneWorker& worker, int x, int y) {
   request.surfaces = true;
   worker.prepare_surfaces();
   return picked_from(worker.render(request, {}));
+}
+
+/// Whether its light can be kept apart by groups.
+bool keeps_groups(const CompiledScene& scene) {
+  return traces_paths(scene.integrator) && !scene.features.caustics;
 }
 
 /// Ends a draft frame as soon as its own kernels are ready.
@@ -173,12 +181,14 @@ std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers w
   // Other kernels may be far slower.
   const bool known =
       before && before->features == made->flat->features && before->field_source == made->flat->field_source;
-  made->frame = make_session_frame({made->flat, settings, std::move(workers), known ? speed : 0},
-                                   [session, frame](const RenderProgress&) {
-                                     const auto self = session.lock();
-                                     const auto mine = frame.lock();
-                                     if (self && mine) self->note_progress(mine);
-                                   });
+  FrameOrder frame_order{made->flat, settings, std::move(workers), known ? speed : 0};
+  if (settings.light_groups && keeps_groups(*made->flat))
+    frame_order.aovs = with_group_numbers({light_groups_aov}, light_groups(*order.scene));
+  made->frame = make_session_frame(frame_order, [session, frame](const RenderProgress&) {
+    const auto self = session.lock();
+    const auto mine = frame.lock();
+    if (self && mine) self->note_progress(mine);
+  });
   made->frame->between_tiles = [session, frame](std::size_t i) {
     const auto self = session.lock();
     const auto mine = frame.lock();
@@ -298,13 +308,15 @@ void LiveSession::note_progress(const std::shared_ptr<SessionFrame>& mine) {
 }
 
 /// Developed once for all callers, who hold the frame's mutex.
-std::shared_ptr<const Image> LiveSession::picture_so_far(const Frame& frame) const {
+std::shared_ptr<const Image> LiveSession::picture_so_far(const Frame& frame,
+                                                         const std::vector<glm::vec3>& with) const {
   const std::lock_guard lock(picture_mutex);
   const std::uint64_t count = frame.coarse.count + std::uint64_t{frame.film.stage};
   const bool same = picture && picture_frame.lock().get() == &frame && picture_passes == count &&
-                    picture_pixels == frame.pixels_done;
+                    picture_pixels == frame.pixels_done && picture_balance == with;
   if (same) return picture;
-  picture = std::make_shared<const Image>(picture_of(frame));
+  picture = std::make_shared<const Image>(picture_of(frame, with));
+  picture_balance = with;
   picture_frame = frame.weak_from_this();
   picture_passes = count;
   picture_pixels = frame.pixels_done;

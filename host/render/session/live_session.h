@@ -39,6 +39,7 @@ struct LiveSession : FrameLoop {
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> shown;
   std::deque<Pick> picks;
+  std::vector<glm::vec3> balance;  // of light groups
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
   Generation rested = 0;  // the last for which a worker has prepared for what comes
@@ -51,6 +52,7 @@ struct LiveSession : FrameLoop {
   mutable std::shared_ptr<const Image> picture;
   mutable std::weak_ptr<const Frame> picture_frame;
   mutable std::uint64_t picture_passes = 0, picture_pixels = 0;
+  mutable std::vector<glm::vec3> picture_balance;
 
   void set_state(SessionState next) {
     state = next;
@@ -102,7 +104,7 @@ struct LiveSession : FrameLoop {
   bool is_held() const { return current && current->final; }
   void answer_picks(const std::shared_ptr<DeviceWorker>& worker);
   void drop_picks();
-  std::shared_ptr<const Image> picture_so_far(const Frame& frame) const;
+  std::shared_ptr<const Image> picture_so_far(const Frame& frame, const std::vector<glm::vec3>& with) const;
 };
 
 }  // namespace sundog

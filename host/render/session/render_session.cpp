@@ -68,6 +68,12 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
   return s.newest;
 }
 
+void RenderSession::set_balance(std::vector<glm::vec3> factors) {
+  const std::lock_guard lock(live_->mutex);
+  live_->balance = std::move(factors);
+  live_->note();
+}
+
 void RenderSession::cancel() {
   LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
@@ -105,8 +111,10 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   Snapshot snapshot;
   std::shared_ptr<SessionFrame> current, shown;
   Workers workers;
+  std::vector<glm::vec3> balance;
   {
     const std::lock_guard lock(s.mutex);
+    balance = s.balance;
     snapshot.generation = s.newest;
     snapshot.revision = s.revision;
     snapshot.state = s.state;
@@ -145,7 +153,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   snapshot.block = progress.block;
   snapshot.counts = frame.counts;
   snapshot.seconds = progress.settled ? snapshot.times.settled : shown->clock.seconds();
-  if (with_picture) snapshot.picture = s.picture_so_far(frame);
+  if (with_picture) snapshot.picture = s.picture_so_far(frame, balance);
   return snapshot;
 }
 

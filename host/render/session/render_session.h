@@ -36,6 +36,7 @@ struct SessionSettings {
   /// Builds kernels in the background, and general ones while the session rests, which draw while an edit's
   /// own are built. If false, an edit that needs a compiler waits for it, and no other kernels are built.
   bool general_kernels = true;
+  bool light_groups = false;  // keep the light of path-traced groups apart, for set_balance()
 };
 
 enum class SessionState {
@@ -140,6 +141,11 @@ class RenderSession {
   /// concurrent start() or cancel() ends it early. Devices keep kernels and tables for the next frame. Throws
   /// like render() (render.h).
   RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const RenderOptions& options = {});
+
+  /// Multiplies the light of each group in the pictures of snapshot(): first that of no group, then the
+  /// groups by name (scene/light_groups.h); those left out by 1. Draws nothing anew. Takes effect on scenes
+  /// started with SessionSettings::light_groups, from their first full picture on.
+  void set_balance(std::vector<glm::vec3> factors);
 
   /// Stops drawing at once. The picture so far remains.
   void cancel();

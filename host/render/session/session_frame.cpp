@@ -24,8 +24,9 @@ RenderOptions options_of(const SessionSettings& settings) {
 
 /// Samples of a scene that is not made in passes of its own double from pass to pass: sums grow in the order
 /// in which one pass would add them.
-SamplingPlan sampling_of(const CompiledScene& scene) {
+SamplingPlan sampling_of(const CompiledScene& scene, const std::vector<std::string>& aovs) {
   SamplingPlan plan{scene.sampling, scene.info.samples};
+  plan.surfaces = plan.sums = !aovs.empty();
   plan.panes = clear_materials(scene);
   if (!in_passes(scene.sampling)) plan.settings.progressive = true;
   return plan;
@@ -57,8 +58,22 @@ void fill_coarse(const CoarsePicture& coarse, Image& image) {
     }
 }
 
+/// Balances a pixel that has samples.
+void balance_pixel(const Film& film, std::size_t i, std::span<const glm::vec3> balance, float* pixel) {
+  if (balance.empty() || !film.layout.groups || film.aovs.empty() || !(film.weights[i] > 0)) return;
+  const Color color = film.balanced_mean(i, balance);
+  pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
+}
+
+Image develop(const Film& film, std::span<const glm::vec3> balance) {
+  Image image = film.develop(4);
+  for (std::size_t i = 0; i < film.done.size(); ++i)
+    if (film.done[i]) balance_pixel(film, i, balance, image.data.data() + 4 * i);
+  return image;
+}
+
 /// The pixels of the pass in hand that are done.
-void fill_from_pass(const Frame& frame, Image& image) {
+void fill_from_pass(const Frame& frame, std::span<const glm::vec3> balance, Image& image) {
   const Film& made = frame.made;
   for (std::size_t i = 0; i < made.done.size(); ++i) {
     const std::int64_t p = made.done[i] ? image_index(frame.film, frame.pass, i) : -1;
@@ -66,6 +81,7 @@ void fill_from_pass(const Frame& frame, Image& image) {
     float* pixel = image.data.data() + 4 * p;
     std::fill_n(pixel, 4, 0.0f);
     set_pixel(pixel, made.sums[i], made.weights[i]);
+    balance_pixel(made, i, balance, pixel);
   }
 }
 
@@ -82,12 +98,15 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
                                           std::function<void(const RenderProgress&)> on_progress) {
   RenderOptions options = options_of(order.settings);
   options.on_progress = std::move(on_progress);
+  options.aovs = order.aovs;
   const SceneInfo& info = order.scene->info;
   Film film(static_cast<int>(info.width), static_cast<int>(info.height),
-            {.shows_surfaces = needs_surfaces(order.scene->sampling), .grows = true});
+            {.layout = aov_layout(order.aovs),
+             .shows_surfaces = !order.aovs.empty() || needs_surfaces(order.scene->sampling),
+             .grows = true});
   const std::size_t pixels = film.pixels();
-  auto frame =
-      std::make_shared<Frame>(options, sampling_of(*order.scene), std::move(film), speeds_of(order.workers));
+  auto frame = std::make_shared<Frame>(options, sampling_of(*order.scene, order.aovs), std::move(film),
+                                       speeds_of(order.workers));
   std::vector<double> estimates;
   for (const auto& worker : order.workers) {
     Frame::Worker entry;
@@ -128,15 +147,15 @@ FrameSamples samples_of(const Frame& frame, unsigned wanted) {
   return {frame.film.stage > 0 ? least : 0, std::min(most, all / wanted_in_all)};
 }
 
-Image picture_of(const Frame& frame) {
+Image picture_of(const Frame& frame, std::span<const glm::vec3> balance) {
   const Film& film = frame.film;
   const CoarsePasses& coarse = frame.coarse;
-  if (frame.made.done.empty()) return film.develop(4);
+  if (frame.made.done.empty()) return develop(film, balance);
   if (frame.plan.settings.subsample && coarse.block == 0 && film.stage > 0)
-    return film_so_far(frame).develop(4);
-  Image image = film.stage > 0 ? film.develop(4) : Image(film.width, film.height, 4);
+    return develop(film_so_far(frame), balance);
+  Image image = film.stage > 0 ? develop(film, balance) : Image(film.width, film.height, 4);
   if (film.stage == 0 && coarse.picture.block > 0) fill_coarse(coarse.picture, image);
-  if (coarse.block == 0) fill_from_pass(frame, image);
+  if (coarse.block == 0) fill_from_pass(frame, balance, image);
   return image;
 }
 

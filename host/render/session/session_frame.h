@@ -29,7 +29,8 @@ struct FrameOrder {
   std::shared_ptr<const CompiledScene> scene;
   SessionSettings settings;
   std::vector<std::shared_ptr<SceneWorker>> workers;
-  double pixel_seconds = 0;  // of a pixel's sample, by the generation before; 0: not known
+  double pixel_seconds = 0;            // of a pixel's sample, by the generation before; 0: not known
+  std::vector<std::string> aovs = {};  // the film's, of light groups
 };
 
 /// A frame in passes: coarse ones, then those of the scene, or over its samples. Opens nothing.
@@ -53,7 +54,8 @@ struct FrameSamples {
 FrameSamples samples_of(const Frame& frame, unsigned wanted);
 
 /// The picture so far; to the bit that of the film when it is settled. The caller holds the frame's mutex.
-Image picture_of(const Frame& frame);
+/// `balance`: factors of the light groups, where its film has them (Film::balanced_mean()).
+Image picture_of(const Frame& frame, std::span<const glm::vec3> balance);
 
 /// The activity of the frame's workers. The caller holds its mutex.
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over);

@@ -34,7 +34,7 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
       gpu_script({"--device", "portable", "--quick", "--seconds", "1800", (folder / "out").string(), model});
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
-  for (const char* part : {"devices", "pictures", "builds", "frames"}) {
+  for (const char* part : {"devices", "pictures", "builds", "spheres-frames"}) {
     CAPTURE(part);
     CHECK_THAT(result.out, ContainsSubstring(std::string("there:   ") + part + "\n"));
     CHECK_FALSE(read_file(folder / "out" / (std::string(part) + ".txt")).empty());
@@ -52,7 +52,7 @@ TEST_CASE("gpu.sh leaves tables, figures and build logs of every part, and says 
       CHECK(row.at("tracer") == (way == "wide" ? "wide" : "compact"));
   }
   CHECK_THAT(read_file(folder / "out" / "builds.txt"), ContainsSubstring("spheres warm: "));
-  CHECK_THAT(read_file(folder / "out" / "frames.txt"), ContainsSubstring(" Msamples/s\n"));
+  CHECK_THAT(read_file(folder / "out" / "spheres-frames.txt"), ContainsSubstring(" Msamples/s\n"));
   CHECK_THAT(result.out, ContainsSubstring("ball-embree") && ContainsSubstring("ball-tinybvh"));
   CHECK(result.out == read_file(folder / "out" / "summary.txt"));
   std::size_t logs = 0;

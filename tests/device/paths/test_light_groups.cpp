@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "path_testing.h"
 #include "render/film/group_names.h"
+#include "render/session/render_session.h"
 #include "same_bits.h"
 #include "scene/light_groups.h"
 #include "scene/load.h"
@@ -96,6 +97,50 @@ TEST_CASE("a group's image is the scene with its lights alone") {
       CHECK(mean(result.aovs.at(std::string("light_") + group)) == Approx(alone).epsilon(0.03));
     }
   });
+}
+
+TEST_CASE("a session balances groups without drawing anew") {
+  const SceneDescription scene = scene_of_groups();
+  const std::vector<glm::vec3> balance{glm::vec3(1), {2, 0.5f, 0}, glm::vec3(1), glm::vec3(0)};
+  on_picture_devices([&](const DeviceInfo& device) {
+    const RenderResult whole = render_groups(device, scene);
+    RenderSession session(std::vector<DeviceInfo>{device});
+    SessionSettings settings;
+    settings.light_groups = true;
+    const Generation drawn = session.start(std::make_shared<const SceneDescription>(scene), settings);
+    session.wait();
+    CHECK(same_bits(*session.snapshot().picture, whole.image));
+    session.set_balance(balance);
+    const Snapshot balanced = session.snapshot();
+    CHECK(balanced.generation == drawn);
+    CHECK(balanced.state == SessionState::settled);
+    const std::vector<std::string> names{"rest", "fill", "key", "screen", "sky"};
+    for (int y = 0; y < whole.image.height; ++y)
+      for (int x = 0; x < whole.image.width; ++x)
+        for (int c = 0; c < 3; ++c) {
+          float right = 0;
+          for (std::size_t k = 0; k < names.size(); ++k)
+            right +=
+                (k < balance.size() ? balance[k][c] : 1) * whole.aovs.at("light_" + names[k]).pixel(x, y)[c];
+          if (!(std::abs(balanced.picture->pixel(x, y)[c] - right) <= 1e-6f + 1e-5f * right))
+            FAIL_CHECK(x << ", " << y << ": " << balanced.picture->pixel(x, y)[c] << " for " << right);
+        }
+    session.set_balance({});
+    CHECK(same_bits(*session.snapshot().picture, whole.image));
+  });
+}
+
+TEST_CASE("a session without groups to keep apart draws as without the setting") {
+  SceneDescription scene = scene_of_groups();
+  scene.render.integrator = "whitted";
+  const DeviceInfo& device = test_devices().front();
+  RenderSession session(std::vector<DeviceInfo>{device});
+  SessionSettings settings;
+  settings.light_groups = true;
+  session.set_balance({glm::vec3(3)});
+  session.start(std::make_shared<const SceneDescription>(scene), settings);
+  session.wait();
+  CHECK(same_bits(*session.snapshot().picture, scenes::render_on(device, scene).image));
 }
 
 TEST_CASE("AOVs of groups are refused where the scene has no such group, or where they cannot be") {

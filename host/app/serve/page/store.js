@@ -8,7 +8,7 @@ import {Link} from './link.js';
 class Store {
   state = {
     connected: 'connecting', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
-    resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true},
+    resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true}, lights: [],
     schema: null, formulas: [], functions: [], selection: null, picked: null, error: null, picture: null, tab: 'build', notice: '',
     mostUpload: Infinity,
     question: null, since: null, scenes: 0,  // the version that was opened; how many whole documents have come
@@ -112,6 +112,11 @@ class Store {
   say(what, more = {}) {
     this.link.send({do: what, ...more});
   }
+  /** The balance of light groups, as `sundog mix --light` takes it. */
+  balance(lights) {
+    this.update({lights});
+    this.say('balance', {lights});
+  }
   notice(text) {
     this.update({notice: text});
     clearTimeout(this.noticeTimer);
@@ -123,6 +128,7 @@ class Store {
       welcome: () => this.update({client: message.client, mostUpload: message.most_upload_bytes}),
       devices: () => this.update({devices: message.devices}),
       options: () => this.update({options: message}),
+      balance: () => message.client !== this.state.client && this.update({lights: message.lights}),
       scene: () => this.takeScene(message),
       changed: () => this.takeChanged(message),
       refused: () => this.takeRefused(message),

@@ -4,6 +4,7 @@ import {store} from '../store.js';
 import {Fields, Field} from '../form.js';
 import {sample, variants, words} from '../schema.js';
 import {join} from '../pointer.js';
+import {BalancePanel} from './balance.js';
 import {Presets, lights as presets, setLights} from '../presets.js';
 
 const starts = {
@@ -27,6 +28,7 @@ export function LightPanel() {
     ${lights.length === 0 && html`<p class="hint">There are no lights: the scene is dark but for what shines by itself.</p>`}
     <div class="line"><select aria-label="Type of the new light" value=${type} onChange=${(e) => setType(e.target.value)}>${Object.keys(types).map((t) => html`<option>${t}</option>`)}</select>
       <${Button} label="Add light" onClick=${add} /></div>
+    <${BalancePanel} />
     <${Presets} title="Presets of lights" list=${presets} onTake=${setLights} />
     <${Group} title="All around, and fog" id="around" open=${!!environment}>
       <${Field} schema=${{$ref: '#/$defs/environment', description: 'Light from all around.'}} at="/environment" value=${environment} label="Environment" />
