@@ -139,7 +139,8 @@ static inline float share_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, floa
 }
 
 // Light that scatters between facets comes back: a rough interface returns about what a smooth one does.
-static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                float3 wo) {
   const float3 none = (float3)(0.0f), through = lobes->rough.transmits ? lobes->split.kt : none;
   return lobes->rough.rough ? lobes->split.kr + through : none;
 }
