@@ -10,7 +10,7 @@
 
 #include "catch.h"
 #include "compile/layers/layers.h"
-#include "compile/lobe_energy.h"
+#include "compile/surfaces/lobe_energy.h"
 #include "devices.h"
 #include "shared/scene.h"
 #include "surface_text.h"

@@ -6,7 +6,7 @@ HAVING(HAS_ROUGH);
 
 // Compensation for energy lost between facets: lobes are multiplied by the gains of both directions (the
 // scaling of Turquin 2019, "Practical multiple scattering compensation for microfacet models", made
-// reciprocal: host/compile/lobe_energy.h).
+// reciprocal: host/compile/surfaces/lobe_energy.h).
 static inline float microfacet_gain(UNIFORM const Scene* scene, float c, float alpha) {
   return lobe_energy_at(scene, LOBE_GAINS, c, alpha);
 }
