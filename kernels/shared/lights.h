@@ -13,8 +13,7 @@
 //   middle_NAME(light)                area lights: see middle_of_light()
 //   corners_NAME(light, p)            area lights of scene files: a square that holds what p sees of them
 //
-//   emit_NAME(light, c, e)            how photons leave it, by two numbers in [0, 1); it is called for one
-//                                     photon at a time: sqrt(), cospi() and others, not real_sqrt()
+//   emit_NAME(light, c, e)            how photons leave it, by two numbers in [0, 1)
 #pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
