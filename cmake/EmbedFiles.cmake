@@ -108,7 +108,7 @@ endfunction()
 function(sundog_write_surface_tables target)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/built_surface_tables.cpp)
   set(compile ${CMAKE_CURRENT_SOURCE_DIR}/compile)
-  add_executable(write_surface_tables ${PROJECT_SOURCE_DIR}/cmake/write_surface_tables.cpp ${compile}/lobe_energy.cpp
+  add_executable(write_surface_tables ${PROJECT_SOURCE_DIR}/cmake/write_surface_tables.cpp ${compile}/surfaces/lobe_energy.cpp
     ${compile}/layers/facets.cpp ${compile}/layers/albedos.cpp)
   target_include_directories(write_surface_tables PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/kernels)
   target_link_libraries(write_surface_tables PRIVATE sundog_warnings sundog_glm TBB::tbb)

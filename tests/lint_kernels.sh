@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")/.."
 clang=$(command -v clang || ls /usr/bin/clang-[0-9]* 2>/dev/null | sort -V | tail -n 1 || true)
 [ -n "$clang" ] || { echo "lint_kernels: no clang. On Debian or Ubuntu: apt-get install clang" >&2; exit 1; }
-features=$(grep -o 'FEATURE([a-z0-9]*, [A-Z_]*' kernels/shared/features.h | sed 's/.*, //')
+features=$(grep -ho 'FEATURE([a-z0-9]*, [A-Z_]*' kernels/shared/{features,lobes}.h | sed 's/.*, //')
 shapes=""; all="-DHAS_SDF=1"; few="-DHAS_SDF=0"
 solids=$(grep -o '^ *SOLID([A-Z]*' kernels/shared/shapes.h | sed 's/.*(//')
 for shape in MESH $solids BVH; do shapes+=" -DHAS_$shape=1"; done
@@ -44,7 +44,7 @@ lanes=("-DTILE_W=4 -DTILE_H=4" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE" "-DTILE
 RANDOM=${2:-1}
 for ((i = 0; i < ${1:-24}; ++i)); do
   unset has; declare -A has
-  for feature in SDF MESH $solids BVH $(grep -o 'FEATURE(bool, HAS_[A-Z_]*' kernels/shared/features.h | sed 's/.*HAS_//'); do
+  for feature in SDF MESH $solids BVH $(grep -ho 'FEATURE(bool, HAS_[A-Z_]*' kernels/shared/{features,lobes}.h | sed 's/.*HAS_//'); do
     has[$feature]=$((RANDOM % 5 < 2))
   done
   for pair in $brings; do [ "${has[${pair%:*}]}" = 0 ] || has[${pair#*:}]=1; done

@@ -11,6 +11,7 @@
 #include "base/arguments.h"
 #include "base/error.h"
 #include "bench/commands/bench_options.h"
+#include "models/model.h"
 
 namespace sundog {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 constexpr const char* short_help =
     R"(sundog renders scenes with OpenCL, on any device there is.
 
-  sundog render SCENE -o OUT.png   render a scene (.json) or a model (.gltf .glb .obj .ply .stl .nff)
+  sundog render SCENE -o OUT.png   render a scene (.json) or a model ()" SUNDOG_MODEL_EXTENSIONS R"()
   sundog check                     check drivers, caches and devices
   sundog devices                   list the devices, for --device
   sundog info SCENE                what a scene holds

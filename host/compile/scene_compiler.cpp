@@ -9,15 +9,15 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "compile/camera.h"
-#include "compile/light_groups.h"
-#include "compile/light_tree.h"
-#include "compile/lobe_energy.h"
-#include "compile/local_origin.h"
-#include "compile/mesh_lights.h"
-#include "compile/parts/inputs.h"
-#include "compile/parts/photons.h"
+#include "compile/fields/sdf_deep.h"
+#include "compile/lights/light_groups.h"
+#include "compile/lights/light_tree.h"
+#include "compile/lights/mesh_lights.h"
+#include "compile/lights/photons.h"
 #include "compile/placing/instances.h"
+#include "compile/surfaces/lobe_energy.h"
+#include "compile/view/camera.h"
+#include "compile/view/local_origin.h"
 #include "scene/integrators.h"
 
 namespace sundog {

@@ -54,13 +54,18 @@ std::string unread_text(const std::vector<std::string>& features) {
   return rest == 0 ? text : fmt::format("{} and {} more feature{}", text, rest, rest == 1 ? "" : "s");
 }
 
+/// In the order of SUNDOG_MODEL_EXTENSIONS.
+struct Reader {
+  std::string_view extension;
+  Model (*load)(models::Source source, const ModelOptions& options);
+};
+constexpr Reader readers[] = {{".gltf", models::load_gltf}, {".glb", models::load_gltf},
+                              {".obj", models::load_obj},   {".ply", models::load_ply},
+                              {".stl", models::load_stl},   {".nff", models::load_nff}};
+
 Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
   if (source.bytes.empty()) models::fail(source, "", "the file is empty");
-  if (extension == ".obj") return models::load_obj(source, options);
-  if (extension == ".ply") return models::load_ply(source, options);
-  if (extension == ".stl") return models::load_stl(source, options);
-  if (extension == ".nff") return models::load_nff(source);
-  return models::load_gltf(std::move(source), options);
+  return std::ranges::find(readers, extension, &Reader::extension)->load(std::move(source), options);
 }
 
 /// Beyond this, the camera's position cannot be written, and squares overflow.
@@ -105,16 +110,14 @@ void check_extent(const std::filesystem::path& path, const Model& model) {
 
 bool is_model_file(const std::filesystem::path& path) {
   const std::string extension = models::model_extension(path);
-  for (const char* known : {".gltf", ".glb", ".obj", ".ply", ".stl", ".nff"})
-    if (extension == known) return true;
-  return false;
+  return std::ranges::count(readers, extension, &Reader::extension) > 0;
 }
 
 Model load_model(const std::filesystem::path& path, const ModelOptions& options) {
   if (!is_model_file(path))
-    throw SceneError(
-        path.string(), "",
-        "not a model file: the name must end in .gltf .glb .obj .ply .stl or .nff (or that and .gz)");
+    throw SceneError(path.string(), "",
+                     "not a model file: the name must end in one of " SUNDOG_MODEL_EXTENSIONS
+                     " (or that and .gz)");
   try {
     models::Source source = models::read_source(path);
     source.outside_files = options.outside_files;

@@ -61,7 +61,10 @@ struct ModelOptions {
   bool outside_files = false;  // the model may name files outside its folder
 };
 
-/// Reads .gltf .glb .obj .ply .stl .nff, each also gzipped (.gz). Triangulates polygons (n corners give n - 2
+/// The files that load_model() reads, in texts.
+#define SUNDOG_MODEL_EXTENSIONS ".gltf .glb .obj .ply .stl .nff"
+
+/// Reads SUNDOG_MODEL_EXTENSIONS, each also gzipped (.gz). Triangulates polygons (n corners give n - 2
 /// triangles, even degenerate ones), generates missing normals, loads textures' images. Throws
 /// SceneError{file, "line N", "byte N" or a JSON pointer, what}.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});

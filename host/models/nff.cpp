@@ -228,6 +228,6 @@ class NffReader {
 
 }  // namespace
 
-Model load_nff(const Source& source) { return NffReader(source).read(); }
+Model load_nff(Source source, const ModelOptions&) { return NffReader(source).read(); }
 
 }  // namespace sundog::models

@@ -297,7 +297,7 @@ class ObjReader {
 
 }  // namespace
 
-Model load_obj(const Source& source, const ModelOptions& options) {
+Model load_obj(Source source, const ModelOptions& options) {
   Model model;
   ObjReader reader(source, model);
   reader.read();

@@ -5,11 +5,11 @@
 
 namespace sundog::models {
 
-Model load_obj(const Source& source, const ModelOptions& options);
-Model load_ply(const Source& source, const ModelOptions& options);
-Model load_stl(const Source& source, const ModelOptions& options);
-Model load_gltf(Source from, const ModelOptions& options);
-Model load_nff(const Source& source);
+Model load_obj(Source source, const ModelOptions& options);
+Model load_ply(Source source, const ModelOptions& options);
+Model load_stl(Source source, const ModelOptions& options);
+Model load_gltf(Source source, const ModelOptions& options);
+Model load_nff(Source source, const ModelOptions& options);
 
 /// Adds `mesh`, with positions relative to `origin`, and an object that places it, unless it is empty.
 void add_mesh(Model& model, Mesh mesh, const dvec3& origin = dvec3(0));

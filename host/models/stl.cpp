@@ -107,7 +107,7 @@ dvec3 read_ascii(const Source& source, Mesh& mesh) {
 
 }  // namespace
 
-Model load_stl(const Source& source, const ModelOptions& options) {
+Model load_stl(Source source, const ModelOptions& options) {
   Mesh mesh;
   mesh.name = source.path.stem().string();
   dvec3 origin(0);

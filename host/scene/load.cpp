@@ -77,10 +77,10 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
     } else if (path.extension() == ".json") {
       source.document = read_json_file(path, options.faults);
     } else {
-      throw SceneError(
-          path.string(), "",
-          "wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff, each also .gz), found "
-          "another extension");
+      throw SceneError(path.string(), "",
+                       "wanted a scene (.json) or a model (" SUNDOG_MODEL_EXTENSIONS
+                       ", each also .gz), found "
+                       "another extension");
     }
   }
   apply_overrides(source.document, source.file, overrides);

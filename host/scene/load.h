@@ -36,7 +36,7 @@ bool is_standard_input(const std::filesystem::path& path);
 std::string scene_file_name(const std::filesystem::path& path);
 
 /// Loads sundog's .json ("-": from the standard input, files that it names beside the current folder), or
-/// .gltf .glb .obj .ply .stl .nff (each also .gz) as a scene by itself: a camera that frames the bounds,
+/// a model file as a scene by itself: a camera that frames the bounds,
 /// lights and a grey material are made up where the file has none. `overrides` are "JSON_POINTER=VALUE"
 /// settings, applied in turn before the scene is checked (for a model file they apply to the scene that is
 /// made of it). Throws SceneError{file, place, what}, SettingError where an override had a part in it, and

@@ -7,11 +7,12 @@
 // so without layers, whose frames surface coordinates rotate, else as `rounds`: up to rounding; `mask`: up to
 // rounding, one bit for each kind; `room`: to the same bits, with room for more; `alters`: not.
 #pragma once
+#include "shared/lobes.h"
 
 // A table:
 // clang-format off
 #define SCENE_FEATURES(FEATURE)                                                                                   \
-  FEATURE(bool, HAS_SECONDARY, secondary_rays, same)    /* some material reflects or transmits */                 \
+  LOBE_FEATURES(FEATURE)                                                                                          \
   FEATURE(bool, HAS_MEDIA, media, same)                 /* some material has a medium, or the world absorbs */    \
   FEATURE(bool, HAS_TOUCHING, touching, same)           /* surfaces of solids with media may coincide */          \
   FEATURE(bool, HAS_ABSORPTION, absorption, same)       /* some medium absorbs */                                 \
@@ -36,10 +37,8 @@
   FEATURE(bool, HAS_ENVIRONMENT, environment, same)     /* there is an environment light */                       \
   FEATURE(bool, HAS_SKY, sky, same)                     /* rays that hit nothing see an environment or a sun */   \
   FEATURE(bool, HAS_LIGHT_TREE, light_tree, same)       /* surfaces sample one of many area lights */             \
-  FEATURE(bool, HAS_ROUGH, rough, same)                 /* some material reflects or transmits roughly */         \
   FEATURE(bool, HAS_ROUGH_GLASS, rough_glass, rounds)   /* some dielectric does */                                \
   FEATURE(bool, HAS_THIN_WALLS, thin_walls, rounds)     /* some thin wall has an index or is frosted */           \
-  FEATURE(bool, HAS_LAYERS, layers, rounds)             /* some material has layers: shared/layers.h */           \
   FEATURE(bool, HAS_LAYER_MAPS, layer_maps, rounds)     /* some has a metalness or roughness texture */           \
   FEATURE(bool, HAS_COAT_MAPS, coat_maps, rounds)       /* some has a coat weight texture */                      \
   FEATURE(bool, HAS_SPECULAR_MAPS, specular_maps, rounds) /* some has a specular texture */                       \

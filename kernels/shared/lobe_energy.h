@@ -1,6 +1,7 @@
-// Layout of the table lobe_energy (host/compile/lobe_energy.h): offsets of the parts that depend on the index
-// of refraction, and its axes: rows by the square root of the width alpha, columns by LOBE_COLUMN. Losses of
-// narrow lobes depend on the cosine over alpha, so rows of small alpha concentrate columns at small cosines.
+// Layout of the table lobe_energy (host/compile/surfaces/lobe_energy.h): offsets of the parts that depend on
+// the index of refraction, and its axes: rows by the square root of the width alpha, columns by LOBE_COLUMN.
+// Losses of narrow lobes depend on the cosine over alpha, so rows of small alpha concentrate columns at small
+// cosines.
 #pragma once
 #include "shared/scene.h"
 

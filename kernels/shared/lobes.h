@@ -8,8 +8,16 @@
 //   local_NAME(..., wo, wi, met, &light)     local lobes: adds what they return of a lamp, which a reflected
 //                                            ray also sees if `met`
 //   send_NAME(bsdf, lobes, wo, &part)        perfect lobes: the direction, and the part of light that it gets
-//   albedo_NAME(scene, bsdf, lobes)          about what it returns of white surroundings
+//   albedo_NAME(scene, bsdf, lobes, wo)      about what it returns of white surroundings
 #pragma once
+
+// The scene's features that lobes need, as in features.h, which includes these.
+// clang-format off
+#define LOBE_FEATURES(FEATURE)                                                                          \
+  FEATURE(bool, HAS_SECONDARY, secondary_rays, same)    /* some material reflects or transmits */       \
+  FEATURE(bool, HAS_ROUGH, rough, same)                 /* some material reflects or transmits roughly */\
+  FEATURE(bool, HAS_LAYERS, layers, rounds)             /* some material has layers: shared/layers.h */
+// clang-format on
 
 #define PERFECT_LOBES(LOBE)   \
   LOBE(HAS_SECONDARY, mirror) \
@@ -28,3 +36,9 @@
 #define COLORED_LOBES(LOBE) \
   LOBE(HAS_LAYERS, layered) \
   LOBE(HAS_SURFACES, diffuse)
+
+// Keys of materials in scene files that lobes read: members of the host's MaterialDescription, with defaults,
+// and a component of Material with a value by them.
+//   KEY(type, name, default, component, value)
+// Components that are free: the w of ambient, diffuse, checker_ambient and emission.
+#define LOBE_KEYS(KEY) KEY(double, roughness, {0}, reflection.w, roughness* roughness) /* GGX alpha */

@@ -85,9 +85,9 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 #define LEAST_OF_LIGHT 0x1p-12f
 
 // 400 bytes: the scene's constants. Positions in all tables are relative to the world position `origin` +
-// `origin_rest`, near the camera's target (host/compile/local_origin.h). Pixel (x, y), y down, with sample
-// offset (a, b) in [0, 1)^2 looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which has
-// length 1 along camera_forward. HAS_ORTHOGRAPHIC: that is the ray's start, from camera_position, and
+// `origin_rest`, near the camera's target (host/compile/view/local_origin.h). Pixel (x, y), y down, with
+// sample offset (a, b) in [0, 1)^2 looks along camera_corner + (x + a) camera_dx + (y + b) camera_dy, which
+// has length 1 along camera_forward. HAS_ORTHOGRAPHIC: that is the ray's start, from camera_position, and
 // camera_corner.w is 1 / the target's distance.
 typedef struct SceneInfo {
   float4 camera_position;

@@ -21,7 +21,7 @@
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/names.h"
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 #include "scene/load.h"
 
 namespace sundog {

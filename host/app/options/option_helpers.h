@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "base/arguments.h"
+#include "models/model.h"
 
 namespace sundog {
 
 inline constexpr const char* scene_help =
-    "a .json scene (-: from the standard input), or a .gltf .glb .obj .ply .stl .nff model";
+    "a .json scene (-: from the standard input), or a " SUNDOG_MODEL_EXTENSIONS " model";
 inline constexpr const char* device_help =
     "P:D, cpu, gpu, accelerator, all, part of a name (pocl, nvidia, ...), or !SPEC to take away (!SPEC?: "
     "if it is there); /N for N compute units "

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compile/texels.h"
+#include "compile/surfaces/texels.h"
 #include "scene/kinds.h"
 
 namespace sundog {

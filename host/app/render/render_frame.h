@@ -12,7 +12,7 @@
 #include "app/process/progress.h"
 #include "app/render/stats.h"
 #include "base/pixels/shot.h"
-#include "compile/parts/content_key.h"
+#include "compile/content_key.h"
 #include "compile/scene_compiler.h"
 #include "render/remote/kept_channels.h"
 #include "render/session/render_session.h"

@@ -61,7 +61,7 @@ fs::path file_below(const fs::path& folder, const std::string& name) {
         fmt::format("{}: there is no such file below the folder that sundog was started in", name));
   if (!is_scene(file))
     throw UsageError(
-        fmt::format("{}: wanted a scene (.json) or a model (.gltf, .glb, .obj, .ply, .stl, .nff)", name));
+        fmt::format("{}: wanted a scene (.json) or a model (" SUNDOG_MODEL_EXTENSIONS ")", name));
   return file;
 }
 

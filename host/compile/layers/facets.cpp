@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "compile/lattice_turns.h"
 #include "compile/layers/round_facets.h"
+#include "compile/view/lattice_turns.h"
 
 namespace sundog {
 namespace {

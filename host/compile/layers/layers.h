@@ -2,7 +2,7 @@
 // those below, found by quadrature of the layer.
 #pragma once
 #include "compile/layers/base.h"
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 
 namespace sundog {
 

@@ -10,11 +10,11 @@
 
 #include "base/error.h"
 #include "compile/bvh/wide_bvh.h"
-#include "compile/local_origin.h"
 #include "compile/placing/instance_bounds.h"
 #include "compile/placing/motion.h"
 #include "compile/shapes.h"
-#include "compile/textures.h"
+#include "compile/surfaces/textures.h"
+#include "compile/view/local_origin.h"
 
 namespace sundog {
 namespace {

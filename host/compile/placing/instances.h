@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 
 namespace sundog {
 

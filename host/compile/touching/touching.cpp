@@ -1,7 +1,8 @@
-// See touching.h. A flat face lies on a convex solid if its plane is a supporting plane of the solid;
-// triangles are compared with triangles; curved surfaces are searched in ever smaller cells.
-#include "compile/touching/touching.h"
-
+// Finds instances whose faces coincide with others, exactly or up to rounding: compile_touching() sets
+// Instance.touch of instances that may have a face on one of another, or of their own mesh, if at least one
+// of the two has an interior medium. Conservative: false positives only cost time. A flat face lies on a
+// convex solid if its plane is a supporting plane of the solid; triangles are compared with triangles; curved
+// surfaces are searched in ever smaller cells.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "compile/parts/steps.h"
 #include "compile/shapes.h"
+#include "compile/steps.h"
 #include "compile/touching/box_tree.h"
 #include "compile/touching/round_surfaces.h"
 #include "compile/touching/touching_triangles.h"
@@ -230,12 +231,24 @@ class Search {
   bool found_ = false;
 };
 
-}  // namespace
-
+/// The largest coordinate for rounding at the camera: that of its position, rounded up to a power of two, so
+/// that a camera that orbits causes no new search.
 double camera_reach(const SceneDescription& scene, const dvec3& origin) {
   const dvec3 camera = glm::abs(scene.camera.position - origin);
   const double reach = std::max({camera.x, camera.y, camera.z});
   return reach > 0 ? std::exp2(std::ceil(std::log2(reach))) : 0;
+}
+
+}  // namespace
+
+TouchingInputs touching_inputs(const SceneDescription& scene, const dvec3& origin,
+                               const Known<Instances>& instances) {
+  return {.instances = instances,
+          .camera_reach = camera_reach(scene, origin),
+          .file = file_of(scene),
+          .origin = {origin},
+          .objects = {scene.objects},
+          .meshes = {scene.meshes}};
 }
 
 Touching compile_touching(const TouchingInputs& in) {

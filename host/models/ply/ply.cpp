@@ -247,7 +247,7 @@ void warn_of_no_numbers(const Source& source, std::size_t count, const char* wha
 
 }  // namespace
 
-Model load_ply(const Source& source, const ModelOptions& options) {
+Model load_ply(Source source, const ModelOptions& options) {
   const PlyHeader header = read_ply_header(source);
   Content content = read_content(source, header);
   Mesh& mesh = content.mesh;

@@ -306,7 +306,10 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     MaterialDescription material;
     material.name = std::move(name);
     std::string shading;
-    object.read("type", material.type, "shading", shading, "roughness", material.roughness);
+    object.read("type", material.type, "shading", shading);
+#define SUNDOG_READ_KEY(of, name, ...) object.read(#name, material.name);
+    LOBE_KEYS(SUNDOG_READ_KEY)
+#undef SUNDOG_READ_KEY
     object.read("multiple_scattering", material.multiple_scattering);
     const bool dielectric = material.type == MaterialType::dielectric;
     read_local_terms(object, material, textures);

@@ -13,6 +13,7 @@
 #include "base/input.h"
 #include "scene/animate.h"
 #include "scene/bounds.h"
+#include "scene/dark_world.h"
 #include "scene/decode_images.h"
 #include "scene/displace.h"
 #include "scene/json/parse.h"
@@ -20,7 +21,6 @@
 #include "scene/light_groups.h"
 #include "scene/materials/presets.h"
 #include "scene/procedural/procedural.h"
-#include "scene/read/dark_world.h"
 #include "scene/read/fields.h"
 #include "scene/read/focus.h"
 #include "scene/read/frame_cache.h"
@@ -111,8 +111,7 @@ class SceneReader {
 
   fs::path find_model(const JsonValue& value) const {
     fs::path file = find_file(value);
-    if (!is_model_file(file))
-      value.wanted("a model file (.gltf, .glb, .obj, .ply, .stl or .nff, each also .gz)");
+    if (!is_model_file(file)) value.wanted("a model file (" SUNDOG_MODEL_EXTENSIONS ", each also .gz)");
     return file;
   }
 

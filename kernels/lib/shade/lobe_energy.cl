@@ -1,4 +1,4 @@
-// Light that facets lose, in tables of host/compile/lobe_energy.h. One surface per lane.
+// Light that facets lose, in tables of host/compile/surfaces/lobe_energy.h. One surface per lane.
 #pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"

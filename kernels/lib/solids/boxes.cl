@@ -114,6 +114,8 @@ static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part)
   return points_on_faces(p, (float3)(1.0f));
 }
 static inline REAL curvature_of_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline float4 reach_of_box(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_BOX); }
+static inline u32 convexity_of_box(float4 parameters) { return CONVEX; }
 
 static inline void unite_spans(Span* whole, Span part) {
   whole->enter = select(whole->enter, real_min(whole->enter, part.enter), part.crosses);
@@ -171,3 +173,5 @@ static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK
 }
 // Of the faces; edges count as flat.
 static inline REAL curvature_of_round_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline float4 reach_of_round_box(float4 parameters) { return (float4)(parameters.xyz, REACH_BOX); }
+static inline u32 convexity_of_round_box(float4 parameters) { return CONVEX; }

@@ -24,6 +24,8 @@ static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK pa
 }
 
 static inline REAL curvature_of_sphere(float4 parameters, REAL3 p, MASK part) { return (REAL)(1.0f); }
+static inline float4 reach_of_sphere(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_BALL); }
+static inline u32 convexity_of_sphere(float4 parameters) { return CONVEX; }
 
 static inline void closest_in_plane(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
@@ -36,6 +38,8 @@ static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK par
 }
 
 static inline REAL curvature_of_plane(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline float4 reach_of_plane(float4 parameters) { return (float4)(0.0f); }
+static inline u32 convexity_of_plane(float4 parameters) { return CONVEX; }
 
 // A ring in the plane y = height, inner <= radius <= outer, with its normal towards `side` of y.
 static inline void offer_ring(REAL3 o, REAL3 d, float height, float inner, float outer, float side, int part,
@@ -64,6 +68,10 @@ static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part
   return points_in_plane(p, NO_LANES);
 }
 static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline float4 reach_of_disk(float4 parameters) { return (float4)(1.0f, 0.0f, 1.0f, REACH_ROUND); }
+static inline u32 convexity_of_disk(float4 parameters) {
+  return parameters.x == 0.0f ? CONVEX : CONVEX_OUTSIDE;
+}
 
 static inline void closest_in_rectangle(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                         SolidHits* hits) {
@@ -77,6 +85,8 @@ static inline SurfacePoints points_on_rectangle(float4 parameters, REAL3 p, MASK
   return points_in_plane(p, NO_LANES);
 }
 static inline REAL curvature_of_rectangle(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline float4 reach_of_rectangle(float4 parameters) { return (float4)(1.0f, 0.0f, 1.0f, REACH_BOX); }
+static inline u32 convexity_of_rectangle(float4 parameters) { return CONVEX; }
 
 // Coordinates on a cylinder or cone; `growth`: of the radius with height.
 static inline SurfacePoints on_tube(REAL3 p, float growth) {
@@ -118,6 +128,10 @@ static inline SurfacePoints points_on_cylinder(float4 parameters, REAL3 p, MASK 
 static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }
+static inline float4 reach_of_cylinder(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_ROUND); }
+static inline u32 convexity_of_cylinder(float4 parameters) {
+  return parameters.x != 0.0f ? CONVEX : CONVEX_OUTSIDE;
+}
 
 // The side: x^2 + z^2 = (m + k y)^2 with the mean radius m and slope k, |y| <= 1.
 static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
@@ -153,4 +167,11 @@ static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part
 }
 static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
+}
+static inline float4 reach_of_cone(float4 parameters) {
+  const float radius = fmax(parameters.x, parameters.y);
+  return (float4)(radius, 1.0f, radius, REACH_ROUND);
+}
+static inline u32 convexity_of_cone(float4 parameters) {
+  return parameters.z != 0.0f ? CONVEX : CONVEX_OUTSIDE;
 }

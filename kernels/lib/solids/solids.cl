@@ -1,6 +1,7 @@
-// The exact solids in object space, one ray or point per lane. Each row of shared/shapes.h has three
+// The exact solids in object space, one ray or point per lane. Each row of shared/shapes.h has five
 // functions: closest_in_NAME() offers hits, nearest t in (t_min, t_max] with the outward normal (directions
 // need not be unit); points_on_NAME() gives coordinates, curvature_of_NAME() the mean curvature of a point.
+// For shafts, reach_of_NAME() gives its bounds, and convexity_of_NAME() whether rays from it meet it again.
 #pragma once
 #include "lib/solids/boxes.cl"
 #include "lib/solids/round.cl"
@@ -38,4 +39,20 @@ static inline REAL solid_curvatures(u32 shape, float4 parameters, REAL3 p, MASK 
   SOLIDS(CURVATURES)
 #undef CURVATURES
   return (REAL)(0.0f);
+}
+
+static inline float4 solid_reach(u32 shape, float4 parameters) {
+#define REACH(constant, type, name) \
+  if (HAS_##constant && shape == SHAPE_##constant) return reach_of_##name(parameters);
+  SOLIDS(REACH)
+#undef REACH
+  return (float4)(0.0f);
+}
+
+static inline u32 solid_convexity(u32 shape, float4 parameters) {
+#define CONVEXITY(constant, type, name) \
+  if (HAS_##constant && shape == SHAPE_##constant) return convexity_of_##name(parameters);
+  SOLIDS(CONVEXITY)
+#undef CONVEXITY
+  return CONCAVE;
 }

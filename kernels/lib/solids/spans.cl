@@ -27,6 +27,18 @@ static inline void offer_face(REAL t, MASK face, MASK valid, REAL t_min, SolidHi
   hits->found |= nearer;
 }
 
+// w of reach_of_NAME(), which has half sizes of a box around the unit solid: its bounds are that box, or
+// round about y within it, or a ball.
+#define REACH_BOX 0.0f
+#define REACH_ROUND 1.0f
+#define REACH_BALL 2.0f
+
+// convexity_of_NAME(): rays from a solid's outside may meet it again; do not; and it is closed, or flat
+// without a hole.
+#define CONCAVE 0u
+#define CONVEX_OUTSIDE 1u
+#define CONVEX 2u
+
 static inline REAL3 up_or_down(REAL side) { return real3((REAL)(0.0f), side, (REAL)(0.0f)); }
 
 // Entry and exit of a line.

@@ -83,3 +83,7 @@ static inline REAL curvature_of_torus(float4 parameters, REAL3 p, MASK part) {
   const REAL radius = radius_about_y(p);
   return 0.5f * (1.0f / parameters.x + (radius - 1.0f) / (parameters.x * nonzero(radius)));
 }
+static inline float4 reach_of_torus(float4 parameters) {
+  return (float4)(1.0f + parameters.x, parameters.x, 1.0f + parameters.x, REACH_ROUND);
+}
+static inline u32 convexity_of_torus(float4 parameters) { return CONCAVE; }

@@ -5,6 +5,7 @@
 #pragma once
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
+#include "lib/solids/solids.cl"
 
 #if HAS_SHAFTS
 // Relative enlargement of a solid's bounds, for rounding of rays that hit it.
@@ -17,23 +18,11 @@ typedef struct Shafts {
   MASK outside;   // the instance on whose outside o lies, or NO_INSTANCE
 } Shafts;
 
-// Half sizes of a unit solid's bounds; w: 0 box, 1 cylinder about y, 2 ball.
-static inline float4 solid_reach(u32 shape, float4 parameters) {
-  if (shape == SHAPE_SPHERE) return (float4)(1.0f, 1.0f, 1.0f, 2.0f);
-  if (shape == SHAPE_CYLINDER) return (float4)(1.0f);
-  if (shape == SHAPE_DISK) return (float4)(1.0f, 0.0f, 1.0f, 1.0f);
-  if (shape == SHAPE_RECTANGLE) return (float4)(1.0f, 0.0f, 1.0f, 0.0f);
-  if (shape == SHAPE_ROUNDBOX) return (float4)(parameters.xyz, 0.0f);
-  if (shape == SHAPE_BOX) return (float4)(1.0f, 1.0f, 1.0f, 0.0f);
-  const float radius = shape == SHAPE_CONE ? fmax(parameters.x, parameters.y) : 1.0f + parameters.x;
-  return (float4)(radius, shape == SHAPE_CONE ? 1.0f : parameters.x, radius, 1.0f);
-}
-
-// Support of `reach` along n, which need not be unit.
+// Support of `reach` (solid_reach()) along n, which need not be unit.
 static inline REAL reach_along(float4 reach, REAL3 n) {
-  if (reach.w == 2.0f) return reach.x * length3(n);
+  if (reach.w == REACH_BALL) return reach.x * length3(n);
   const REAL up = reach.y * fabs(n.y);
-  if (reach.w == 1.0f) return fma((REAL)(reach.x), real_sqrt(fma(n.x, n.x, n.z * n.z)), up);
+  if (reach.w == REACH_ROUND) return fma((REAL)(reach.x), real_sqrt(fma(n.x, n.x, n.z * n.z)), up);
   return fma((REAL)(reach.x), fabs(n.x), fma((REAL)(reach.z), fabs(n.z), up));
 }
 
@@ -72,7 +61,7 @@ static inline MASK may_touch_solid(REAL3 o, const REAL3* e, float4 reach, REAL p
 // The lanes of `lanes` whose shafts may touch the ball (center, radius) in world space.
 static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes) {
   const REAL3 o = subtract3(shafts->o, all3(ball.xyz));
-  return may_touch_solid(o, shafts->edge, (float4)(ball.w, ball.w, ball.w, 2.0f),
+  return may_touch_solid(o, shafts->edge, (float4)(ball.w, ball.w, ball.w, REACH_BALL),
                          shafts->slack + SHAFT_MARGIN * ball.w, lanes);
 }
 
@@ -81,7 +70,8 @@ static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes)
 static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shafts* shafts, MASK lanes) {
   __global const Instance* instance = scene->instances + index;
   if (HAS_MESH && instance->shape == SHAPE_MESH) return may_touch_ball(shafts, instance->world_center, lanes);
-  if (!HAS_TORUS || instance->shape != SHAPE_TORUS) lanes &= MASK_OF(shafts->outside != (int)index);
+  if (solid_convexity(instance->shape, instance->parameters) != CONCAVE)
+    lanes &= MASK_OF(shafts->outside != (int)index);
   if (!any_lane(lanes)) return lanes;
   const float4 x = instance->object_from_world[0], y = instance->object_from_world[1],
                z = instance->object_from_world[2];
@@ -100,9 +90,7 @@ static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
   const u32 shape = instance->shape;
   const float4 parameters = instance->parameters;
   if (shape == SHAPE_PLANE) return ALL_LANES;
-  if (shape == SHAPE_TORUS || (shape == SHAPE_CYLINDER && parameters.x == 0.0f) ||
-      (shape == SHAPE_CONE && parameters.z == 0.0f) || (shape == SHAPE_DISK && parameters.x > 0.0f))
-    return NO_LANES;
+  if (solid_convexity(shape, parameters) != CONVEX) return NO_LANES;
   const REAL3 p = object_points(instance, o);
   const float4 reach = solid_reach(shape, parameters);
   return MASK_OF(fabs(p.x) > reach.x) | MASK_OF(fabs(p.y) > reach.y) | MASK_OF(fabs(p.z) > reach.z);

@@ -50,7 +50,7 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   const BsdfSample sample = sample_lobes(scene, &at.bsdf, &lobes, -ray->d, u.z, u.x, u.y);
   const bool narrow = sample.specular || sample.pdf > FEATURE_DENSITY;
   if (!(narrow && f->path.depth < FEATURE_DEPTH && greatest(sample.weight) > 0.0f)) {
-    f->albedo = f->tint * scattered_albedo(scene, &at.bsdf, &lobes);
+    f->albedo = f->tint * scattered_albedo(scene, &at.bsdf, &lobes, -ray->d);
     f->normal = at.s.ns;
     return false;
   }

@@ -30,10 +30,10 @@ static inline float scattered_share(const LobeSet* lobes) {
 }
 
 #define ADD_ALBEDO(feature, name) \
-  if (feature) sum += albedo_##name(scene, bsdf, lobes);
+  if (feature) sum += albedo_##name(scene, bsdf, lobes, wo);
 // About what the scattering lobes return of white surroundings.
 ENTRY static inline float3 scattered_albedo(UNIFORM const Scene* scene, const Bsdf* bsdf,
-                                            const LobeSet* lobes) {
+                                            const LobeSet* lobes, float3 wo) {
   float3 sum = (float3)(0.0f);
   SCATTERING_LOBES(ADD_ALBEDO)
   return sum;

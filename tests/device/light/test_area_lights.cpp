@@ -10,7 +10,7 @@
 
 #include "catch.h"
 #include "closed_irradiance.h"
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 #include "devices.h"
 #include "every_kind.h"
 #include "scene/kinds.h"

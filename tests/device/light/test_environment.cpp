@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 #include "device/choice.h"
 #include "devices.h"
 #include "scenes.h"

@@ -3,7 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "catch.h"
-#include "compile/filter.h"
+#include "compile/view/filter.h"
 #include "devices.h"
 #include "scenes.h"
 

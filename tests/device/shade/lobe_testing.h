@@ -10,7 +10,7 @@
 
 #include "catch.h"
 #include "compile/layers/layers.h"
-#include "compile/lobe_energy.h"
+#include "compile/surfaces/lobe_energy.h"
 #include "devices.h"
 #include "shared/scene.h"
 #include "surface_text.h"
@@ -75,7 +75,7 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   __global float* to = out + 9u * i;
   to[0] = wi.x; to[1] = wi.y; to[2] = wi.z; to[3] = density;
   to[4] = value.x; to[5] = value.y; to[6] = value.z; to[7] = draws && s.specular ? 1.0f : 0.0f;
-  to[8] = scattered_albedo(&scene, &bsdf, &lobes, ALL_LANES).x PERFECT_LOBES(SHARE_OF_LOBE);
+  to[8] = scattered_albedo(&scene, &bsdf, &lobes, wo, ALL_LANES).x PERFECT_LOBES(SHARE_OF_LOBE);
 }
 )";
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "catch.h"
-#include "compile/textures.h"
+#include "compile/surfaces/textures.h"
 #include "devices.h"
 #include "scenes.h"
 #include "surface_testing.h"

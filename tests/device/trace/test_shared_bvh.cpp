@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "catch.h"
-#include "compile/mesh_groups.h"
+#include "compile/bvh/mesh_groups.h"
 #include "devices.h"
 #include "same_bits.h"
 #include "scenes.h"

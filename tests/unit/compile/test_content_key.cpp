@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "catch.h"
-#include "compile/parts/content_key.h"
+#include "compile/content_key.h"
 
 using namespace sundog;
 

@@ -1,5 +1,5 @@
 // Reconstruction filters: the table that samples are placed by has the filter's moments and its sign.
-#include "compile/filter.h"
+#include "compile/view/filter.h"
 
 #include <cmath>
 

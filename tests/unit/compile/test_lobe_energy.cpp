@@ -1,5 +1,5 @@
 // The tables of rough surfaces that are made when sundog is built.
-#include "compile/lobe_energy.h"
+#include "compile/surfaces/lobe_energy.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "compile/compiled_scene.h"
-#include "compile/local_origin.h"
+#include "compile/view/local_origin.h"
 #include "render/film/hash.h"
 #include "scene/load.h"
 

@@ -1,5 +1,5 @@
 // Which meshes share a BVH, and that rays through it find each mesh's own triangles.
-#include "compile/mesh_groups.h"
+#include "compile/bvh/mesh_groups.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

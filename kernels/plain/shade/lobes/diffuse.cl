@@ -5,7 +5,8 @@ static inline float share_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   return greatest(bsdf->diffuse);
 }
 
-static inline float3 albedo_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                    float3 wo) {
   return bsdf->diffuse;
 }
 

@@ -6,7 +6,7 @@ HAVING(HAS_ROUGH);
 
 // Compensation for energy lost between facets: lobes are multiplied by the gains of both directions (the
 // scaling of Turquin 2019, "Practical multiple scattering compensation for microfacet models", made
-// reciprocal: host/compile/lobe_energy.h).
+// reciprocal: host/compile/surfaces/lobe_energy.h).
 static inline float microfacet_gain(UNIFORM const Scene* scene, float c, float alpha) {
   return lobe_energy_at(scene, LOBE_GAINS, c, alpha);
 }
@@ -139,7 +139,8 @@ static inline float share_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, floa
 }
 
 // Light that scatters between facets comes back: a rough interface returns about what a smooth one does.
-static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                float3 wo) {
   const float3 none = (float3)(0.0f), through = lobes->rough.transmits ? lobes->split.kt : none;
   return lobes->rough.rough ? lobes->split.kr + through : none;
 }

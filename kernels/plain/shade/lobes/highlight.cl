@@ -19,7 +19,8 @@ static inline float share_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf
 }
 
 // Phong's for a viewer along the normal, in closed form.
-static inline float3 albedo_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                      float3 wo) {
   float3 color = (float3)(0.0f);
   if (HAS_MAPS) color = bsdf->specular;
   if (!HAS_MAPS && has_highlight(bsdf))

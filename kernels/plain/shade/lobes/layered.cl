@@ -8,7 +8,8 @@ static inline float share_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, 
 }
 
 // The base's colour: of white light, layers return about what they keep from it.
-static inline float3 albedo_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                    float3 wo) {
   return is_layered(bsdf) ? bsdf->base * bsdf->there : (float3)(0.0f);
 }
 

@@ -4,14 +4,15 @@
 
 HAVING(HAS_SECONDARY);
 
-static inline float3 albedo_refraction(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes) {
+static inline float3 albedo_refraction(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
+                                       float3 wo) {
   if (HAS_ROUGH && lobes->rough.transmits) return (float3)(0.0f);
   return lobes->split.kt;
 }
 
 static inline float share_refraction(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
                                      LobeSet* lobes) {
-  return greatest(albedo_refraction(scene, bsdf, lobes));
+  return greatest(albedo_refraction(scene, bsdf, lobes, wo));
 }
 
 static inline float3 send_refraction(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float3* part) {

@@ -1,4 +1,4 @@
-#include "compile/texels.h"
+#include "compile/surfaces/texels.h"
 
 #include <algorithm>
 #include <cstring>

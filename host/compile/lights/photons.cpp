@@ -1,11 +1,12 @@
 // See photons.h.
-#include "compile/parts/photons.h"
+#include "compile/lights/photons.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "compile/lights/lights.h"
 #include "compile/placing/instance_bounds.h"
 #include "compile/placing/instances.h"
 #include "scene/integrators.h"
@@ -14,7 +15,7 @@
 namespace sundog {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t most_targets = 64;  // each costs time for every photon
 constexpr double photons_within = 12;     // within the first radius, if light is uniform
 constexpr double least_share = 0.02;      // of the photons, divided evenly among the emitters
@@ -73,10 +74,6 @@ std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bo
     balls.push_back(balls[0]);
   }
   return balls;
-}
-
-double luminance(const float4& color) {
-  return 0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z);
 }
 
 /// The environment's mean radiance over all directions.

@@ -1,5 +1,5 @@
 // See vertices.h.
-#include "compile/vertices.h"
+#include "compile/bvh/vertices.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

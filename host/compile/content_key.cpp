@@ -1,7 +1,7 @@
 // See content_key.h. A key takes all members of a struct, in their order, but those that are named here.
-#include "compile/parts/content_key.h"
+#include "compile/content_key.h"
 
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 // Compiles images and textures (kernels/shared/textures.h).
 #pragma once
-#include "compile/parts/steps.h"
-#include "compile/texels.h"
+#include "compile/steps.h"
+#include "compile/surfaces/texels.h"
 
 namespace sundog {
 
@@ -21,7 +21,7 @@ struct CornerTangent {
   bool mirrored;
 };
 
-/// Tangents for normal maps at the corners of each triangle (compile/tangents.cpp).
+/// Tangents for normal maps at the corners of each triangle (compile/bvh/tangents.cpp).
 std::vector<CornerTangent> corner_tangents(const Mesh& mesh);
 
 /// Packed corner_tangents() of all meshes, if surfaces have relief.

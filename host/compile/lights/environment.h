@@ -1,6 +1,6 @@
 // Compiles environment lights: the picture, its sampling tables, and the sky's sun.
 #pragma once
-#include "compile/parts/steps.h"
+#include "compile/steps.h"
 
 namespace sundog {
 

@@ -1,5 +1,5 @@
 // See lobe_energy.h.
-#include "compile/lobe_energy.h"
+#include "compile/surfaces/lobe_energy.h"
 
 #include <tbb/parallel_for.h>
 
@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
-#include "compile/lattice_turns.h"
+#include "compile/view/lattice_turns.h"
 #include "shared/lobe_energy.h"
 
 namespace sundog {

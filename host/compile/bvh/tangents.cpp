@@ -9,7 +9,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "compile/textures.h"
+#include "compile/surfaces/textures.h"
 
 namespace sundog {
 namespace {

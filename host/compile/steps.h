@@ -1,5 +1,6 @@
 // The steps of compile(): functions from what they read to what they make. An input struct names all that its
-// step reads, and memo() makes a result anew only where the content key of its members changes.
+// step reads of a description and of other results, and memo() makes a result anew only where the content key
+// of its members changes.
 #pragma once
 #include <memory>
 #include <span>
@@ -7,12 +8,18 @@
 #include <vector>
 
 #include "compile/compiled_scene.h"
-#include "compile/parts/content_key.h"
+#include "compile/content_key.h"
 
 namespace sundog {
 
+struct FieldView;
+
 /// The scene's file, for messages.
 using SceneFile = Unkeyed<std::string>;
+inline SceneFile file_of(const SceneDescription& scene) { return {scene.file.string()}; }
+
+/// Whether the world's fog is a scattering medium instead of emitting light itself.
+bool fog_scatters(const SceneDescription& scene);
 
 struct HaloInputs {
   const EnvironmentDescription* environment;
@@ -44,6 +51,7 @@ struct Lights {
 };
 /// Throws SceneError for a zero direction.
 Lights compile_lights(const LightInputs& in);
+LightInputs light_inputs(const SceneDescription& scene, const dvec3& origin, const Known<Halo>& halo);
 
 struct SurfaceInputs {
   SceneFile file{};
@@ -73,6 +81,7 @@ struct Surfaces {
 };
 /// Equal media are merged, except the world's at 0. Throws SceneError for an unknown texture.
 Surfaces compile_surfaces(const SurfaceInputs& in);
+SurfaceInputs surface_inputs(const SceneDescription& scene);
 
 struct MeshInputs {
   SceneFile file{};
@@ -108,6 +117,7 @@ struct Meshes {
 /// edges and transforms would leave a float's range. Throws SceneError for a non-finite or distant vertex,
 /// and for an index out of range.
 Meshes compile_meshes(const MeshInputs& in);
+MeshInputs mesh_inputs(const SceneDescription& scene, const Surfaces& surfaces);
 
 struct MappingInputs {
   Known<Meshes> meshes{};
@@ -122,6 +132,8 @@ struct MeshMapping {
   SharedTable<u32> tangents;
 };
 MeshMapping compile_mapping(const MappingInputs& in);
+MappingInputs mapping_inputs(const SceneDescription& scene, const Known<Meshes>& meshes,
+                             const Surfaces& surfaces);
 
 /// A material's facts that instances depend on.
 struct SurfaceFacts {
@@ -157,6 +169,8 @@ struct Instances {
 };
 /// Throws SceneError for a transform that is not invertible in single precision.
 Instances compile_instances(const InstanceInputs& in);
+InstanceInputs instance_inputs(const SceneDescription& scene, const dvec3& origin,
+                               const Known<Meshes>& meshes, const Surfaces& surfaces);
 
 struct TouchingInputs {
   Known<Instances> instances{};
@@ -172,6 +186,8 @@ struct Touching {
   bool any = false;
 };
 Touching compile_touching(const TouchingInputs& in);
+TouchingInputs touching_inputs(const SceneDescription& scene, const dvec3& origin,
+                               const Known<Instances>& instances);
 
 /// `fields` as the camera sees them. In a deep view each field that an object places is compiled by itself,
 /// relative to the tables' origin: `fields` has one for each, in the order of their instances.
@@ -193,6 +209,13 @@ struct Fields {
   SceneFeatures features;
 };
 Fields compile_field_tables(const FieldInputs& in);
+/// The camera's views of fields, one for each object, empty for other objects.
+std::vector<FieldView> views_of(const SceneDescription& scene);
+bool any_deep(const std::vector<FieldView>& views);
+/// `placed`: the instances, of which those of fields begin at `first`.
+FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
+                         const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,
+                         u32 first);
 
 ContentKey key_of(const HaloInputs& inputs);
 ContentKey key_of(const LightInputs& inputs);

@@ -13,9 +13,9 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "compile/bvh/vertices.h"
 #include "compile/bvh/wide_bvh.h"
-#include "compile/parts/steps.h"
-#include "compile/vertices.h"
+#include "compile/steps.h"
 
 namespace sundog {
 namespace {

@@ -1,16 +1,14 @@
 // See materials.h.
-#include "compile/materials.h"
+#include "compile/surfaces/materials.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "compile/spectra.h"
-#include "compile/textures.h"
+#include "compile/surfaces/spectra.h"
+#include "compile/surfaces/textures.h"
 #include "scene/integrators.h"
-#include "scene/kinds.h"
-#include "scene/lamps.h"
 #include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 
@@ -140,11 +138,16 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
   packed.ambient = pack(material.ambient);
   packed.diffuse = pack(material.diffuse);
   packed.specular = pack(material.specular, material.exponent);
-  packed.reflection = pack(material.reflection, material.roughness * material.roughness);
+  packed.reflection = pack(material.reflection);
   packed.transmission = pack(material.transmission, material.wall_ior);
   packed.checker_ambient = pack(material.checker_ambient);
   packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);
   packed.emission = pack(material.emission);
+#define SUNDOG_PACK_KEY(type, name, standard, component, value) \
+  const type name = material.name;                              \
+  packed.component = static_cast<float>(value);
+  LOBE_KEYS(SUNDOG_PACK_KEY)
+#undef SUNDOG_PACK_KEY
   packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
   packed.flags = material_flags(material);
   packed.medium = material.medium < 0 ? 0 : media.at(static_cast<std::size_t>(material.medium));
@@ -184,32 +187,6 @@ u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
   if (!in.lacks_materials) return NO_MATERIAL;
   out.materials.push_back(make_material(MaterialDescription{}, media));
   return static_cast<u32>(out.materials.size() - 1);
-}
-
-void add_light(const LightInputs& in, const LightDescription& light, const std::string& place, Lights& out) {
-  const Light packed = pack_light({*in.file, light, place}, in.origin);
-  const bool extent = facts_of(light.type).has_extent() || packed.kind == LIGHT_SUN;
-  const auto index = static_cast<u32>(out.lights.size()), rays = extent ? static_cast<u32>(light.samples) : 1;
-  for (u32 ray = 0; ray < rays; ++ray) out.light_rays.push_back({index, ray, rays, 0});
-  out.lights.push_back(packed);
-  out.features.area_lights |= extent;
-  out.features.sky |= packed.kind == LIGHT_SUN && !light.hidden;
-}
-
-void add_lights(const LightInputs& in, Lights& out) {
-  dvec3 ambient(0);
-  for (std::size_t i = 0; i < in.lights.size(); ++i) {
-    const LightDescription& light = in.lights[i];
-    if (light.type == LightType::ambient)
-      ambient += light.color * light.intensity;
-    else
-      add_light(in, light, fmt::format("/lights/{}", i), out);
-  }
-  out.ambient = pack(ambient);
-}
-
-bool fog_scatters(const SceneDescription& scene) {
-  return traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
 }
 
 }  // namespace sundog

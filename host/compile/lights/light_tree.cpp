@@ -1,5 +1,5 @@
 // See light_tree.h.
-#include "compile/light_tree.h"
+#include "compile/lights/light_tree.h"
 
 #include <algorithm>
 #include <cmath>

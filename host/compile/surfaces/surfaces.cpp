@@ -1,14 +1,12 @@
-// Compiles shading data: lights with the environment, and surfaces.
+// Compiles surfaces: materials, media, textures and layers.
 #include <algorithm>
 #include <cmath>
 
-#include "compile/environment.h"
-#include "compile/halo/halo_map.h"
 #include "compile/layers/layers.h"
-#include "compile/materials.h"
-#include "compile/parts/steps.h"
-#include "compile/textures.h"
-#include "scene/pack.h"
+#include "compile/steps.h"
+#include "compile/surfaces/materials.h"
+#include "compile/surfaces/textures.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -31,19 +29,20 @@ bool has_fractional_exponent(const Material& material) {
 
 }  // namespace
 
-Halo compile_halo(const HaloInputs& in) {
-  const EnvironmentDescription& e = *in.environment;
-  if (e.type != EnvironmentType::halo) return nullptr;
-  return e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
+bool fog_scatters(const SceneDescription& scene) {
+  return traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
 }
 
-Lights compile_lights(const LightInputs& in) {
-  Lights lights;
-  add_lights(in, lights);
-  add_environment(in, lights);
-  lights.fog = pack(in.fog_color, in.fog_density);
-  lights.features.fog = in.fog_density > 0;
-  return lights;
+SurfaceInputs surface_inputs(const SceneDescription& scene) {
+  return {.file = file_of(scene),
+          .paths = traces_paths(scene.render.integrator),
+          .caustics = scene.render.caustics,
+          .lacks_materials = lacks_materials(scene),
+          .media = scene.media,
+          .images = scene.images,
+          .textures = scene.textures,
+          .materials = scene.materials,
+          .fog = fog_scatters(scene) ? &scene.fog : nullptr};
 }
 
 Surfaces compile_surfaces(const SurfaceInputs& in) {

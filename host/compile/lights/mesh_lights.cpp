@@ -1,5 +1,5 @@
 // See mesh_lights.h.
-#include "compile/mesh_lights.h"
+#include "compile/lights/mesh_lights.h"
 
 #include "scene/light_groups.h"
 

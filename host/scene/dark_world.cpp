@@ -1,5 +1,5 @@
 // See dark_world.h.
-#include "scene/read/dark_world.h"
+#include "scene/dark_world.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

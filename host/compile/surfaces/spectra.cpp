@@ -1,5 +1,5 @@
 // See spectra.h.
-#include "compile/spectra.h"
+#include "compile/surfaces/spectra.h"
 
 #include <algorithm>
 

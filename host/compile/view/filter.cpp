@@ -1,5 +1,5 @@
 // See filter.h.
-#include "compile/filter.h"
+#include "compile/view/filter.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "compile/textures.h"
+#include "compile/surfaces/textures.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

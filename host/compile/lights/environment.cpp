@@ -1,5 +1,5 @@
 // See environment.h.
-#include "compile/environment.h"
+#include "compile/lights/environment.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <span>
 
 #include "compile/halo/halo_map.h"
-#include "compile/materials.h"
+#include "compile/lights/lights.h"
 #include "compile/sky/sky.h"
 #include "compile/sky/twilight.h"
 #include "scene/pack.h"
@@ -148,10 +148,6 @@ Picture picture_of_halo(const EnvironmentDescription& e, const HaloMap& map) {
         sky_along(zenith, azimuth) + irradiance * turned * halo_depth(e.halo.optical_depth, sun.y, up),
         dvec3(0));
   });
-}
-
-double luminance(const float4& c) {
-  return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
 }
 
 /// The luminance (w) of a pixel; columns wrap around, rows are clamped.

@@ -1,5 +1,5 @@
 // See light_groups.h.
-#include "compile/light_groups.h"
+#include "compile/lights/light_groups.h"
 
 #include "scene/light_groups.h"
 

@@ -1,5 +1,5 @@
 // See local_origin.h.
-#include "compile/local_origin.h"
+#include "compile/view/local_origin.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // See mesh_groups.h.
-#include "compile/mesh_groups.h"
+#include "compile/bvh/mesh_groups.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,7 +10,7 @@ namespace sundog {
 namespace {
 
 constexpr std::size_t most_sharing = 16;  // instances of a BVH are contiguous, so leaves stay close
-constexpr float least_overlap = 0.25f;    // relative to the smaller box's area
+constexpr float least_shared = 0.25f;     // relative to the smaller box's area
 
 struct Candidate {
   std::size_t mesh;
@@ -24,13 +24,13 @@ Bounds box_of(const Mesh& mesh) {
   return box;
 }
 
-bool overlap(const Bounds& a, const Bounds& b) {
+bool overlap_much(const Bounds& a, const Bounds& b) {
   const Bounds both{lanes_max(a.lower, b.lower), lanes_min(a.upper, b.upper)};
   for (int axis = 0; axis < 3; ++axis)
     if (!(both.lower[axis] < both.upper[axis])) return false;
   const Lanes edges = lanes_max(a.upper, b.upper) - lanes_min(a.lower, b.lower);
   const float scale = 1 / std::max({edges[0], edges[1], edges[2], 1e-30f});
-  return half_area(both, scale) >= least_overlap * std::min(half_area(a, scale), half_area(b, scale));
+  return half_area(both, scale) >= least_shared * std::min(half_area(a, scale), half_area(b, scale));
 }
 
 /// Meshes placed by exactly one object, without motion, sorted by transform.
@@ -86,7 +86,8 @@ void join_overlapping(std::span<Candidate> same_place, const SceneDescription& s
   for (std::size_t i = 0; i < same_place.size(); ++i)
     for (std::size_t k = i + 1; k < same_place.size(); ++k) {
       if (!(same_place[k].box.lower[0] < same_place[i].box.upper[0])) break;
-      if (overlap(same_place[i].box, same_place[k].box)) sets.join(same_place[i].mesh, same_place[k].mesh);
+      if (overlap_much(same_place[i].box, same_place[k].box))
+        sets.join(same_place[i].mesh, same_place[k].mesh);
     }
 }
 

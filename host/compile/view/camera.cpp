@@ -1,5 +1,5 @@
 // See camera.h.
-#include "compile/camera.h"
+#include "compile/view/camera.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/limits.h"
-#include "compile/filter.h"
-#include "compile/local_origin.h"
+#include "compile/view/filter.h"
+#include "compile/view/local_origin.h"
 #include "scene/integrators.h"
 #include "scene/pack.h"
 
@@ -21,7 +21,8 @@ namespace {
 }
 
 /// Normalises `vector`; fails with `what` if it has no direction.
-dvec3 unit(const SceneDescription& scene, const dvec3& vector, const char* place, const std::string& what) {
+dvec3 unit_vector(const SceneDescription& scene, const dvec3& vector, const char* place,
+                  const std::string& what) {
   const double length = glm::length(vector);
   if (!(length > 0) || !std::isfinite(length)) fail(scene, place, what);
   return vector / length;
@@ -37,9 +38,10 @@ std::string text(const dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, 
 Frame frame_of(const SceneDescription& scene, const View& view, const std::string& place) {
   const ImageSettings& image = scene.image;
   Frame frame;
-  frame.forward = unit(scene, view.target - view.position, (place + "/target").c_str(),
-                       "wanted a target apart from the position, found both at " + text(view.target));
-  frame.up = unit(scene, scene.camera.up, "/camera/up", "wanted a direction, found " + text(scene.camera.up));
+  frame.forward = unit_vector(scene, view.target - view.position, (place + "/target").c_str(),
+                              "wanted a target apart from the position, found both at " + text(view.target));
+  frame.up =
+      unit_vector(scene, scene.camera.up, "/camera/up", "wanted a direction, found " + text(scene.camera.up));
   const dvec3 side = glm::cross(frame.forward, frame.up);
   if (glm::length(side) < 1e-9)
     fail(scene, "/camera/up",
