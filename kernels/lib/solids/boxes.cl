@@ -110,10 +110,12 @@ static inline void closest_in_box(float4 parameters, REAL3 o, REAL3 d, REAL t_mi
   offer_face(t, face, active, t_min, hits);
 }
 
-static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, (float3)(1.0f));
 }
-static inline REAL curvature_of_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 
 static inline void unite_spans(Span* whole, Span part) {
   whole->enter = select(whole->enter, real_min(whole->enter, part.enter), part.crosses);
@@ -166,8 +168,10 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
   offer(shift + t, subtract3(p, within), NO_LANES, active & MASK_OF(span.enter <= span.leave), t_min, hits);
 }
 
-static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, parameters.xyz);
 }
 // Of the faces; edges count as flat.
-static inline REAL curvature_of_round_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}

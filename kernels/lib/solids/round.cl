@@ -13,7 +13,7 @@ static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t
   offer(shift + t, along3(near, t, d), NO_LANES, active & span.crosses, t_min, hits);
 }
 
-static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_sphere(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
   SurfacePoints at;
   at.u = turns(p.x, -p.z);
@@ -23,19 +23,23 @@ static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK pa
   return at;
 }
 
-static inline REAL curvature_of_sphere(float4 parameters, REAL3 p, MASK part) { return (REAL)(1.0f); }
+static inline REAL curvature_of_sphere(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(1.0f);
+}
 
 static inline void closest_in_plane(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
   offer(-o.y / d.y, up_or_down((REAL)(1.0f)), NO_LANES, active & MASK_OF(d.y != 0.0f), t_min, hits);
 }
 
-static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_plane(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const SurfacePoints at = {p.x, -p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, -1.0f))};
   return at;
 }
 
-static inline REAL curvature_of_plane(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_plane(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 
 // A ring in the plane y = height, inner <= radius <= outer, with its normal towards `side` of y.
 static inline void offer_ring(REAL3 o, REAL3 d, float height, float inner, float outer, float side, int part,
@@ -60,10 +64,12 @@ static inline SurfacePoints points_in_plane(REAL3 p, MASK below) {
   return at;
 }
 
-static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_disk(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_in_plane(p, NO_LANES);
 }
-static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_disk(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 
 static inline void closest_in_rectangle(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                         SolidHits* hits) {
@@ -73,10 +79,12 @@ static inline void closest_in_rectangle(float4 parameters, REAL3 o, REAL3 d, REA
   offer(t, up_or_down((REAL)(1.0f)), NO_LANES, active & within, t_min, hits);
 }
 
-static inline SurfacePoints points_on_rectangle(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_rectangle(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_in_plane(p, NO_LANES);
 }
-static inline REAL curvature_of_rectangle(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_rectangle(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 
 // Coordinates on a cylinder or cone; `growth`: of the radius with height.
 static inline SurfacePoints on_tube(REAL3 p, float growth) {
@@ -112,10 +120,10 @@ static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL
   }
 }
 
-static inline SurfacePoints points_on_cylinder(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_cylinder(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return select_points(on_tube(p, 0.0f), points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
-static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) {
+static inline REAL curvature_of_cylinder(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }
 
@@ -147,10 +155,10 @@ static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_m
   }
 }
 
-static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_cone(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)),
                        points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
-static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
+static inline REAL curvature_of_cone(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }

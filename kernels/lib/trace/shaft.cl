@@ -25,8 +25,14 @@ static inline float4 solid_reach(u32 shape, float4 parameters) {
   if (shape == SHAPE_RECTANGLE) return (float4)(1.0f, 0.0f, 1.0f, 0.0f);
   if (shape == SHAPE_ROUNDBOX) return (float4)(parameters.xyz, 0.0f);
   if (shape == SHAPE_BOX) return (float4)(1.0f, 1.0f, 1.0f, 0.0f);
+  if (shape == SHAPE_LATHE) return (float4)(parameters.z, parameters.w, parameters.z, 1.0f);
   const float radius = shape == SHAPE_CONE ? fmax(parameters.x, parameters.y) : 1.0f + parameters.x;
   return (float4)(radius, shape == SHAPE_CONE ? 1.0f : parameters.x, radius, 1.0f);
+}
+
+// Solids that may have hollows, which shadow others of their points.
+static inline bool has_hollows(u32 shape) {
+  return (HAS_TORUS && shape == SHAPE_TORUS) || (HAS_LATHE && shape == SHAPE_LATHE);
 }
 
 // Support of `reach` along n, which need not be unit.
@@ -81,7 +87,7 @@ static inline MASK may_touch_ball(const Shafts* shafts, float4 ball, MASK lanes)
 static inline MASK may_touch_instance(const Scene* scene, u32 index, const Shafts* shafts, MASK lanes) {
   __global const Instance* instance = scene->instances + index;
   if (HAS_MESH && instance->shape == SHAPE_MESH) return may_touch_ball(shafts, instance->world_center, lanes);
-  if (!HAS_TORUS || instance->shape != SHAPE_TORUS) lanes &= MASK_OF(shafts->outside != (int)index);
+  if (!has_hollows(instance->shape)) lanes &= MASK_OF(shafts->outside != (int)index);
   if (!any_lane(lanes)) return lanes;
   const float4 x = instance->object_from_world[0], y = instance->object_from_world[1],
                z = instance->object_from_world[2];
@@ -100,7 +106,7 @@ static inline MASK outside_convex(__global const Instance* instance, REAL3 o) {
   const u32 shape = instance->shape;
   const float4 parameters = instance->parameters;
   if (shape == SHAPE_PLANE) return ALL_LANES;
-  if (shape == SHAPE_TORUS || (shape == SHAPE_CYLINDER && parameters.x == 0.0f) ||
+  if (has_hollows(shape) || (shape == SHAPE_CYLINDER && parameters.x == 0.0f) ||
       (shape == SHAPE_CONE && parameters.z == 0.0f) || (shape == SHAPE_DISK && parameters.x > 0.0f))
     return NO_LANES;
   const REAL3 p = object_points(instance, o);

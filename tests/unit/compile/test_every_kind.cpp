@@ -28,6 +28,10 @@ UnitShape unit_of(const Shape& shape) {
   return unit_shape("", object);
 }
 
+std::span<const ProfileArc> rows_of(const UnitShape& unit) {
+  return unit.revolution ? std::span(unit.revolution->arcs()) : std::span<const ProfileArc>{};
+}
+
 bool is_open(const Shape& shape) {
   return std::visit(
       [](const auto& s) {
@@ -111,7 +115,7 @@ TEST_CASE("by its distance a solid is crossed where its equations have it") {
     for (int i = 0; i < 1500; ++i) {
       const dvec3 o = 3.0 * dvec3(uniform(), uniform(), uniform()),
                   d = dvec3(uniform(), uniform(), uniform()) - 0.5 * o;
-      const auto expected = plain::solid_crossings(unit.shape, unit.parameters, o, d);
+      const auto expected = plain::solid_crossings({unit.shape, unit.parameters, rows_of(unit)}, o, d);
       const auto crossings = crossings_by_distance(unit, o, d);
       others += crossings.size() != expected.size();  // by rounding, along a surface
       for (std::size_t k = 0; k < std::min(crossings.size(), expected.size()); ++k, ++found) {
