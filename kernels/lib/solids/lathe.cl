@@ -254,8 +254,8 @@ NEVER_INLINE bool closest_on_arc(const ProfileArc* arc, u32 sides, LatheRay* ray
   if (last_inside) last = outer_end(ray, arc, false);
   bool found = false;
 #pragma unroll 1
-  for (u32 half = 0; half < 2u; ++half)
-    if (sides >> half & 1u) meet_half(arc, half ? 1.0f : -1.0f, &first, &last, ray, &found);
+  for (u32 i = 0; i < 2u; ++i)
+    if (sides >> i & 1u) meet_half(arc, i ? 1.0f : -1.0f, &first, &last, ray, &found);
   return found;
 }
 
@@ -282,7 +282,7 @@ static inline ArcBoxes arc_boxes(const LatheRays* rays, const ProfileArc* arc) {
 }
 
 // The lines whose half `side` may cross an arc in its box, and within the range of s.
-static inline MASK may_cross(const LatheRays* rays, const ArcBoxes* box, float side) {
+static inline MASK may_meet_arc(const LatheRays* rays, const ArcBoxes* box, float side) {
   const REAL g = side * rays->e.y, near = g * box->q_low, far = g * box->q_high;
   const MASK crosses =
       MASK_OF(box->up_low <= real_max(near, far)) & MASK_OF(box->up_high >= real_min(near, far));
@@ -303,8 +303,8 @@ static inline void closest_in_lathe(float4 parameters, REAL3 o, REAL3 d, REAL t_
   for (u32 index = 0; index < (u32)parameters.y; ++index) {
     const ProfileArc arc = arcs[index];
     const ArcBoxes box = arc_boxes(&rays, &arc);
-    const MASK reached = active & box.reached, before = reached & may_cross(&rays, &box, -1.0f),
-               behind = reached & may_cross(&rays, &box, 1.0f);
+    const MASK reached = active & box.reached, before = reached & may_meet_arc(&rays, &box, -1.0f),
+               behind = reached & may_meet_arc(&rays, &box, 1.0f);
     EACH_LANE(i, before | behind) {
       LatheRay ray = lathe_ray(&rays, i);
       ray.t_min = REAL_LANE(t_min, i);
