@@ -37,6 +37,21 @@ double box_distance(const ProfileCubic& p, const dvec2& q) {
   return glm::length(glm::max(glm::max(low - q, q - high), dvec2(0)));
 }
 
+double greatest_curvature(const ProfileCubic& part) {
+  constexpr int places = 32;
+  double most = 0;
+  for (int i = 0; i <= places; ++i) {
+    const double t = double(i) / places;
+    const dvec2 p = part.at(t), slope = part.slope(t), bend = part.bend(t);
+    const double size = glm::length(slope);
+    if (!(size > 1e-9 * glm::length(part.d - part.a))) continue;
+    most = std::max(most, std::abs(slope.x * bend.y - slope.y * bend.x) / (size * size * size));
+    const double lean = std::abs(slope.y) / size;
+    if (lean > 1e-6) most = std::max(most, p.x > 0 ? lean / p.x : INFINITY);
+  }
+  return most;
+}
+
 /// The distance of q from a part: from the nearest of eight chords, by Newton's method.
 double distance_from(const ProfileCubic& p, const dvec2& q) {
   constexpr int chords = 8;
@@ -82,6 +97,7 @@ Revolution::Revolution(const LatheShape& shape, double scale) : closed_(shape.cl
   double whole = 0;
   for (const ProfileCubic& part : parts_) {
     arcs_.push_back(arc_of(part));
+    curvatures_.push_back(sundog::greatest_curvature(part));
     const double length = length_of(part);
     arcs_.back().along = row(whole, length, 0, 0);
     whole += length;
@@ -119,19 +135,11 @@ double Revolution::distance(const dvec3& q) const {
   return closed_ && inside ? -least : least;
 }
 
-double Revolution::greatest_curvature() const {
-  constexpr int places = 32;
+double Revolution::greatest_curvature(const dvec3& near, double within) const {
+  const dvec2 place(std::hypot(near.x, near.z), near.y);
   double most = 0;
-  for (const ProfileCubic& part : parts_)
-    for (int i = 0; i <= places; ++i) {
-      const double t = double(i) / places;
-      const dvec2 p = part.at(t), slope = part.slope(t), bend = part.bend(t);
-      const double size = glm::length(slope);
-      if (!(size > 1e-9 * glm::length(part.d - part.a))) continue;
-      most = std::max(most, std::abs(slope.x * bend.y - slope.y * bend.x) / (size * size * size));
-      const double lean = std::abs(slope.y) / size;
-      if (lean > 1e-6) most = std::max(most, p.x > 0 ? lean / p.x : INFINITY);
-    }
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (curvatures_[i] > most && !(box_distance(parts_[i], place) > within)) most = curvatures_[i];
   return most;
 }
 

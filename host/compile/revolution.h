@@ -20,14 +20,16 @@ class Revolution {
   double reach(double across, double along) const;
   /// The distance of a point from the surface; below 0 inside. That of a sheet is nowhere below 0.
   double distance(const dvec3& q) const;
-  /// The greatest of both principal curvatures; infinite at a cone's tip.
-  double greatest_curvature() const;
+  /// The greatest of both principal curvatures on the parts of the profile that come as near to a point as
+  /// this; infinite at a cone's tip.
+  double greatest_curvature(const dvec3& near, double within) const;
   /// Heights and outer radii of flat rings (x: radius).
   std::vector<dvec2> rings() const;
 
  private:
   std::vector<ProfileCubic> parts_;  // monotone
   std::vector<ProfileArc> arcs_;
+  std::vector<double> curvatures_;  // the greatest of each part
   bool closed_;
 };
 

@@ -209,7 +209,7 @@ std::optional<Curvature> curvature(const UnitShape& unit) {
     case SHAPE_ROUNDBOX:
       return w > 0 ? std::optional(Curvature{1 / w}) : std::nullopt;
     case SHAPE_LATHE:
-      return Curvature{unit.revolution->greatest_curvature()};
+      return Curvature{unit.revolution->greatest_curvature(dvec3(0), INFINITY)};
     case SHAPE_PLANE:
     case SHAPE_BOX:
     case SHAPE_DISK:
