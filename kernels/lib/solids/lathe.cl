@@ -224,23 +224,24 @@ static inline void meet_half(const ProfileArc* arc, float side, const ArcPlace* 
   u32 number = 0, halvings = 0;  // of the interval that begins at a
   ArcPlace a = *first;
 #pragma unroll 1
-  do {
+  while (number < 1u << halvings) {
     const u32 all = 1u << halvings;
     ArcPlace b = *last;
     if (number + 1u < all) b = arc_place(ray, arc, fma(width, (float)(number + 1u) / (float)(all), first->t));
-    if (may_be_zero(g, &a, &b)) {
-      if (pulled_apart && halvings < ARC_HALVINGS && !one_outdoes(ray, arc, g, &a, &b)) {
-        number *= 2u;
-        ++halvings;
-        continue;
-      }
-      if ((value_at(&a, g) < 0.0f) != (value_at(&b, g) < 0.0f))
+    const bool meets = may_be_zero(g, &a, &b);
+    if (meets && pulled_apart && halvings < ARC_HALVINGS && !one_outdoes(ray, arc, g, &a, &b)) {
+      number *= 2u;
+      ++halvings;
+    } else {
+      if (meets && (value_at(&a, g) < 0.0f) != (value_at(&b, g) < 0.0f))
         offer_on_arc(arc, side, arc_root(ray, arc, g, &a, &b), ray, found);
+      a = b;
+      ++number;
+      const u32 ended = min(halvings, lowest_bit(number));  // halves whose second half is done
+      number >>= ended;
+      halvings -= ended;
     }
-    a = b;
-    ++number;
-    for (; halvings > 0u && (number & 1u) == 0u; --halvings) number >>= 1;
-  } while (number < 1u << halvings);
+  }
 }
 
 // Returns whether the arc has a hit in (t_min, t]. `sides`: bit 0, the half before the line's point nearest
