@@ -171,11 +171,11 @@ Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadP
 ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
   object.not_both("mesh", "profile");
   const auto name = object.find("mesh");
+  Lathe lathe;
+  object.read("curve", lathe.curve);
   try {
     if (!name) {
-      Lathe lathe;
       lathe.profile = read_profile(object.at("profile"));
-      object.read("curve", lathe.curve);
       return exact_lathe(lathe);
     }
     const auto mesh = meshes ? meshes->json().find(name->text()) : nlohmann::json::const_iterator();

@@ -27,7 +27,9 @@ ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3
 static inline void points_on_solid(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part,
                                    SurfacePoints* at) {
 #define POINTS(constant, type, name) \
-  HAVING(HAS_##constant, if (shape == SHAPE_##constant)* at = points_on_##name(scene, parameters, p, part);)
+  HAVING(                            \
+      HAS_##constant,                \
+      if (shape == SHAPE_##constant) { *at = points_on_##name(scene, parameters, p, part); })
   SOLIDS(POINTS)
 #undef POINTS
 }
