@@ -152,21 +152,23 @@ void cone(Search<T>& search, const float4& parameters) {
   ring<T>(search, -1, 0, x, -1);
 }
 
-template <class T>
-using Polynomial = std::array<T, 5>;  // lowest power first
+template <class T, std::size_t N>
+using Polynomial = std::array<T, N>;  // lowest power first
 
-template <class T>
-T value(const Polynomial<T>& c, T x) {
-  return (((c[4] * x + c[3]) * x + c[2]) * x + c[1]) * x + c[0];
+template <class T, std::size_t N>
+T value(const Polynomial<T, N>& c, T x) {
+  T sum = c[N - 1];
+  for (std::size_t i = N - 1; i-- > 0;) sum = sum * x + c[i];
+  return sum;
 }
 
 /// Roots in [low, high], ascending: a polynomial is monotone between the roots of its derivative.
-template <class T>
-int roots_within(const Polynomial<T>& c, int degree, T low, T high, std::array<T, 5>& roots) {
+template <class T, std::size_t N>
+int roots_within(const Polynomial<T, N>& c, int degree, T low, T high, std::array<T, N>& roots) {
   if (degree == 0) return 0;
-  Polynomial<T> derivative{};
-  for (std::size_t i = 1; i < 5; ++i) derivative[i - 1] = static_cast<T>(i) * c[i];
-  std::array<T, 5> turns{};
+  Polynomial<T, N> derivative{};
+  for (std::size_t i = 1; i < N; ++i) derivative[i - 1] = static_cast<T>(i) * c[i];
+  std::array<T, N> turns{};
   const int turn_count = roots_within(derivative, degree - 1, low, high, turns);
   int found = 0;
   T a = low;
@@ -200,8 +202,8 @@ void torus(Search<T>& search, const float4& parameters) {
   const T reach2 = (1 + r) * (1 + r) - glm::dot(s, s);
   if (!(reach2 > 0)) return;
   const T g = glm::dot(s, s) + 1 - r * r, reach = std::sqrt(reach2);
-  const Polynomial<T> quartic{g * g - 4 * (s.x * s.x + s.z * s.z), -8 * (s.x * e.x + s.z * e.z),
-                              2 * g - 4 * (e.x * e.x + e.z * e.z), 0, 1};
+  const Polynomial<T, 5> quartic{g * g - 4 * (s.x * s.x + s.z * s.z), -8 * (s.x * e.x + s.z * e.z),
+                                 2 * g - 4 * (e.x * e.x + e.z * e.z), 0, 1};
   std::array<T, 5> roots{};
   const int count = roots_within(quartic, 4, -reach, reach, roots);
   for (int i = 0; i < count; ++i) {
@@ -210,6 +212,80 @@ void torus(Search<T>& search, const float4& parameters) {
     const T inward = 1 - 1 / std::max(std::sqrt(p.x * p.x + p.z * p.z), T(1e-12));
     search.offer((x + shift) / length, {p.x * inward, p.y, p.z * inward});
   }
+}
+
+template <class T>
+Polynomial<T, 7> product(const Polynomial<T, 4>& a, const Polynomial<T, 4>& b) {
+  Polynomial<T, 7> sum{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 4; ++k) sum[i + k] += a[i] * b[k];
+  return sum;
+}
+
+/// Moves t along the line and u along the arc to where both meet, by Newton's method.
+template <class T>
+void meet_arc(const Search<T>& search, const Polynomial<T, 4>& r, const Polynomial<T, 4>& y, T& t, T& u) {
+  for (int i = 0; i < 4; ++i) {
+    const Vec3<T> p = search.at(t);
+    const T off = p.x * p.x + p.z * p.z - value(r, u) * value(r, u), high = p.y - value(y, u);
+    const T dt = 2 * (p.x * search.d.x + p.z * search.d.z),
+            du = -2 * value(r, u) * (r[1] + u * (2 * r[2] + 3 * u * r[3]));
+    const T dy = search.d.y, dh = -(y[1] + u * (2 * y[2] + 3 * u * y[3]));
+    const T determinant = dt * dh - du * dy;
+    if (std::abs(determinant) < T(1e-12)) return;
+    t -= (off * dh - du * high) / determinant;
+    u -= (dt * high - off * dy) / determinant;
+  }
+}
+
+/// Where the line has the heights of an arc, its distance from the axis is the arc's radius: times d.y^2, a
+/// polynomial of degree 6.
+template <class T>
+void profile_arc(Search<T>& search, const ProfileArc& arc) {
+  const Polynomial<T, 4> r{arc.r.x, arc.r.y, arc.r.z, arc.r.w}, y{arc.y.x, arc.y.y, arc.y.z, arc.y.w};
+  const Vec3<T>&o = search.o, &d = search.d;
+  const auto offer = [&](T t, T u) {
+    meet_arc(search, r, y, t, u);
+    if (!(u >= 0 && u < 1)) return;
+    const Vec3<T> p = search.at(t);
+    const T rho = std::max(std::hypot(p.x, p.z), T(1e-30));
+    const T rise = y[1] + u * (2 * y[2] + 3 * u * y[3]), widen = r[1] + u * (2 * r[2] + 3 * u * r[3]);
+    search.offer(t, {rise * p.x / rho, -widen, rise * p.z / rho});
+  };
+  if (std::abs(d.y) < T(1e-9) * glm::length(d)) {
+    std::array<T, 4> roots{};
+    Polynomial<T, 4> high = y;
+    high[0] -= o.y;
+    const int count = roots_within(high, 3, T(0), T(1), roots);
+    const Vec3<T> flat(1, 0, 1);
+    for (int i = 0; i < count; ++i) {
+      const T u = roots[static_cast<std::size_t>(i)];
+      if (const auto t = round_interval(o * flat, d * flat, value(r, u))) offer(t->in, u), offer(t->out, u);
+    }
+    return;
+  }
+  Polynomial<T, 4> x, z, wide;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const T height = y[i] - (i == 0 ? o.y : T(0));
+    x[i] = height * d.x + (i == 0 ? o.x * d.y : T(0));
+    z[i] = height * d.z + (i == 0 ? o.z * d.y : T(0));
+    wide[i] = r[i] * d.y;
+  }
+  Polynomial<T, 7> both = product(x, x), roots{};
+  const Polynomial<T, 7> across = product(z, z), radius = product(wide, wide);
+  for (std::size_t i = 0; i < 7; ++i) both[i] += across[i] - radius[i];
+  const int count = roots_within(both, 6, T(-1e-6), T(1 + 1e-6), roots);
+  for (int i = 0; i < count; ++i) {
+    const T u = roots[static_cast<std::size_t>(i)];
+    offer((value(y, u) - o.y) / d.y, u);
+  }
+}
+
+template <class T>
+void lathe(Search<T>& search, const Solid& solid) {
+  const auto first = static_cast<std::size_t>(solid.parameters.x),
+             count = static_cast<std::size_t>(solid.parameters.y);
+  for (const ProfileArc& arc : solid.profiles.subspan(first, count)) profile_arc(search, arc);
 }
 
 /// Widens `span` by the entry and exit of one of the solids whose union is the rounded box.
@@ -257,8 +333,9 @@ void round_box(Search<T>& search, const float4& parameters) {
 }
 
 template <class T>
-void cross(u32 shape, const float4& parameters, Search<T>& search) {
-  switch (shape) {
+void cross(const Solid& solid, Search<T>& search) {
+  const float4& parameters = solid.parameters;
+  switch (solid.shape) {
     case SHAPE_SPHERE:
       return sphere(search);
     case SHAPE_PLANE:
@@ -277,27 +354,28 @@ void cross(u32 shape, const float4& parameters, Search<T>& search) {
       return torus(search, parameters);
     case SHAPE_ROUNDBOX:
       return round_box(search, parameters);
+    case SHAPE_LATHE:
+      return lathe(search, solid);
     default:  // slow: for solids that have no function here
       for (const SolidCrossing& crossing : crossings_by_distance(
-               {static_cast<ShapeKind>(shape), glm::dvec3(1), parameters}, search.o, search.d))
+               {static_cast<ShapeKind>(solid.shape), glm::dvec3(1), parameters}, search.o, search.d))
         search.offer(static_cast<T>(crossing.t), crossing.ng);
   }
 }
 
 }  // namespace
 
-bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, SolidHit& hit) {
+bool closest_in_solid(const Solid& solid, const Ray& ray, SolidHit& hit) {
   Search<float> search{ray.o, ray.d, ray.t_min, ray.t_max};
-  cross(shape, parameters, search);
+  cross(solid, search);
   hit = {search.t_max, search.ng};
   return search.found;
 }
 
-std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, const glm::dvec3& o,
-                                           const glm::dvec3& d) {
+std::vector<SolidCrossing> solid_crossings(const Solid& solid, const glm::dvec3& o, const glm::dvec3& d) {
   std::vector<SolidCrossing> all;
   Search<double> search{.o = o, .d = d, .all = &all};
-  cross(shape, parameters, search);
+  cross(solid, search);
   std::ranges::sort(all, {}, &SolidCrossing::t);
   return all;
 }

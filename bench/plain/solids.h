@@ -2,6 +2,7 @@
 // floats, or in double precision to check others against.
 #pragma once
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "bench/plain/any_solid.h"
@@ -19,11 +20,17 @@ struct SolidHit {
   glm::vec3 ng{0};  // outward, not normalised
 };
 
-/// The nearest crossing of a unit solid, in its own space.
-bool closest_in_solid(u32 shape, const float4& parameters, const Ray& ray, SolidHit& hit);
+/// A unit solid; `profiles`: the scene's table, of which a lathe has rows.
+struct Solid {
+  u32 shape;
+  const float4& parameters;
+  std::span<const ProfileArc> profiles{};
+};
 
-/// Every crossing of the line o + t d with a unit solid, in order of t.
-std::vector<SolidCrossing> solid_crossings(u32 shape, const float4& parameters, const glm::dvec3& o,
-                                           const glm::dvec3& d);
+/// The nearest crossing of a solid, in its own space.
+bool closest_in_solid(const Solid& solid, const Ray& ray, SolidHit& hit);
+
+/// Every crossing of the line o + t d with a solid, in order of t.
+std::vector<SolidCrossing> solid_crossings(const Solid& solid, const glm::dvec3& o, const glm::dvec3& d);
 
 }  // namespace sundog::plain

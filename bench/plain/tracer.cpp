@@ -116,7 +116,8 @@ void cross_instance(Walk& walk, u32 index) {
     return;
   }
   SolidHit solid;
-  if (!closest_in_solid(instance.shape, instance.parameters, ray, solid)) return;
+  if (!closest_in_solid({instance.shape, instance.parameters, walk.scene.profiles.rows()}, ray, solid))
+    return;
   walk.ray.t_max = solid.t;
   walk.hit = {solid.t, 0, 0, 0, index, solid.ng};
   walk.found = true;

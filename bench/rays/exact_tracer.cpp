@@ -76,8 +76,8 @@ std::vector<HostHit> cross_instance(const CompiledScene& scene, u32 index, const
       return hit.prim < instance.first_prim || instance_of_triangle(scene, index, hit.prim) != index;
     });
   } else {
-    for (const auto& [t, ng] :
-         plain::solid_crossings(instance.shape, instance.parameters, ray.origin, ray.direction))
+    for (const auto& [t, ng] : plain::solid_crossings(
+             {instance.shape, instance.parameters, scene.profiles.rows()}, ray.origin, ray.direction))
       if (t > ray.t_min && t < ray.t_max) {
         HostHit hit;
         hit.t = t;

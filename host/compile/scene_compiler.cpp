@@ -151,6 +151,7 @@ void take(const Instances& instances, CompiledScene& out) {
   out.nodes = instances.nodes;
   out.moves = instances.moves;
   out.turns = instances.turns;
+  out.profiles = instances.profiles;
   out.info.tlas_root = instances.tlas_root;
   out.info.bounded_count = instances.bounded_count;
   out.info.scene_center = instances.scene_center;

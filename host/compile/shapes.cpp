@@ -13,6 +13,8 @@
 namespace sundog {
 namespace {
 
+constexpr std::size_t most_arcs = 1024;
+
 struct ShapeReader {
   const std::string& file;
   const Object& object;
@@ -77,6 +79,18 @@ struct ShapeReader {
     p.w = std::min({p.w, p.x, p.y, p.z});
     return {SHAPE_ROUNDBOX, dvec3(most), p};
   }
+  UnitShape operator()(const LatheShape& s) const {
+    const double widest = std::max(s.radius, s.half_height);
+    want_positive(s.radius, "radius");
+    auto revolution = std::make_shared<const Revolution>(s, widest);
+    const std::size_t count = revolution->arcs().size();
+    want(count <= most_arcs, fmt::format("a profile of at most {} arcs, found {}", most_arcs, count));
+    return {SHAPE_LATHE,
+            dvec3(widest),
+            {0, static_cast<float>(count), static_cast<float>(s.radius / widest),
+             static_cast<float>(s.half_height / widest)},
+            std::move(revolution)};
+  }
 };
 
 std::logic_error no_such(const UnitShape& unit, const char* what) {
@@ -88,6 +102,13 @@ std::vector<FlatFace> caps(double bottom_radius, double top_radius) {
   std::vector<FlatFace> faces;
   if (bottom_radius > 0) faces.push_back({y, -y, bottom_radius * x, bottom_radius * z});
   if (top_radius > 0) faces.push_back({y, y, top_radius * x, top_radius * z});
+  return faces;
+}
+
+std::vector<FlatFace> rings(const Revolution& revolution) {
+  std::vector<FlatFace> faces;
+  for (const dvec2& ring : revolution.rings())
+    faces.push_back({{0, 1, 0}, {0, ring.y, 0}, {ring.x, 0, 0}, {0, 0, ring.x}});
   return faces;
 }
 
@@ -137,6 +158,8 @@ double reach(const UnitShape& unit, const dvec3& d) {
       return across + double(p.x) * length;
     case SHAPE_ROUNDBOX:
       return glm::dot(dvec3(p.x, p.y, p.z) - double(p.w), size) + double(p.w) * length;
+    case SHAPE_LATHE:
+      return unit.revolution->reach(across, d.y);
     case SHAPE_PLANE:
     case SHAPE_MESH:
     case SHAPE_SDF:
@@ -161,6 +184,8 @@ std::vector<FlatFace> flat_faces(const UnitShape& unit) {
     case SHAPE_DISK:
     case SHAPE_RECTANGLE:
       return {{{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
+    case SHAPE_LATHE:
+      return rings(*unit.revolution);
     case SHAPE_SPHERE:
     case SHAPE_TORUS:
     case SHAPE_MESH:
@@ -183,6 +208,8 @@ std::optional<Curvature> curvature(const UnitShape& unit) {
       return Curvature{1 / std::min(x, 1 - x)};
     case SHAPE_ROUNDBOX:
       return w > 0 ? std::optional(Curvature{1 / w}) : std::nullopt;
+    case SHAPE_LATHE:
+      return Curvature{unit.revolution->greatest_curvature(dvec3(0), INFINITY)};
     case SHAPE_PLANE:
     case SHAPE_BOX:
     case SHAPE_DISK:
@@ -214,6 +241,8 @@ double unit_distance(const UnitShape& unit, const dvec3& q) {
       return std::hypot(across - 1, q.y) - double(p.x);
     case SHAPE_ROUNDBOX:
       return box_distance(q, dvec3(p.x, p.y, p.z), double(p.w));
+    case SHAPE_LATHE:
+      return unit.revolution->distance(q);
     case SHAPE_DISK:
     case SHAPE_RECTANGLE:
     case SHAPE_MESH:

@@ -1,10 +1,12 @@
 // The exact solids as unit shapes (kernels/shared/shapes.h): the part of a size that a transform applies, the
 // remaining parameters, and geometry of the unit shape: support, flat faces, distance.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "compile/revolution.h"
 #include "models/values/object.h"
 
 namespace sundog {
@@ -13,10 +15,11 @@ struct UnitShape {
   ShapeKind shape = SHAPE_MESH;
   dvec3 scale{1};  // unit shape to object space
   float4 parameters{};
+  std::shared_ptr<const Revolution> revolution{};  // of a lathe
 };
 
 /// Throws SceneError (in `file`, at `object`'s place) for sizes that are not positive, and for a
-/// self-intersecting torus or rounded box.
+/// self-intersecting torus or rounded box. A lathe's rows begin at 0.
 UnitShape unit_shape(const std::string& file, const Object& object);
 
 // The functions below take exact solids, not meshes or fields.

@@ -160,6 +160,7 @@ struct Instances {
   SharedTable<Instance> instances;
   SharedTable<float4> moves;
   SharedTable<Turn> turns;
+  SharedTable<ProfileArc> profiles;
   SceneFeatures features;
   std::vector<Bounds> boxes;  // one for each instance
   u32 tlas_root = 0, bounded_count = 0, instance_count = 0, field_end = 0;

@@ -20,6 +20,7 @@
   TABLE(Instance, Instance, instances, "instances")                      \
   TABLE(float4, float4, moves, "moves of instances")                     \
   TABLE(Turn, Turn, turns, "turns of instances")                         \
+  TABLE(ProfileArc, ProfileArc, profiles, "arcs of profiles")            \
   TABLE(TriangleShading, TriangleShading, triangles, "triangles")        \
   TABLE(Vertex, Vertex, vertices, "vertices")                            \
   TABLE(Material, Material, materials, "materials")                      \

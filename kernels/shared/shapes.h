@@ -18,14 +18,25 @@ SUNDOG_SHARED_BEGIN
                                             (0 <= x < 1) */                                                  \
   SOLID(RECTANGLE, Rectangle, rectangle) /* [-1, 1]^2 in y = 0, normal +y */                                 \
   SOLID(TORUS, Torus, torus)             /* major radius 1 about y, minor radius parameters.x (0 < x < 1) */ \
-  SOLID(ROUNDBOX, RoundBox, round_box) /* half sizes parameters.xyz, edges rounded with radius parameters.w  \
-                                          (<= the smallest half size) */
+  SOLID(ROUNDBOX, RoundBox, round_box)   /* half sizes parameters.xyz, edges rounded with radius             \
+                                            parameters.w (<= the smallest half size) */                      \
+  SOLID(LATHE, Lathe, lathe)             /* a profile about y: parameters.y rows of ProfileArc from row      \
+                                            parameters.x; within radius parameters.z, |y| <= parameters.w */
 
 // Instance.shape, and the alternatives' indices in the description's Shape.
 #define SHAPE_CONSTANT(constant, type, name) SHAPE_##constant,
 typedef enum ShapeKind SUNDOG_ENUM_OF_U32 { SHAPE_MESH, SOLIDS(SHAPE_CONSTANT) SHAPE_SDF } ShapeKind;
 #undef SHAPE_CONSTANT
 #define SHAPE_COUNT (SHAPE_SDF + 1u)
+
+// 64 bytes: a part of a lathe's profile, a cubic in t from 0 to 1, x + y t + z t^2 + w t^3. Radius, height
+// and both derivatives are monotone. Its normal is to the right of its direction.
+typedef struct ProfileArc {
+  float4 r, y;   // radius and height
+  float4 end;    // radius and height at 1, as at 0 of the next arc; unused
+  float4 along;  // lengths: of the profile before it, its own, of the whole; unused
+} ProfileArc;
+SUNDOG_SHARED_SIZE(ProfileArc, 64)
 
 // Whether the scene contains exact solids.
 #define HAS_SOLID_OR(constant, type, name) HAS_##constant ||

@@ -82,6 +82,13 @@ struct OpenShape {
     return fmt::format("torus {{ {}, {} sturm ", text(s.major_radius), text(s.minor_radius));
   }
   std::string operator()(const RoundBoxShape& s) const { return open_round_box(s); }
+  std::string operator()(const LatheShape& s) const {
+    std::string points;
+    for (const ProfileCubic& cubic : s.profile)
+      for (const glm::dvec2& p : {cubic.a, cubic.b, cubic.c, cubic.d})
+        points += fmt::format(", <{}, {}>", text(p.x), text(p.y));
+    return fmt::format("lathe {{ bezier_spline {}{} sturm ", 4 * s.profile.size(), points);
+  }
 };
 
 struct HalfSize {

@@ -104,6 +104,7 @@ class Placer {
     UnitShape unit = unit_shape(*in_.file, object);
     instance.shape = unit.shape;
     instance.parameters = unit.parameters;
+    if (unit.revolution) instance.parameters.x = add_profile(unit.revolution->arcs());
     instance.object = index;
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     const PlacedMesh* mesh = shape ? &in_.meshes->placed[static_cast<std::size_t>(shape->mesh)] : nullptr;
@@ -131,6 +132,18 @@ class Placer {
   }
 
  private:
+  /// The row of a profile; equal ones share theirs.
+  float add_profile(const std::vector<ProfileArc>& arcs) {
+    for (const auto& [first, count] : profiles_)
+      if (count == arcs.size() &&
+          std::ranges::equal(arcs, std::span(out_.profiles.rows()).subspan(first, count)))
+        return static_cast<float>(first);
+    std::vector<ProfileArc>& all = out_.profiles.edit();
+    profiles_.emplace_back(all.size(), arcs.size());
+    all.insert(all.end(), arcs.begin(), arcs.end());
+    return static_cast<float>(profiles_.back().first);
+  }
+
   void set_place(const Object& object, const UnitShape& unit, std::span<const Bounds> boxes, Placed& placed) {
     const dmat4 scale(glm::dmat3(unit.scale.x, 0, 0, 0, unit.scale.y, 0, 0, 0, unit.scale.z));
     dmat4 local_from_object = object.world_from_object;
@@ -184,7 +197,8 @@ class Placer {
 
   const InstanceInputs& in_;
   Instances& out_;
-  std::size_t planes_ = 0;  // placed so far
+  std::size_t planes_ = 0;                                     // placed so far
+  std::vector<std::pair<std::size_t, std::size_t>> profiles_;  // their first rows, and numbers of rows
 };
 
 /// Whether the camera may be inside this solid with a medium.

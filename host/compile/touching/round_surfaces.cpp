@@ -14,6 +14,14 @@ struct Surface {
   dmat4 unit_from_world;
   double slope;      // maximum change of the unit distance per world length
   double curvature;  // maximum, in the world
+  double bends;      // how much more a surface may be curved there than in unit space
+
+  /// The maximum within a ball.
+  double curvature_near(const dvec3& world, double radius) const {
+    if (!unit.revolution) return curvature;
+    const dvec3 center(unit_from_world * glm::dvec4(world, 1));
+    return bends * unit.revolution->greatest_curvature(center, slope * radius);
+  }
 
   double distance(const dvec3& world) const {
     return unit_distance(unit, dvec3(unit_from_world * glm::dvec4(world, 1)));
@@ -54,7 +62,8 @@ Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
     across[1] = dvec3(0);
     for (int column = 0; column < 3; ++column) back[column].y = 0;
   }
-  return {solid.unit, inverse, shrinks, bends.greatest * norm(back) * norm(back) * norm(across)};
+  const double more = norm(back) * norm(back) * norm(across);
+  return {solid.unit, inverse, shrinks, bends.greatest * more, more};
 }
 
 constexpr double least_sine = 0.02;  // of the angle from which surfaces count as crossing, not parallel
@@ -101,7 +110,8 @@ struct CellSearch {
     const double steep_a = glm::length(up_a), steep_b = glm::length(up_b);
     if (!(steep_a > 0) || !(steep_b > 0)) return true;
     const double sine = glm::length(glm::cross(up_a, up_b)) / (steep_a * steep_b);
-    const double bend = (a.curvature + b.curvature) * radius;
+    const double bend =
+        (a.curvature_near(center, 2 * radius) + b.curvature_near(center, 2 * radius)) * radius;
     if (sine > least_sine + 2 * bend) return false;
     const double side = glm::dot(up_a, up_b) < 0 ? -1 : 1;
     const double gap = std::abs(at_a / steep_a - side * at_b / steep_b);
@@ -120,6 +130,24 @@ struct CellSearch {
   }
 };
 
+/// Of two solids that revolve about one axis, one of them a lathe, the second in the first's unit space.
+std::optional<dmat4> about_one_axis(const RoundSolid& a, const RoundSolid& b) {
+  const auto revolves = [](const RoundSolid& solid) {
+    const ShapeKind shape = solid.unit.shape;
+    return solid.unit.revolution || shape == SHAPE_SPHERE || shape == SHAPE_CYLINDER || shape == SHAPE_CONE ||
+           shape == SHAPE_TORUS;
+  };
+  if (!(a.unit.revolution || b.unit.revolution) || !revolves(a) || !revolves(b)) return std::nullopt;
+  const dmat4 relative = glm::inverse(a.world_from_unit) * b.world_from_unit;
+  const dvec3 x(relative[0]), y(relative[1]), z(relative[2]), at(relative[3]);
+  const double size = glm::length(x), least = 1e-9 * (size + glm::length(y) + glm::length(at));
+  const bool same = std::abs(x.y) < least && std::abs(z.y) < least && std::abs(y.x) < least &&
+                    std::abs(y.z) < least && std::abs(at.x) < least && std::abs(at.z) < least;
+  if (!same || std::abs(glm::length(z) - size) > least || std::abs(glm::dot(x, z)) > least * size)
+    return std::nullopt;
+  return relative;
+}
+
 }  // namespace
 
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance) {
@@ -127,6 +155,16 @@ bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds
   if (!bends_a || !bends_b) return false;
   const auto ball_a = as_ball(a), ball_b = as_ball(b);
   if (ball_a && ball_b) return !part_or_cross(*ball_a, *ball_b, tolerance);
+  if (const auto relative = about_one_axis(a, b)) {  // one half plane shows all
+    const double slack = tolerance * norm(glm::dmat3(glm::inverse(a.world_from_unit)));
+    const Surface of_a = make_surface({a.unit, dmat4(1)}, *bends_a),
+                  of_b = make_surface({b.unit, *relative}, *bends_b);
+    const double reach_x = reach(a.unit, {1, 0, 0}), top = reach(a.unit, {0, 1, 0}),
+                 bottom = -reach(a.unit, {0, -1, 0});
+    const dvec3 half = 0.5 * dvec3(reach_x, top - bottom, 0) + dvec3(slack, slack, 0);
+    CellSearch search{of_a, of_b, slack, 4 * slack + 1e-6 * glm::length(half)};
+    return search.run({reach_x / 2, (top + bottom) / 2, 0}, half);
+  }
   const dvec3 lower(box.lower[0], box.lower[1], box.lower[2]),
       upper(box.upper[0], box.upper[1], box.upper[2]);
   const dvec3 half = 0.5 * glm::max(upper - lower, dvec3(0)) + tolerance;

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "models/values/profile.h"
 #include "shared/scene.h"
 #include "shared/shapes.h"
 
@@ -71,6 +72,16 @@ struct RoundBoxShape {  // outer half sizes, edge radius
   double radius = 0.1;
   dvec3 half_size() const { return half; }
   bool open() const { return false; }
+};
+/// A surface of revolution about y, to the right of its profile; of the profile the middle height is 0.
+struct LatheShape {
+  std::vector<ProfileCubic> profile{{{0, -1}, {0, -1}, {1, -1}, {1, -1}},
+                                    {{1, -1}, {0.2, -0.4}, {0.2, 0.4}, {1, 1}},
+                                    {{1, 1}, {1, 1}, {0, 1}, {0, 1}}};
+  bool closed = true;  // it ends on the axis, or where it began, and encloses a solid
+  double radius = 1, half_height = 1;
+  dvec3 half_size() const { return {radius, half_height, radius}; }
+  bool open() const { return !closed; }
 };
 
 #define SUNDOG_SHAPE_TYPE(constant, type, name) type##Shape,

@@ -16,17 +16,25 @@ using glm::dvec2;
 using procedural::Profile;
 using procedural::ProfileStep;
 
+bool is_closed(const Profile& profile) {
+  const dvec2 first = profile.front().a, last = profile.back().b;
+  return (first.x == 0 && last.x == 0) || first == last;
+}
+
 /// Steps along the profile may turn twice as far as those around the axis.
-Profile profile_of(const Lathe& lathe) {
+struct DirectedProfile {
+  Profile steps;
+  bool reversed = false;  // for the solid to be on its left
+};
+DirectedProfile profile_of(const Lathe& lathe) {
   Profile profile = procedural::follow(lathe.profile, lathe.curve,
                                        procedural::turn_by(2.0 / std::max(lathe.segments, 16)).x);
   for (const ProfileStep& step : profile)
     if (step.a.x < 0 || step.b.x < 0)
       throw GenerateError(fmt::format("the profile crosses the axis near a height of {:.4g}", step.a.y));
   procedural::check_crossings(profile);
-  const dvec2 first = profile.front().a, last = profile.back().b;
-  const bool closed = (first.x == 0 && last.x == 0) || first == last;
-  return closed && procedural::area_of(profile) < 0 ? procedural::reversed(profile) : profile;
+  if (is_closed(profile) && procedural::area_of(profile) < 0) return {procedural::reversed(profile), true};
+  return {std::move(profile)};
 }
 
 constexpr std::size_t most_facets = 4'000'000;
@@ -155,11 +163,13 @@ Profile moved_right(const Profile& wall, double depth, double top) {
   return body;
 }
 
+double meniscus_width(double radius, double meniscus) { return std::min(radius, 3 * meniscus); }
+
 /// The liquid's surface from within the wall to the axis. The meniscus falls from the wall by a cubic, whose
 /// slope is 1 there and 0 where it ends.
 void add_surface(double radius, double level, double meniscus, Profile& body) {
   constexpr int steps = 24;
-  const double width = std::min(radius, 3 * meniscus);
+  const double width = meniscus_width(radius, meniscus);
   if (meniscus > 0) go_to({radius, level + meniscus}, body);
   for (int i = 0; meniscus > 0 && i < steps; ++i) {
     const double from = 1 - double(i) / steps, till = 1 - double(i + 1) / steps;
@@ -172,12 +182,13 @@ void add_surface(double radius, double level, double meniscus, Profile& body) {
   go_to({0, level}, body);
 }
 
-}  // namespace
-
-Mesh make_lathe(const Lathe& lathe) { return LatheMesh(lathe.segments).turn(profile_of(lathe)); }
-
-Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
-  const auto [inside, outside] = vessel_of(profile_of(lathe));
+/// A liquid's profile: along the wall to its surface, and all of it, with the surface.
+struct LiquidProfile {
+  Profile wall, body;
+  double radius;  // of the vessel's inside at the liquid's top
+};
+LiquidProfile liquid_profile(const Lathe& lathe, double level, double meniscus) {
+  const auto [inside, outside] = vessel_of(profile_of(lathe).steps);
   const double top = level + meniscus, floor = inside.front().a.y, rim = inside.back().b.y;
   if (!(level > floor && top < rim))
     throw GenerateError(fmt::format(
@@ -185,16 +196,71 @@ Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
         "rim, {:.6g}",
         level, top, floor, rim));
   const Profile wall = below(inside, top);
+  const double radius = wall.back().b.x;
   double thickness = INFINITY;
   for (const ProfileStep& step : wall)
     for (const ProfileStep& other : outside) thickness = std::min(thickness, distance_to(other, step.b));
   // Where the wall bends within its thickness, the liquid's end has to keep nearer to it.
   for (double depth = thickness / 2;; depth /= 2) {
-    Profile body = moved_right(wall, depth, top);
-    add_surface(wall.back().b.x, level, meniscus, body);
-    if (depth < thickness / 64) procedural::check_crossings(body);
-    if (!procedural::crossing_of(body)) return LatheMesh(lathe.segments).turn(body);
+    LiquidProfile made{moved_right(wall, depth, top), {}, radius};
+    made.body = made.wall;
+    add_surface(radius, level, meniscus, made.body);
+    if (depth < thickness / 64) procedural::check_crossings(made.body);
+    if (!procedural::crossing_of(made.body)) return made;
   }
+}
+
+ProfileCubic straight(const dvec2& a, const dvec2& b) { return {a, a + (b - a) / 3.0, b - (b - a) / 3.0, b}; }
+
+/// Puts the middle height at 0.
+ExactLathe centred(std::vector<ProfileCubic> profile, bool closed) {
+  double low = INFINITY, high = -INFINITY, radius = 0;
+  for (const ProfileCubic& cubic : profile)
+    for (const ProfileCubic& part : monotone_parts(cubic))
+      for (const dvec2& end : {part.a, part.d}) {
+        low = std::min(low, end.y);
+        high = std::max(high, end.y);
+        radius = std::max(radius, end.x);
+      }
+  const double middle = (low + high) / 2;
+  for (ProfileCubic& cubic : profile)
+    for (dvec2* point : {&cubic.a, &cubic.b, &cubic.c, &cubic.d}) point->y -= middle;
+  return {{std::move(profile), closed, radius, (high - low) / 2}, middle};
+}
+
+}  // namespace
+
+Mesh make_lathe(const Lathe& lathe) { return LatheMesh(lathe.segments).turn(profile_of(lathe).steps); }
+
+ExactLathe exact_lathe(const Lathe& lathe) {
+  const DirectedProfile known = profile_of(lathe);
+  std::vector<ProfileCubic> profile = procedural::follow_exactly(lathe.profile, lathe.curve);
+  if (known.reversed) {
+    std::ranges::reverse(profile);
+    for (ProfileCubic& cubic : profile) cubic = cubic.reversed();
+  }
+  return centred(std::move(profile), is_closed(known.steps));
+}
+
+Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
+  return LatheMesh(lathe.segments).turn(liquid_profile(lathe, level, meniscus).body);
+}
+
+ExactLathe exact_lathe_liquid(const Lathe& lathe, double level, double meniscus) {
+  const LiquidProfile liquid = liquid_profile(lathe, level, meniscus);
+  std::vector<ProfileCubic> profile;
+  for (const ProfileStep& step : liquid.wall) profile.push_back(straight(step.a, step.b));
+  const auto go_to = [&](const dvec2& p) {
+    if (profile.back().d != p) profile.push_back(straight(profile.back().d, p));
+  };
+  if (meniscus > 0) {
+    const double r = liquid.radius, width = meniscus_width(r, meniscus);
+    go_to({r, level + meniscus});
+    profile.push_back(
+        {{r, level + meniscus}, {r - width / 3, level}, {r - 2 * width / 3, level}, {r - width, level}});
+  }
+  go_to({0, level});
+  return centred(std::move(profile), true);
 }
 
 }  // namespace sundog

@@ -19,9 +19,19 @@ struct Lathe {
 /// crosses itself or the axis.
 Mesh make_lathe(const Lathe& lathe);
 
+/// The same surface as an exact solid, and the height of its middle, which is y = 0 there. Throws like
+/// make_lathe.
+struct ExactLathe {
+  LatheShape shape;
+  double middle = 0;
+};
+ExactLathe exact_lathe(const Lathe& lathe);
+
 /// The liquid in a vessel, up to y = `level` on the axis and higher by `meniscus` at the wall. It reaches
 /// half way into the wall where that is thinnest, so no surfaces coincide; the vessel needs the higher
 /// priority. Throws GenerateError like make_lathe, and if the profile is no vessel or the level is not in it.
 Mesh make_lathe_liquid(const Lathe& lathe, double level, double meniscus);
+/// Its surface is exact; within the wall it has the facets of the mesh along the profile.
+ExactLathe exact_lathe_liquid(const Lathe& lathe, double level, double meniscus);
 
 }  // namespace sundog

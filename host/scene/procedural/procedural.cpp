@@ -126,6 +126,20 @@ Mesh read_fill(JsonObject& object, const JsonValue& meshes, bool checks) {
   return make_ice_liquid(block, to.number());
 }
 
+/// A lathe's recipe, or of what fills one.
+ExactLathe follow_exactly(const JsonValue& recipe, const JsonValue& meshes) {
+  if (recipe.type() == "lathe") return exact_lathe(recipe.object("generate_lathe", read_lathe));
+  return recipe.object("generate_fill", [&](JsonObject& object) {
+    const JsonValue vessel = find_vessel(object.at("vessel"), meshes);
+    if (vessel.type() != "lathe")
+      object.at("vessel").fail("only what fills a lathe is a surface of revolution");
+    double meniscus = 0;
+    object.read("meniscus", meniscus);
+    return exact_lathe_liquid(vessel.object("generate_lathe", read_lathe), object.at("to").number(),
+                              meniscus);
+  });
+}
+
 template <class Shape>
 Mesh made(const Shape& shape, Mesh (*make)(const Shape&), bool checks) {
   return checks ? Mesh() : make(shape);
@@ -152,6 +166,30 @@ Mesh follow(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture&
 
 Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture& read_picture) {
   return follow(recipe, meshes, read_picture);
+}
+
+ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
+  object.not_both("mesh", "profile");
+  const auto name = object.find("mesh");
+  Lathe lathe;
+  object.read("curve", lathe.curve);
+  try {
+    if (!name) {
+      lathe.profile = read_profile(object.at("profile"));
+      return exact_lathe(lathe);
+    }
+    const auto mesh = meshes ? meshes->json().find(name->text()) : nlohmann::json::const_iterator();
+    static const nlohmann::json::json_pointer place("/generate/type");
+    const bool generated = meshes && mesh != meshes->json().end() && mesh->contains(place);
+    if (!generated || (mesh->at(place) != "lathe" && mesh->at(place) != "fill"))
+      name->fail(
+          fmt::format("\"{}\" is no lathe; wanted the name of a mesh that a \"lathe\" or its \"fill\" "
+                      "generates",
+                      name->text()));
+    return follow_exactly(meshes->member(name->text(), "a mesh").member("generate", "a recipe"), *meshes);
+  } catch (const GenerateError& error) {
+    (name ? *name : object.value()).fail(error.what());
+  }
 }
 
 void check_recipe(const JsonValue& recipe, const JsonValue& meshes) { follow(recipe, meshes, {}); }

@@ -4,6 +4,7 @@
 
 #include "scene/description.h"
 #include "scene/json/value.h"
+#include "scene/procedural/lathe.h"
 
 namespace sundog {
 
@@ -15,6 +16,11 @@ using ReadPicture = std::function<Image(const JsonValue&)>;
 /// equal meshes, to the bit, on every machine. Throws SceneError with the pointer. The keys of a type are
 /// those of $defs/generate_TYPE in scenes/scene.schema.json.
 Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture& read_picture);
+
+/// The exact solid of an object of the type "lathe", and the height of its middle: by its own profile, or
+/// that of the "mesh" it names, a lathe or the fill of one. `meshes`: the scene's table, if there is one.
+/// Throws SceneError.
+ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes);
 
 /// Reads the parameters alone.
 void check_recipe(const JsonValue& recipe, const JsonValue& meshes);

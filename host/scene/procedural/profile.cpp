@@ -20,13 +20,32 @@ double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 dvec2 right_of(const dvec2& direction) { return glm::normalize(dvec2(direction.y, -direction.x)); }
 std::string shown(const dvec2& p) { return fmt::format("[{:.6g}, {:.6g}]", p.x, p.y); }
 
-void add_line(const dvec2& a, const dvec2& b, Profile& to) {
-  const dvec2 normal = right_of(b - a);
-  to.push_back({a, b, normal, normal});
-}
+/// A cubic between two points by its ends and their tangents (Hermite).
+struct Cubic {
+  dvec2 p, q, u, v;
+  dvec2 at(double t) const {
+    const double s = 1 - t;
+    return p * (s * s * (1 + 2 * t)) + u * (s * s * t) + q * (t * t * (1 + 2 * s)) - v * (t * t * s);
+  }
+  /// To the right of its direction; at a cusp, which has none, of its chord's.
+  dvec2 normal(double t) const {
+    const double s = 1 - t;
+    const dvec2 slope = (q - p) * (6 * t * s) + u * (s * (1 - 3 * t)) + v * (t * (3 * t - 2));
+    return right_of(length(slope) > 1e-9 * length(q - p) ? slope : q - p);
+  }
+};
 
-/// Halves the arc about `center` between two unit normals until its parts turn little; `radius`: below 0 if
-/// normals point to the centre.
+/// Draws the parts of a curve.
+class Pen {
+ public:
+  virtual ~Pen() = default;
+  virtual void line(const dvec2& a, const dvec2& b) = 0;
+  /// The arc about `center` between two unit normals; `radius`: below 0 if they point to the centre.
+  virtual void arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till) = 0;
+  virtual void cubic(const Cubic& cubic) = 0;
+};
+
+/// Halves the arc until its parts turn little.
 void add_arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till, double cos_turn,
              Profile& to) {
   if (dot(from, till) >= cos_turn) {
@@ -52,7 +71,7 @@ Corner corner_at(const ProfilePoint& point, const dvec2& before, const dvec2& af
   return corner;
 }
 
-Profile follow_lines(std::span<const ProfilePoint> points, double cos_turn) {
+void follow_lines(std::span<const ProfilePoint> points, Pen& pen) {
   const bool closed = points.front().at == points.back().at;
   const std::size_t last = points.size() - 1;
   std::vector<dvec2> directions;
@@ -64,7 +83,6 @@ Profile follow_lines(std::span<const ProfilePoint> points, double cos_turn) {
     if (end && !closed) continue;
     corners[i] = corner_at(points[i], directions[end ? last - 1 : i - 1], directions[end ? 0 : i]);
   }
-  Profile to;
   for (std::size_t i = 0; i < last; ++i) {
     const double room = length(points[i + 1].at - points[i].at), wanted = corners[i].cut + corners[i + 1].cut;
     if (wanted > room * (1 + 1e-9))
@@ -74,33 +92,15 @@ Profile follow_lines(std::span<const ProfilePoint> points, double cos_turn) {
                       shown(points[i].at), shown(points[i + 1].at), wanted, room));
     const dvec2 d = directions[i];
     if (room - wanted > 1e-9 * room)
-      add_line(points[i].at + d * corners[i].cut, points[i + 1].at - d * corners[i + 1].cut, to);
+      pen.line(points[i].at + d * corners[i].cut, points[i + 1].at - d * corners[i + 1].cut);
     const Corner& corner = corners[i + 1];
     if (corner.radius == 0) continue;
     const dvec2 next = directions[i + 1 == last ? 0 : i + 1];
     const double radius = cross(d, next) > 0 ? corner.radius : -corner.radius;
     const dvec2 from = right_of(d);
-    add_arc(points[i + 1].at - d * corner.cut - radius * from, radius, from, right_of(next), cos_turn, to);
+    pen.arc(points[i + 1].at - d * corner.cut - radius * from, radius, from, right_of(next));
   }
-  for (std::size_t i = 1; i < to.size(); ++i) to[i].a = to[i - 1].b;
-  to.back().b = closed ? to.front().a : points.back().at;
-  return to;
 }
-
-/// A cubic between two points by its ends and their tangents (Hermite).
-struct Cubic {
-  dvec2 p, q, u, v;
-  dvec2 at(double t) const {
-    const double s = 1 - t;
-    return p * (s * s * (1 + 2 * t)) + u * (s * s * t) + q * (t * t * (1 + 2 * s)) - v * (t * t * s);
-  }
-  /// To the right of its direction; at a cusp, which has none, of its chord's.
-  dvec2 normal(double t) const {
-    const double s = 1 - t;
-    const dvec2 slope = (q - p) * (6 * t * s) + u * (s * (1 - 3 * t)) + v * (t * (3 * t - 2));
-    return right_of(length(slope) > 1e-9 * length(q - p) ? slope : q - p);
-  }
-};
 
 void add_cubic(const Cubic& cubic, double from, double till, int depth, double cos_turn, Profile& to) {
   const double middle = (from + till) / 2;
@@ -116,8 +116,7 @@ void add_cubic(const Cubic& cubic, double from, double till, int depth, double c
 dvec2 mirrored(const dvec2& p) { return {-p.x, p.y}; }
 
 /// The smooth curve through the points between two corners; `before` and `after` shape its ends.
-void follow_run(std::span<const dvec2> run, const dvec2& before, const dvec2& after, double cos_turn,
-                Profile& to) {
+void follow_run(std::span<const dvec2> run, const dvec2& before, const dvec2& after, Pen& pen) {
   const std::size_t last = run.size() - 1;
   const auto point = [&](std::size_t i) { return i == 0 ? before : i > run.size() ? after : run[i - 1]; };
   const auto knot = [&](std::size_t i) { return std::sqrt(length(point(i + 1) - point(i))); };
@@ -126,11 +125,11 @@ void follow_run(std::span<const dvec2> run, const dvec2& before, const dvec2& af
     const double ka = knot(i), k = knot(i + 1), kz = knot(i + 2);
     const dvec2 u = (p - a) * (k / ka) - (q - a) * (k / (ka + k)) + (q - p);
     const dvec2 v = (q - p) - (z - p) * (k / (k + kz)) + (z - q) * (k / kz);
-    add_cubic({p, q, u, v}, 0, 1, 0, cos_turn, to);
+    pen.cubic({p, q, u, v});
   }
 }
 
-Profile follow_spline(std::span<const dvec2> points, double cos_turn) {
+void follow_spline(std::span<const dvec2> points, Pen& pen) {
   const bool closed = points.front() == points.back();
   std::vector<std::vector<dvec2>> runs(1);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -139,7 +138,6 @@ Profile follow_spline(std::span<const dvec2> points, double cos_turn) {
     if (!twice) runs.back().push_back(points[i]);
   }
   if (runs.back().size() < 2) runs.pop_back();
-  Profile to;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::vector<dvec2>& run = runs[i];
     const dvec2 first = run.front(), second = run[1], end = run.back(), last = run[run.size() - 2];
@@ -151,10 +149,48 @@ Profile follow_spline(std::span<const dvec2> points, double cos_turn) {
     }
     if (i == 0 && first.x == 0 && second.x != 0 && !whole) before = mirrored(second);
     if (i + 1 == runs.size() && end.x == 0 && last.x != 0 && !whole) after = mirrored(last);
-    follow_run(run, before, after, cos_turn, to);
+    follow_run(run, before, after, pen);
   }
-  return to;
 }
+
+/// Draws in steps that turn by at most an angle.
+class StepPen final : public Pen {
+ public:
+  explicit StepPen(double cos_turn) : cos_turn_(cos_turn) {}
+  void line(const dvec2& a, const dvec2& b) override {
+    const dvec2 normal = right_of(b - a);
+    steps.push_back({a, b, normal, normal});
+  }
+  void arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till) override {
+    add_arc(center, radius, from, till, cos_turn_, steps);
+  }
+  void cubic(const Cubic& cubic) override { add_cubic(cubic, 0, 1, 0, cos_turn_, steps); }
+
+  Profile steps;
+
+ private:
+  double cos_turn_;
+};
+
+/// Draws in cubics.
+class CubicPen final : public Pen {
+ public:
+  void line(const dvec2& a, const dvec2& b) override {
+    cubics.push_back({a, a + (b - a) / 3.0, b - (b - a) / 3.0, b});
+  }
+  void arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till) override {
+    Profile parts;
+    add_arc(center, radius, from, till, std::cos(0.4), parts);
+    for (const ProfileStep& part : parts) {
+      const dvec2 &m = part.normal_a, &n = part.normal_b;
+      const double arm = std::abs(radius) * 4 / 3 * std::tan(std::acos(std::min(dot(m, n), 1.0)) / 4);
+      cubics.push_back({part.a, part.a + arm * dvec2(-m.y, m.x), part.b - arm * dvec2(-n.y, n.x), part.b});
+    }
+  }
+  void cubic(const Cubic& c) override { cubics.push_back({c.p, c.p + c.u / 3.0, c.q - c.v / 3.0, c.q}); }
+
+  std::vector<ProfileCubic> cubics;
+};
 
 /// Whether two lines cross or touch.
 bool meet(const ProfileStep& s, const ProfileStep& t) {
@@ -164,6 +200,26 @@ bool meet(const ProfileStep& s, const ProfileStep& t) {
       std::max(s.a.y, s.b.y) < std::min(t.a.y, t.b.y) || std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y))
     return false;
   return !apart(cross(d, t.a - s.a), cross(d, t.b - s.a)) && !apart(cross(e, s.a - t.a), cross(e, s.b - t.a));
+}
+
+void draw(std::span<const ProfilePoint> points, ProfileCurve curve, Pen& pen) {
+  const bool spline = curve == ProfileCurve::spline;
+  std::vector<ProfilePoint> places;
+  for (const ProfilePoint& point : points) {
+    if (spline && point.rounding > 0)
+      throw GenerateError(fmt::format(
+          "the point {} has a rounding, which is for lines; a spline is smooth except at points given twice",
+          shown(point.at)));
+    if (spline || places.empty() || places.back().at != point.at) places.push_back(point);
+  }
+  std::vector<dvec2> all;
+  for (const ProfilePoint& place : places) all.push_back(place.at);
+  if (all.empty() || std::ranges::all_of(all, [&](const dvec2& p) { return p == all.front(); }))
+    throw GenerateError("wanted at least two different points");
+  if (spline)
+    follow_spline(all, pen);
+  else
+    follow_lines(places, pen);
 }
 
 }  // namespace
@@ -190,25 +246,27 @@ dvec2 turn_by(double share) {
 }
 
 Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double cos_turn) {
-  const bool spline = curve == ProfileCurve::spline;
-  std::vector<ProfilePoint> places;
-  for (const ProfilePoint& point : points) {
-    if (spline && point.rounding > 0)
-      throw GenerateError(fmt::format(
-          "the point {} has a rounding, which is for lines; a spline is smooth except at points given twice",
-          shown(point.at)));
-    if (spline || places.empty() || places.back().at != point.at) places.push_back(point);
+  StepPen pen(cos_turn);
+  draw(points, curve, pen);
+  Profile& profile = pen.steps;
+  if (curve == ProfileCurve::lines) {
+    for (std::size_t i = 1; i < profile.size(); ++i) profile[i].a = profile[i - 1].b;
+    profile.back().b = points.front().at == points.back().at ? profile.front().a : points.back().at;
   }
-  std::vector<dvec2> all;
-  for (const ProfilePoint& place : places) all.push_back(place.at);
-  if (all.empty() || std::ranges::all_of(all, [&](const dvec2& p) { return p == all.front(); }))
-    throw GenerateError("wanted at least two different points");
-  Profile profile = spline ? follow_spline(all, cos_turn) : follow_lines(places, cos_turn);
   if (profile.size() > most_steps)
     throw GenerateError(
         fmt::format("the curve takes {} steps, and may take {}; wanted fewer facets or points",
                     profile.size(), most_steps));
-  return profile;
+  return std::move(profile);
+}
+
+std::vector<ProfileCubic> follow_exactly(std::span<const ProfilePoint> points, ProfileCurve curve) {
+  CubicPen pen;
+  draw(points, curve, pen);
+  std::vector<ProfileCubic>& cubics = pen.cubics;
+  for (std::size_t i = 1; i < cubics.size(); ++i) cubics[i].a = cubics[i - 1].d;
+  cubics.back().d = points.front().at == points.back().at ? cubics.front().a : points.back().at;
+  return std::move(cubics);
 }
 
 Profile reversed(const Profile& profile) {

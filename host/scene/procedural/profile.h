@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "models/values/profile.h"
+
 namespace sundog::procedural {
 
 struct ProfilePoint {
@@ -31,6 +33,10 @@ glm::dvec2 turn_by(double share);
 /// last point is its first is closed. Throws GenerateError for fewer than two places, a rounding of a spline,
 /// one that the lines beside it have no room for, and more than `most_steps`.
 Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double cos_turn);
+
+/// The same curve as cubics. Those of an arc differ from it by less than 1e-7 of its radius. Throws like
+/// follow().
+std::vector<ProfileCubic> follow_exactly(std::span<const ProfilePoint> points, ProfileCurve curve);
 
 /// The curve, from its last point to its first.
 Profile reversed(const Profile& profile);

@@ -32,7 +32,9 @@ SdfNode read_solid_field(JsonObject& object, std::string_view type) {
   const auto field = field_of_solid(solid.shape);
   if (!field)
     object.value().fail(
-        fmt::format("a {} that is open has no inside, which an operation on fields needs", type));
+        type == "lathe"
+            ? std::string("a lathe has no distance field, which an operation on fields needs")
+            : fmt::format("a {} that is open has no inside, which an operation on fields needs", type));
   glm::dmat4 placed = solid.placed;
   if (const auto list = object.find("transform")) {
     placed = read_transform(*list) * placed;

@@ -47,8 +47,8 @@ struct PlacedShape {
 
 /// The object types that are exact solids.
 Names solid_types();
-/// Reads the keys of a solid of the given type.
-PlacedShape read_solid(JsonObject& object, std::string_view type);
+/// Reads the keys of a solid of the given type; `meshes`: the scene's table, if the solid may name one.
+PlacedShape read_solid(JsonObject& object, std::string_view type, const JsonValue* meshes = nullptr);
 /// The solid's distance field; nothing for a solid without an inside.
 std::optional<FormulaField> field_of_solid(const Shape& shape);
 

@@ -88,9 +88,10 @@ class SceneReader {
 
   void read_tables(JsonObject& object) {
     names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
-    if (const auto meshes = object.find("meshes"))
-      for (const auto& [name, value] : meshes->members("meshes"))
-        meshes_.emplace(name, read_mesh(value, name, *meshes));
+    mesh_table_ = object.find("meshes");
+    if (mesh_table_)
+      for (const auto& [name, value] : mesh_table_->members("meshes"))
+        meshes_.emplace(name, read_mesh(value, name, *mesh_table_));
     add_made_meshes();
     if (const auto fields = object.find("fields"))
       for (const auto& [name, value] : fields->members("fields")) {
@@ -268,7 +269,7 @@ class SceneReader {
 
   void place_solid(JsonObject& object, const std::string& type, const Placement& placement) {
     if (placement.material < 0) object.at("material", "the name of a material, here or in a group around it");
-    const PlacedShape solid = read_solid(object, type);
+    const PlacedShape solid = read_solid(object, type, mesh_table_ ? &*mesh_table_ : nullptr);
     Placement placed = placement;
     placed.world_from_object = placement.world_from_object * solid.placed;
     turn_about_middle(placed.world_from_object, placed);
@@ -294,6 +295,7 @@ class SceneReader {
   SurfaceNames names_;
   NameTable fields_;
   std::vector<Object> in_focus_;  // those in the object of the name that the camera focuses on
+  std::optional<JsonValue> mesh_table_;
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };
 

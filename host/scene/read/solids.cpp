@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "formula/list.h"
 #include "formula/lower.h"
+#include "scene/procedural/procedural.h"
 #include "scene/read/parts.h"
 
 namespace sundog {
@@ -130,6 +132,17 @@ PlacedShape read_shape(TorusShape torus, JsonObject& object) {
   return {torus, read_point(object, "center") * read_axis(object, "axis")};
 }
 
+PlacedShape read_shape(LatheShape, JsonObject& object, const JsonValue* meshes) {
+  const ExactLathe lathe = read_exact_lathe(object, meshes);
+  return {lathe.shape, glm::translate(dmat4(1), dvec3(0, lathe.middle, 0))};
+}
+
+/// Most solids name no mesh.
+template <class S>
+PlacedShape read_shape(S solid, JsonObject& object, const JsonValue*) {
+  return read_shape(std::move(solid), object);
+}
+
 // Distance fields of the solids that may have an inside.
 FormulaField make_field(const FormulaDefinition& definition, std::vector<double> values) {
   FormulaField field;
@@ -160,6 +173,7 @@ FormulaField field_of(const BoxShape& s) { return listed("box", {s.half.x, s.hal
 FormulaField field_of(const CylinderShape& s) { return listed("cylinder", {s.radius, s.half_height}); }
 std::optional<FormulaField> field_of(const DiskShape&) { return std::nullopt; }  // no inside
 std::optional<FormulaField> field_of(const RectangleShape&) { return std::nullopt; }
+std::optional<FormulaField> field_of(const LatheShape&) { return std::nullopt; }  // no formula
 FormulaField field_of(const TorusShape& s) { return listed("torus", {s.major_radius, s.minor_radius}); }
 FormulaField field_of(const RoundBoxShape& s) {
   return listed("rounded_box", {s.half.x, s.half.y, s.half.z, s.radius});
@@ -181,12 +195,14 @@ FormulaField field_of(const ConeShape& cone) {
 
 struct Solid {
   std::string_view type;
-  PlacedShape (*read)(JsonObject&);
+  PlacedShape (*read)(JsonObject&, const JsonValue* meshes);
 };
 
 constexpr std::array solids{
-#define SUNDOG_SOLID(constant, type, name) \
-  Solid{#name, [](JsonObject& object) { return read_shape(type##Shape{}, object); }},
+#define SUNDOG_SOLID(constant, type, name)                       \
+  Solid{#name, [](JsonObject& object, const JsonValue* meshes) { \
+          return read_shape(type##Shape{}, object, meshes);      \
+        }},
     SOLIDS(SUNDOG_SOLID)
 #undef SUNDOG_SOLID
 };
@@ -203,10 +219,10 @@ Names solid_types() {
   return names;
 }
 
-PlacedShape read_solid(JsonObject& object, std::string_view type) {
+PlacedShape read_solid(JsonObject& object, std::string_view type, const JsonValue* meshes) {
   const auto solid =
       std::find_if(solids.begin(), solids.end(), [&](const Solid& s) { return s.type == type; });
-  return solid->read(object);
+  return solid->read(object, meshes);
 }
 
 std::optional<FormulaField> field_of_solid(const Shape& shape) {

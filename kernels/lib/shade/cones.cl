@@ -38,7 +38,7 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     const float size = cbrt(scale.x * scale.y * scale.z) / scale.w;  // per unit of object space, in the world
     const REAL own = HAS_MESH && instance->shape == SHAPE_MESH
                          ? triangle_curvatures(scene, s, mine)
-                         : solid_curvatures(instance->shape, instance->parameters,
+                         : solid_curvatures(scene, instance->shape, instance->parameters,
                                             points_of(scene, index, s, s->p), s->prim);
     curvature = select(curvature, own * (1.0f / size) / moved_size(scene, index, time_of(s)), mine);
   }

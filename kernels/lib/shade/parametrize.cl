@@ -7,6 +7,7 @@
 //   rectangle       u along x, v along -z, both over [0, 1]
 //   plane           u = x, v = -z
 //   torus           u longitude, v the angle round the tube from its outer equator, both over [0, 1]
+//   lathe           u longitude, v the share of the profile's length, both over [0, 1]
 //   box, round box  each face from outside: u to the right, v upwards, [0, 1]
 //   mesh            the vertices' u and v; without them as a field
 //   field           u = v = 0, dpdu and dpdv any directions in the surface
@@ -85,7 +86,7 @@ NEVER_INLINE void find_coordinates(const Scene* scene, const Hits* hits, const R
     const MASK mine = take_alike(hits->instance, &left, &index);
     __global const Instance* instance = scene->instances + index;
     SurfacePoints points = points_without_place(hits->ng);
-    points_on_solid(instance->shape, instance->parameters,
+    points_on_solid(scene, instance->shape, instance->parameters,
                     object_points(instance, still_origins(hits, index, *p)), hits->prim, &points);
     if (HAS_MESH && instance->shape == SHAPE_MESH) on_triangles(scene, hits, mine, &points);
     const REAL time = time_of_hits(hits);

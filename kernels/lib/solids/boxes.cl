@@ -110,10 +110,12 @@ static inline void closest_in_box(float4 parameters, REAL3 o, REAL3 d, REAL t_mi
   offer_face(t, face, active, t_min, hits);
 }
 
-static inline SurfacePoints points_on_box(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, (float3)(1.0f));
 }
-static inline REAL curvature_of_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 static inline float4 reach_of_box(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_BOX); }
 static inline u32 convexity_of_box(float4 parameters) { return CONVEX; }
 
@@ -168,10 +170,12 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
   offer(shift + t, subtract3(p, within), NO_LANES, active & MASK_OF(span.enter <= span.leave), t_min, hits);
 }
 
-static inline SurfacePoints points_on_round_box(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, parameters.xyz);
 }
 // Of the faces; edges count as flat.
-static inline REAL curvature_of_round_box(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 static inline float4 reach_of_round_box(float4 parameters) { return (float4)(parameters.xyz, REACH_BOX); }
 static inline u32 convexity_of_round_box(float4 parameters) { return CONVEX; }

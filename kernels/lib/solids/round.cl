@@ -13,7 +13,7 @@ static inline void closest_in_sphere(float4 parameters, REAL3 o, REAL3 d, REAL t
   offer(shift + t, along3(near, t, d), NO_LANES, active & span.crosses, t_min, hits);
 }
 
-static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_sphere(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
   SurfacePoints at;
   at.u = turns(p.x, -p.z);
@@ -23,7 +23,9 @@ static inline SurfacePoints points_on_sphere(float4 parameters, REAL3 p, MASK pa
   return at;
 }
 
-static inline REAL curvature_of_sphere(float4 parameters, REAL3 p, MASK part) { return (REAL)(1.0f); }
+static inline REAL curvature_of_sphere(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(1.0f);
+}
 static inline float4 reach_of_sphere(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_BALL); }
 static inline u32 convexity_of_sphere(float4 parameters) { return CONVEX; }
 
@@ -32,12 +34,14 @@ static inline void closest_in_plane(float4 parameters, REAL3 o, REAL3 d, REAL t_
   offer(-o.y / d.y, up_or_down((REAL)(1.0f)), NO_LANES, active & MASK_OF(d.y != 0.0f), t_min, hits);
 }
 
-static inline SurfacePoints points_on_plane(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_plane(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const SurfacePoints at = {p.x, -p.z, all3((float3)(1.0f, 0.0f, 0.0f)), all3((float3)(0.0f, 0.0f, -1.0f))};
   return at;
 }
 
-static inline REAL curvature_of_plane(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_plane(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 static inline float4 reach_of_plane(float4 parameters) { return (float4)(0.0f); }
 static inline u32 convexity_of_plane(float4 parameters) { return CONVEX; }
 
@@ -64,10 +68,12 @@ static inline SurfacePoints points_in_plane(REAL3 p, MASK below) {
   return at;
 }
 
-static inline SurfacePoints points_on_disk(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_disk(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_in_plane(p, NO_LANES);
 }
-static inline REAL curvature_of_disk(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_disk(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 static inline float4 reach_of_disk(float4 parameters) { return (float4)(1.0f, 0.0f, 1.0f, REACH_ROUND); }
 static inline u32 convexity_of_disk(float4 parameters) {
   return parameters.x == 0.0f ? CONVEX : CONVEX_OUTSIDE;
@@ -81,10 +87,12 @@ static inline void closest_in_rectangle(float4 parameters, REAL3 o, REAL3 d, REA
   offer(t, up_or_down((REAL)(1.0f)), NO_LANES, active & within, t_min, hits);
 }
 
-static inline SurfacePoints points_on_rectangle(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_rectangle(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_in_plane(p, NO_LANES);
 }
-static inline REAL curvature_of_rectangle(float4 parameters, REAL3 p, MASK part) { return (REAL)(0.0f); }
+static inline REAL curvature_of_rectangle(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  return (REAL)(0.0f);
+}
 static inline float4 reach_of_rectangle(float4 parameters) { return (float4)(1.0f, 0.0f, 1.0f, REACH_BOX); }
 static inline u32 convexity_of_rectangle(float4 parameters) { return CONVEX; }
 
@@ -122,10 +130,10 @@ static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL
   }
 }
 
-static inline SurfacePoints points_on_cylinder(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_cylinder(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return select_points(on_tube(p, 0.0f), points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
-static inline REAL curvature_of_cylinder(float4 parameters, REAL3 p, MASK part) {
+static inline REAL curvature_of_cylinder(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }
 static inline float4 reach_of_cylinder(float4 parameters) { return (float4)(1.0f, 1.0f, 1.0f, REACH_ROUND); }
@@ -161,11 +169,11 @@ static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_m
   }
 }
 
-static inline SurfacePoints points_on_cone(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_cone(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return select_points(on_tube(p, 0.5f * (parameters.y - parameters.x)),
                        points_in_plane(p, MASK_OF(part == 2)), MASK_OF(part != 0));
 }
-static inline REAL curvature_of_cone(float4 parameters, REAL3 p, MASK part) {
+static inline REAL curvature_of_cone(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return tube_curvature(p, part);
 }
 static inline float4 reach_of_cone(float4 parameters) {

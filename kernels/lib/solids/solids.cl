@@ -4,6 +4,7 @@
 // For shafts, reach_of_NAME() gives its bounds, and convexity_of_NAME() whether rays from it meet it again.
 #pragma once
 #include "lib/solids/boxes.cl"
+#include "lib/solids/lathe.cl"
 #include "lib/solids/round.cl"
 #include "lib/solids/torus.cl"
 #include "shared/bvh.h"
@@ -12,10 +13,9 @@
 // is one.
 ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
-#define CLOSEST(constant, type, name)                                             \
-  case SHAPE_##constant:                                                          \
-    if (HAS_##constant) closest_in_##name(parameters, o, d, t_min, active, hits); \
-    break;
+#define CLOSEST(constant, type, name) \
+  case SHAPE_##constant:              \
+    HAVING(HAS_##constant, closest_in_##name(parameters, o, d, t_min, active, hits);) break;
   switch (shape) {
     SOLIDS(CLOSEST)
     default:
@@ -25,17 +25,21 @@ ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3
 }
 
 // Coordinates of points p on the `part`s of a solid; `at` is unchanged for other shapes.
-static inline void points_on_solid(u32 shape, float4 parameters, REAL3 p, MASK part, SurfacePoints* at) {
+static inline void points_on_solid(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part,
+                                   SurfacePoints* at) {
 #define POINTS(constant, type, name) \
-  if (HAS_##constant && shape == SHAPE_##constant) *at = points_on_##name(parameters, p, part);
+  HAVING(                            \
+      HAS_##constant,                \
+      if (shape == SHAPE_##constant) { *at = points_on_##name(scene, parameters, p, part); })
   SOLIDS(POINTS)
 #undef POINTS
 }
 
 // Mean curvature of unit shapes at points p.
-static inline REAL solid_curvatures(u32 shape, float4 parameters, REAL3 p, MASK part) {
+static inline REAL solid_curvatures(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part) {
 #define CURVATURES(constant, type, name) \
-  if (HAS_##constant && shape == SHAPE_##constant) return curvature_of_##name(parameters, p, part);
+  HAVING(HAS_##constant,                 \
+         if (shape == SHAPE_##constant) return curvature_of_##name(scene, parameters, p, part);)
   SOLIDS(CURVATURES)
 #undef CURVATURES
   return (REAL)(0.0f);

@@ -8,6 +8,7 @@ typedef struct SolidHits {
   REAL3 ng;   // outward, not normalised
   MASK part;  // face or part of the solid
   MASK found;
+  HAVING(HAS_LATHE, __global const ProfileArc* profiles;)  // the scene's table
 } SolidHits;
 
 // Accepts the hit at t if it is the nearest so far.

@@ -2,6 +2,7 @@
 #pragma once
 #include "lib/core/config.h"
 #include "lib/core/lanes.h"
+#include "lib/core/tables.h"
 
 // Coordinates on a surface in object space (shade/parametrize.cl): u and v, and the point's derivatives.
 typedef struct SurfacePoints {

@@ -69,7 +69,7 @@ static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_
   }
 }
 
-static inline SurfacePoints points_on_torus(float4 parameters, REAL3 p, MASK part) {
+static inline SurfacePoints points_on_torus(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const REAL r = radius_about_y(p), zero = (REAL)(0.0f);
   SurfacePoints at;
   at.u = turns(p.x, -p.z);
@@ -79,7 +79,7 @@ static inline SurfacePoints points_on_torus(float4 parameters, REAL3 p, MASK par
   return at;
 }
 
-static inline REAL curvature_of_torus(float4 parameters, REAL3 p, MASK part) {
+static inline REAL curvature_of_torus(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   const REAL radius = radius_about_y(p);
   return 0.5f * (1.0f / parameters.x + (radius - 1.0f) / (parameters.x * nonzero(radius)));
 }

@@ -15,6 +15,7 @@ typedef struct Hits {
   HAVING(HAS_OBJECT_MOTION, REAL time;)                     // of the ray
   HAVING(HAS_OBJECT_MOTION, __global const float4* moves;)  // the scene's tables
   HAVING(HAS_TURNS, __global const Turn* turns;)
+  HAVING(HAS_LATHE, __global const ProfileArc* profiles;)
 } Hits;
 
 static inline Hits no_hits(REAL t_max) {
@@ -28,14 +29,15 @@ static inline Hits no_hits(REAL t_max) {
   return hits;
 }
 
-// The rays' times; their origins and directions moved with instance `index` back to when the shutter opened
-// (core/motion.cl); solids_origins(): each lane of `bits` with its own instance.
+// The tables and times of rays' hits; their origins and directions moved with instance `index` back to when
+// the shutter opened (core/motion.cl); solids_origins(): each lane of `bits` with its own instance.
 static inline REAL time_of_hits(const Hits* hits) {
   return EITHER(HAS_OBJECT_MOTION, hits->time, (REAL)(0.0f));
 }
-static inline void set_time_of_hits(const Scene* scene, REAL time, Hits* hits) {
+static inline void prepare_hits(const Scene* scene, REAL time, Hits* hits) {
   HAVING(HAS_OBJECT_MOTION, hits->time = time; hits->moves = scene->moves;)
   HAVING(HAS_TURNS, hits->turns = scene->turns;)
+  HAVING(HAS_LATHE, hits->profiles = scene->profiles;)
 }
 static inline REAL3 still_origins(const Hits* hits, u32 index, REAL3 o) {
   HAVING(HAS_TURNS, return unturned_points(hits->turns, hits->moves[index], o, hits->time);)
@@ -67,9 +69,10 @@ static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 b
   }
   return still;
 }
-static inline void join_times(const Hits* a, const Hits* b, MASK m, Hits* hits) {
+static inline void join_tables(const Hits* a, const Hits* b, MASK m, Hits* hits) {
   HAVING(HAS_OBJECT_MOTION, hits->time = select(a->time, b->time, m); hits->moves = b->moves;)
   HAVING(HAS_TURNS, hits->turns = b->turns;)
+  HAVING(HAS_LATHE, hits->profiles = b->profiles;)
 }
 
 static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
@@ -102,7 +105,7 @@ static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
                .prim = select(a->prim, b->prim, m),
                .instance = select(a->instance, b->instance, m),
                .ng = select3(a->ng, b->ng, m)};
-  join_times(a, b, m, &hits);
+  join_tables(a, b, m, &hits);
   return hits;
 }
 
@@ -113,7 +116,8 @@ static inline REAL number_below(REAL t) { return AS_REAL(AS_MASK(t) - 1); }
 static inline REAL number_above(REAL t) { return AS_REAL(AS_MASK(t) + 1); }
 static inline SolidHits begin_solids(const Hits* hits, MASK index) {
   const MASK earlier = hit_anything(hits) & MASK_OF(hits->instance <= index);
-  const SolidHits solid = {select(hits->t, number_below(hits->t), earlier), hits->ng, NO_LANES, NO_LANES};
+  SolidHits solid = {select(hits->t, number_below(hits->t), earlier), hits->ng, NO_LANES, NO_LANES};
+  HAVING(HAS_LATHE, solid.profiles = hits->profiles;)
   return solid;
 }
 

@@ -47,7 +47,7 @@ static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch
   const REAL3 o = all3(stretch->o), d = all3(stretch->d);
   const REAL t_min = (REAL)(from);
   Hits hits = no_hits((REAL)(to));
-  set_time_of_hits(scene, (REAL)(time_of_stretch(stretch)), &hits);
+  prepare_hits(scene, (REAL)(time_of_stretch(stretch)), &hits);
   hit_solids(scene->instances, index, index + 1u, &o, &d, &t_min, lanes_of(1u), false, &hits);
   return get_hit(&hits, 0);
 }

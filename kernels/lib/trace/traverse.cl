@@ -127,7 +127,7 @@ static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d,
                              REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists,
                              const MASK* priorities) {
   *hits = no_hits(t_max);
-  set_time_of_hits(scene, time, hits);
+  prepare_hits(scene, time, hits);
   if (!HAS_TRACED) return;
   active &= traceable(o, d, *t_min, t_max);
   const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);

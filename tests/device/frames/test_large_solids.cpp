@@ -136,7 +136,8 @@ TEST_CASE("a mirror that is a ball of a thousand times the distance loses nothin
 
 TEST_CASE("a solid pressed flat, to a ten-millionth, is as wide as before and lit") {
   const Shape shapes[] = {SphereShape{1}, CylinderShape{1, 1}, RoundBoxShape{{1, 1, 1}, 0.5},
-                          BoxShape{},     ConeShape{},         TorusShape{1, 0.3}};
+                          BoxShape{},     ConeShape{},         TorusShape{1, 0.3},
+                          LatheShape{}};
   on_picture_devices([&](const DeviceInfo& device) {
     for (const Shape& shape : shapes)
       for (const int axis : {0, 1, 2}) {

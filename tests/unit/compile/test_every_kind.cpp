@@ -28,6 +28,10 @@ UnitShape unit_of(const Shape& shape) {
   return unit_shape("", object);
 }
 
+std::span<const ProfileArc> rows_of(const UnitShape& unit) {
+  return unit.revolution ? std::span(unit.revolution->arcs()) : std::span<const ProfileArc>{};
+}
+
 bool is_open(const Shape& shape) {
   return std::visit(
       [](const auto& s) {
@@ -83,6 +87,7 @@ TEST_CASE("a solid as a field has its inside where the solid has it") {
                          TorusShape{0.9, 0.3}, RoundBoxShape{{0.9, 0.6, 0.7}, 0.2}})) {
     const std::optional<FormulaField> field = field_of_solid(shape);
     INFO(name_of(shape));
+    if (std::holds_alternative<LatheShape>(shape)) continue;  // no formula has its profile
     REQUIRE(field.has_value() == !is_open(shape));
     if (!field) continue;
     const UnitShape unit = unit_of(shape);
@@ -111,7 +116,7 @@ TEST_CASE("by its distance a solid is crossed where its equations have it") {
     for (int i = 0; i < 1500; ++i) {
       const dvec3 o = 3.0 * dvec3(uniform(), uniform(), uniform()),
                   d = dvec3(uniform(), uniform(), uniform()) - 0.5 * o;
-      const auto expected = plain::solid_crossings(unit.shape, unit.parameters, o, d);
+      const auto expected = plain::solid_crossings({unit.shape, unit.parameters, rows_of(unit)}, o, d);
       const auto crossings = crossings_by_distance(unit, o, d);
       others += crossings.size() != expected.size();  // by rounding, along a surface
       for (std::size_t k = 0; k < std::min(crossings.size(), expected.size()); ++k, ++found) {

@@ -55,7 +55,7 @@ const std::vector<Group>& groups() {
         "generate_ice_block", "generate_ice_cavity"}},
       {"Objects",
        "An entry of `objects` is one of these or a [distance field](#distance-fields).",
-       {"sphere", "plane", "box", "round_box", "cylinder", "cone", "disk", "rectangle", "torus",
+       {"sphere", "plane", "box", "round_box", "cylinder", "cone", "disk", "rectangle", "torus", "lathe",
         "mesh_object", "model_object", "field_object", "group_object", "scatter_object", "transform_step",
         "rotate", "turns_by"},
        "sphere",

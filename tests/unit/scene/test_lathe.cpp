@@ -5,6 +5,7 @@
 #include <string>
 
 #include "catch.h"
+#include "compile/shapes.h"
 #include "mesh_volume.h"
 #include "scene/mesh_faults.h"
 #include "scene/procedural/ice_block.h"
@@ -152,6 +153,39 @@ TEST_CASE("a liquid reaches half way into the wall and up to its level") {
                               {{0, 0.95}}});
   CHECK(closed(make_lathe(glass)));
   CHECK(closed(make_lathe_liquid(glass, 1.4, 0.02)));
+}
+
+TEST_CASE("an exact lathe has the profile of its mesh, and so has the liquid in it") {
+  const Lathe glass = spline({{{0, 0}},
+                              {{0, 0}},
+                              {{0.4, 0}},
+                              {{0.4, 0}},
+                              {{0.06, 0.1}},
+                              {{0.3, 1.02}},
+                              {{0.45, 1.3}},
+                              {{0.35, 1.9}},
+                              {{0.33, 1.9}},
+                              {{0.42, 1.3}},
+                              {{0, 0.95}}});
+  Lathe rounded = beaker();
+  rounded.profile[2].rounding = rounded.profile[3].rounding = 0.05;
+  std::ranges::reverse(rounded.profile);
+  const auto check = [](const Mesh& mesh, const ExactLathe& exact) {
+    CHECK(exact.shape.closed);
+    sundog::Object object;
+    object.shape = exact.shape;
+    const sundog::UnitShape unit = sundog::unit_shape("", object);
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 37) {
+      const dvec3 p = dvec3(mesh.positions[i]) - dvec3(0, exact.middle, 0), n = 1e-3 * dvec3(mesh.normals[i]);
+      CHECK(std::abs(sundog::unit_distance(unit, p / unit.scale)) < 1e-6);
+      CHECK(sundog::unit_distance(unit, (p - n) / unit.scale) <
+            sundog::unit_distance(unit, (p + n) / unit.scale));
+    }
+  };
+  check(make_lathe(glass), exact_lathe(glass));
+  check(make_lathe(rounded), exact_lathe(rounded));
+  check(make_lathe_liquid(glass, 1.4, 0.02), exact_lathe_liquid(glass, 1.4, 0.02));
+  CHECK_FALSE(exact_lathe(lines({{{1, 0}}, {{1, 2}}})).shape.closed);
 }
 
 TEST_CASE("profiles that make no solid are refused with their place") {

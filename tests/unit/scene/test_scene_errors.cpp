@@ -330,6 +330,9 @@ TEST_CASE("bad objects are refused with their place") {
              {"below 1", "found 1"}, false),
       object(R"({"type": "torus", "material": "m", "minor_radius": 2})", "/minor_radius",
              {"below 1", "found 2"}, false),
+      object(R"({"type": "lathe", "material": "m", "mesh": "x"})", "/mesh", {"\"x\" is no lathe"}, false),
+      object(R"({"type": "lathe", "material": "m", "profile": [[0, 0], [-1, 1], [0, 2]]})", "",
+             {"crosses the axis"}, false),
       object(R"({"type": "group"})", "", {"missing key \"objects\""}),
       object(
           R"({"type": "group", "objects": [{"type": "group", "material": "m", "objects": [{"type": "disk", "x": 1}]}]})",

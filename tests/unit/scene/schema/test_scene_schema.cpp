@@ -84,6 +84,7 @@ const std::string everything = R"({
     {"type": "native", "code": "return p.x;", "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}},
     {"type": "shell", "amount": 0.1, "field": {"type": "native", "code": "return p.x;"}, "interval": {"min": [-1, -1, -1], "max": [1, 1, 1]}}, {"type": "plane"}, {"type": "box"}, {"type": "cylinder"}, {"type": "cone"},
     {"type": "disk"}, {"type": "rectangle", "size": [1, 2]}, {"type": "torus"}, {"type": "round_box"}, {"type": "mesh", "mesh": "t"},
+    {"type": "lathe", "profile": [[0, 0], [1, 0], [0, 1]], "curve": "lines"}, {"type": "lathe", "mesh": "w"},
     {"type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}, {"type": "cone", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "cylinder", "from": [0, 0, 0], "to": [1, 1, 1]},
     {"type": "model", "file": "tetra.ply", "transform": [{"translate": [0, 0, 0]}, {"scale": 2}, {"scale": [1, 2, 3]},

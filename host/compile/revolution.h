@@ -1,0 +1,36 @@
+// A lathe's profile in unit space: the rows that kernels read, and geometry in double precision.
+#pragma once
+#include <vector>
+
+#include "models/values/object.h"
+
+namespace sundog {
+
+inline bool operator==(const ProfileArc& a, const ProfileArc& b) {
+  return a.r == b.r && a.y == b.y && a.end == b.end && a.along == b.along;
+}
+
+class Revolution {
+ public:
+  /// `scale`: from unit to object space.
+  Revolution(const LatheShape& shape, double scale);
+
+  const std::vector<ProfileArc>& arcs() const { return arcs_; }
+  /// The support along a direction across the axis and one along it.
+  double reach(double across, double along) const;
+  /// The distance of a point from the surface; below 0 inside. That of a sheet is nowhere below 0.
+  double distance(const dvec3& q) const;
+  /// The greatest of both principal curvatures on the parts of the profile that come as near to a point as
+  /// this; infinite at a cone's tip.
+  double greatest_curvature(const dvec3& near, double within) const;
+  /// Heights and outer radii of flat rings (x: radius).
+  std::vector<dvec2> rings() const;
+
+ private:
+  std::vector<ProfileCubic> parts_;  // monotone
+  std::vector<ProfileArc> arcs_;
+  std::vector<double> curvatures_;  // the greatest of each part
+  bool closed_;
+};
+
+}  // namespace sundog

@@ -1,0 +1,386 @@
+// Intersects rays with a surface of revolution about the y axis. Its profile is a list of arcs, cubics (R(t),
+// Y(t)) along which R, Y and the derivatives of both are monotone (host/compile/revolution.h).
+//
+// In the half plane of radius r and height y a line is a hyperbola, whose halves part where the line is
+// nearest to the axis. With a unit direction e, its sine S to the axis and its distance m from it, a half is
+//   S (y - height of that place) = g q,   q = sqrt(r^2 - m^2), g = e.y or -e.y.
+// It crosses an arc where E(t), the difference of both sides, changes its sign. Neighbouring arcs share their
+// ends to the bit, and so the sign there: no ray slips between them, and a closed profile is left as often as
+// entered. Intervals of t are halved until E is monotone, and then bracket its root.
+#pragma once
+#include "lib/core/config.h"
+#include "lib/core/tables.h"
+#include "lib/solids/spans.cl"
+#include "lib/solids/surface_points.cl"
+
+#if HAS_LATHE
+// A hit's part: the number of the arc, above BOX_FACE.
+#define ARC_SHIFT 9
+
+// Rays, with distances s from `base`, the line's point nearest to the origin.
+typedef struct LatheRays {
+  REAL3 base, e;
+  REAL shift, length;  // t = shift + s / length
+  REAL sine, inverse;  // S, and 1 / S or 0
+  REAL climb;          // 1 / e.y
+  REAL middle, level;  // s where the line is nearest to the axis; S times the height there
+  REAL m2;             // m squared
+  REAL from, to;       // the range of s, slightly wider
+  MASK steep;
+} LatheRays;
+
+// One of them, and the nearest hit so far: its t, or else t_max.
+typedef struct LatheRay {
+  float3 base, e;
+  float shift, length, sine, inverse, middle, level, m2;
+  float t_min, t;
+  float3 ng;
+} LatheRay;
+
+static inline LatheRays lathe_rays(REAL3 o, REAL3 d, REAL t_min, REAL t_max, MASK active) {
+  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
+  LatheRays rays;
+  REAL3 near = o;
+  const REAL shift = come_near(&near, d, active);
+  rays.length = real_sqrt(dot3(d, d));
+  const REAL3 e = real3(d.x / rays.length, d.y / rays.length, d.z / rays.length);
+  const REAL back = dot3(near, e);
+  const REAL3 base = along3(near, -back, e);
+  rays.e = e;
+  rays.base = base;
+  rays.shift = shift - back / rays.length;
+  rays.sine = real_sqrt(fma(e.x, e.x, e.z * e.z));
+  const MASK upright = MASK_OF(rays.sine < 1e-15f);
+  rays.sine = select(rays.sine, zero, upright);
+  rays.inverse = select(1.0f / select(rays.sine, one, upright), zero, upright);
+  rays.climb = 1.0f / select(e.y, one, MASK_OF(e.y == 0.0f));
+  rays.steep = MASK_OF(rays.sine < fabs(e.y));
+  const REAL along = fma(base.x, e.x, base.z * e.z) * rays.inverse,
+             across = fma(base.x, e.z, -(base.z * e.x)) * rays.inverse;
+  rays.middle = -along * rays.inverse;
+  rays.level = fma(rays.sine, base.y, -(along * e.y));
+  rays.m2 = select(across * across, fma(base.x, base.x, base.z * base.z), upright);
+  const REAL from = (t_min - rays.shift) * rays.length, to = (t_max - rays.shift) * rays.length;
+  rays.from = from - fma(fabs(from), (REAL)(1e-5f), (REAL)(1e-4f));
+  rays.to = to + fma(fabs(to), (REAL)(1e-5f), (REAL)(1e-4f));
+  return rays;
+}
+
+static inline LatheRay lathe_ray(const LatheRays* rays, u32 i) {
+  LatheRay ray;
+  ray.base = get3(&rays->base, i);
+  ray.e = get3(&rays->e, i);
+  ray.shift = REAL_LANE(rays->shift, i);
+  ray.length = REAL_LANE(rays->length, i);
+  ray.sine = REAL_LANE(rays->sine, i);
+  ray.inverse = REAL_LANE(rays->inverse, i);
+  ray.middle = REAL_LANE(rays->middle, i);
+  ray.level = REAL_LANE(rays->level, i);
+  ray.m2 = REAL_LANE(rays->m2, i);
+  return ray;
+}
+
+// The radius and height at t; at both ends to the bit those of the neighbours.
+static inline float2 arc_point(const ProfileArc* arc, float t) {
+  if (t >= 1.0f) return arc->end.xy;
+  return (float2)(fma(fma(fma(arc->r.w, t, arc->r.z), t, arc->r.y), t, arc->r.x),
+                  fma(fma(fma(arc->y.w, t, arc->y.z), t, arc->y.y), t, arc->y.x));
+}
+static inline float2 arc_slope(const ProfileArc* arc, float t) {
+  return (float2)(fma(fma(3.0f * arc->r.w, t, 2.0f * arc->r.z), t, arc->r.y),
+                  fma(fma(3.0f * arc->y.w, t, 2.0f * arc->y.z), t, arc->y.y));
+}
+static inline float2 arc_bend(const ProfileArc* arc, float t) {
+  return (float2)(fma(6.0f * arc->r.w, t, 2.0f * arc->r.z), fma(6.0f * arc->y.w, t, 2.0f * arc->y.z));
+}
+// The direction at t: the chord's at a cusp.
+static inline float2 arc_way(const ProfileArc* arc, float t) {
+  const float2 chord = arc->end.xy - (float2)(arc->r.x, arc->y.x), slope = arc_slope(arc, t);
+  return dot(slope, slope) > 1e-12f * dot(chord, chord) ? slope : chord;
+}
+
+// A place on an arc: E = up - g q.
+typedef struct ArcPlace {
+  float t, r, up, q;
+} ArcPlace;
+
+static inline float outside_of(float r, float m2) { return fma(r, r, -m2); }
+
+static inline ArcPlace arc_place(const LatheRay* ray, const ProfileArc* arc, float t) {
+  const float2 p = arc_point(arc, t);
+  const ArcPlace place = {t, p.x, fma(ray->sine, p.y, -ray->level),
+                          sqrt(fmax(outside_of(p.x, ray->m2), 0.0f))};
+  return place;
+}
+static inline float value_at(const ArcPlace* place, float g) { return place->up - g * place->q; }
+
+// Newton's step from t if it stays between the bounds, else their middle.
+static inline float newton_step(float t, float off, float slope, float low, float high) {
+  const float next = slope != 0.0f ? t - off / slope : low;
+  return next > low && next < high ? next : 0.5f * (low + high);
+}
+
+// Where the radius becomes m on an arc of which an end, the first or the last, is inside. There both halves
+// begin, with the same E.
+static inline ArcPlace outer_end(const LatheRay* ray, const ProfileArc* arc, bool first_inside) {
+  float low = 0.0f, high = 1.0f, t = 0.5f;
+#pragma unroll 1
+  for (u32 i = 0; i < 40u; ++i) {
+    const float r = arc_point(arc, t).x, off = outside_of(r, ray->m2);
+    if ((off < 0.0f) == first_inside)
+      low = t;
+    else
+      high = t;
+    const float next = newton_step(t, off, 2.0f * r * arc_slope(arc, t).x, low, high);
+    if (fabs(next - t) <= 0x1p-25f) break;
+    t = next;
+  }
+  ArcPlace end = arc_place(ray, arc, t);
+  end.q = 0.0f;
+  return end;
+}
+
+// The root of E between two places where its signs differ.
+static inline float arc_root(const LatheRay* ray, const ProfileArc* arc, float g, const ArcPlace* a,
+                             const ArcPlace* b) {
+  const float at_a = value_at(a, g), at_b = value_at(b, g);
+  float low = a->t, high = b->t, t = fma(high - low, at_a / (at_a - at_b), low);
+  if (!(t > low && t < high)) t = 0.5f * (low + high);
+#pragma unroll 1
+  for (u32 i = 0; i < 40u; ++i) {
+    const ArcPlace place = arc_place(ray, arc, t);
+    const float off = value_at(&place, g);
+    if ((off < 0.0f) == (at_a < 0.0f))
+      low = t;
+    else
+      high = t;
+    const float2 slope = arc_slope(arc, t);
+    const float next =
+        newton_step(t, off * place.q, fma(ray->sine * slope.y, place.q, -(g * place.r * slope.x)), low, high);
+    if (fabs(next - t) <= 0x1p-24f) break;
+    t = next;
+  }
+  return t;
+}
+
+// The distance of the ray's point at s from the surface, by its tangent at p; its slope and the direction
+// away from the axis.
+static inline float off_surface(const LatheRay* ray, float2 p, float2 normal, float s, float* slope,
+                                float2* out) {
+  const float3 at = ray->base + s * ray->e;
+  const float rho = sqrt(fma(at.x, at.x, at.z * at.z));
+  *out = rho > 0.0f ? (float2)(at.x, at.z) / rho : (float2)(0.0f);
+  *slope = fma(normal.x, dot(*out, (float2)(ray->e.x, ray->e.z)), normal.y * ray->e.y);
+  return fma(normal.x, rho - p.x, normal.y * (at.y - p.y));
+}
+
+// Offers the hit at t of an arc, on the half `side` of the line, -1 or 1.
+static inline void offer_on_arc(const ProfileArc* arc, float side, float t, LatheRay* ray, bool* found) {
+  const float2 p = arc_point(arc, t), way = arc_way(arc, t);
+  const float2 normal = (float2)(way.y, -way.x) / sqrt(dot(way, way));
+  const float by_height = (p.y - ray->base.y) / ray->e.y, q = sqrt(fmax(outside_of(p.x, ray->m2), 0.0f)),
+              by_radius = fma(side * q, ray->inverse, ray->middle);
+  float slope;
+  float2 out;
+  // From the height or from the radius: the one nearer to the surface.
+  const float high = off_surface(ray, p, normal, by_height, &slope, &out),
+              wide = off_surface(ray, p, normal, by_radius, &slope, &out);
+  float s = fabs(high) < fabs(wide) || ray->inverse == 0.0f ? by_height : by_radius;
+  for (u32 i = 0; i < 2u; ++i) {
+    const float off = off_surface(ray, p, normal, s, &slope, &out);
+    if (i == 0u && fabs(slope) >= 0.05f) s -= off / slope;
+  }
+  const float along = ray->shift + s / ray->length;
+  if (!(along > ray->t_min && along <= ray->t)) return;
+  ray->t = along;
+  ray->ng = (float3)(normal.x * out.x, normal.y, normal.x * out.y);
+  *found = true;
+}
+
+// Whether E is monotone between two places where the radius and the height pull it different ways: one of
+// them outdoes the other.
+static inline bool one_outdoes(const LatheRay* ray, const ProfileArc* arc, float g, const ArcPlace* a,
+                               const ArcPlace* b) {
+  const float2 from = fabs(arc_slope(arc, a->t)), to = fabs(arc_slope(arc, b->t));
+  const ArcPlace inner = a->r < b->r ? *a : *b, outer = a->r < b->r ? *b : *a;
+  return ray->sine * fmin(from.y, to.y) * inner.q > fabs(g) * fmax(from.x, to.x) * inner.r ||
+         ray->sine * fmax(from.y, to.y) * outer.q < fabs(g) * fmin(from.x, to.x) * outer.r;
+}
+
+// Whether E may be 0 between two places.
+static inline bool may_be_zero(float g, const ArcPlace* a, const ArcPlace* b) {
+  const float p = g * a->q, q = g * b->q;
+  return fmin(a->up, b->up) <= fmax(p, q) && fmax(a->up, b->up) >= fmin(p, q);
+}
+
+// Intervals are halved this often: what a chord of the 4096th part of an arc cuts off is within rounding.
+#define ARC_HALVINGS 12u
+
+// Offers the hits of the half `side` of a line on an arc, between `first` and `last`.
+static inline void meet_half(const ProfileArc* arc, float side, const ArcPlace* first, const ArcPlace* last,
+                             LatheRay* ray, bool* found) {
+  const float g = side * ray->e.y, width = last->t - first->t;
+  const bool pulled_apart = (arc->end.y - arc->y.x) * g * (arc->end.x - arc->r.x) > 0.0f;
+  u32 number = 0, halvings = 0;  // of the interval that begins at a
+  ArcPlace a = *first;
+#pragma unroll 1
+  while (number < 1u << halvings) {
+    const u32 all = 1u << halvings;
+    ArcPlace b = *last;
+    if (number + 1u < all) b = arc_place(ray, arc, fma(width, (float)(number + 1u) / (float)(all), first->t));
+    const bool meets = may_be_zero(g, &a, &b);
+    if (meets && pulled_apart && halvings < ARC_HALVINGS && !one_outdoes(ray, arc, g, &a, &b)) {
+      number *= 2u;
+      ++halvings;
+    } else {
+      if (meets && (value_at(&a, g) < 0.0f) != (value_at(&b, g) < 0.0f))
+        offer_on_arc(arc, side, arc_root(ray, arc, g, &a, &b), ray, found);
+      a = b;
+      ++number;
+      const u32 ended = min(halvings, lowest_bit(number));  // halves whose second half is done
+      number >>= ended;
+      halvings -= ended;
+    }
+  }
+}
+
+// Returns whether the arc has a hit in (t_min, t]. `sides`: bit 0, the half before the line's point nearest
+// to the axis; bit 1, the other.
+NEVER_INLINE bool closest_on_arc(const ProfileArc* arc, u32 sides, LatheRay* ray) {
+  ArcPlace first = arc_place(ray, arc, 0.0f), last = arc_place(ray, arc, 1.0f);
+  const bool first_inside = outside_of(first.r, ray->m2) < 0.0f,
+             last_inside = outside_of(last.r, ray->m2) < 0.0f;
+  if (first_inside && last_inside) return false;
+  if (first_inside) first = outer_end(ray, arc, true);
+  if (last_inside) last = outer_end(ray, arc, false);
+  bool found = false;
+#pragma unroll 1
+  for (u32 i = 0; i < 2u; ++i)
+    if (sides >> i & 1u) meet_half(arc, i ? 1.0f : -1.0f, &first, &last, ray, &found);
+  return found;
+}
+
+// The box around an arc, as lines see it: S times heights less the level, and q.
+typedef struct ArcBoxes {
+  float low, high;
+  REAL up_low, up_high, q_low, q_high;
+  MASK reached;
+} ArcBoxes;
+
+static inline ArcBoxes arc_boxes(const LatheRays* rays, const ProfileArc* arc) {
+  const REAL zero = (REAL)(0.0f), inner = (REAL)(fmin(arc->r.x, arc->end.x)),
+             outer = (REAL)(fmax(arc->r.x, arc->end.x));
+  const REAL outside = fma(outer, outer, -rays->m2);
+  ArcBoxes box;
+  box.low = fmin(arc->y.x, arc->end.y);
+  box.high = fmax(arc->y.x, arc->end.y);
+  box.up_low = fma(rays->sine, (REAL)(box.low), -rays->level);
+  box.up_high = fma(rays->sine, (REAL)(box.high), -rays->level);
+  box.q_low = real_sqrt(real_max(fma(inner, inner, -rays->m2), zero));
+  box.q_high = real_sqrt(real_max(outside, zero));
+  box.reached = MASK_OF(outside > 0.0f);
+  return box;
+}
+
+// The lines whose half `side` may cross an arc in its box, and within the range of s.
+static inline MASK may_meet_arc(const LatheRays* rays, const ArcBoxes* box, float side) {
+  const REAL g = side * rays->e.y, near = g * box->q_low, far = g * box->q_high;
+  const MASK crosses =
+      MASK_OF(box->up_low <= real_max(near, far)) & MASK_OF(box->up_high >= real_min(near, far));
+  const REAL a = select(fma(side * box->q_low, rays->inverse, rays->middle),
+                        (box->low - rays->base.y) * rays->climb, rays->steep),
+             b = select(fma(side * box->q_high, rays->inverse, rays->middle),
+                        (box->high - rays->base.y) * rays->climb, rays->steep);
+  return crosses & MASK_OF(real_max(a, b) >= rays->from) & MASK_OF(real_min(a, b) <= rays->to);
+}
+
+static inline void closest_in_lathe(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
+                                    SolidHits* hits) {
+  LatheRays rays = lathe_rays(o, d, t_min, hits->t, active);
+  active &= MASK_OF(rays.length > 0.0f) & MASK_OF(rays.m2 < parameters.z * parameters.z);
+  if (!any_lane(active)) return;
+  __global const ProfileArc* arcs = hits->profiles + (u32)parameters.x;
+#pragma unroll 1
+  for (u32 index = 0; index < (u32)parameters.y; ++index) {
+    const ProfileArc arc = arcs[index];
+    const ArcBoxes box = arc_boxes(&rays, &arc);
+    const MASK reached = active & box.reached, before = reached & may_meet_arc(&rays, &box, -1.0f),
+               behind = reached & may_meet_arc(&rays, &box, 1.0f);
+    EACH_LANE(i, before | behind) {
+      LatheRay ray = lathe_ray(&rays, i);
+      ray.t_min = REAL_LANE(t_min, i);
+      ray.t = REAL_LANE(hits->t, i);
+      const u32 sides = (u32)(-MASK_LANE(before, i) - 2 * MASK_LANE(behind, i));
+      if (!closest_on_arc(&arc, sides, &ray)) continue;
+      REAL_LANE(hits->t, i) = ray.t;
+      set3(&hits->ng, i, ray.ng);
+      MASK_LANE(hits->part, i) = (int)(index << ARC_SHIFT);
+      MASK_LANE(hits->found, i) = -1;
+    }
+  }
+}
+
+// The arc of a part, and its t at a point near it. Lanes that are not on the lathe get some arc of it.
+static inline float find_on_arc(const Scene* scene, float4 parameters, float3 p, int part, ProfileArc* arc,
+                                float2* place) {
+  const u32 index = min((u32)part >> ARC_SHIFT, (u32)parameters.y - 1u);
+  *arc = scene->profiles[(u32)parameters.x + index];
+  *place = (float2)(sqrt(fma(p.x, p.x, p.z * p.z)), p.y);
+  const float2 change = arc->end.xy - (float2)(arc->r.x, arc->y.x);
+  const bool by_radius = fabs(change.x) > fabs(change.y), rises = (by_radius ? change.x : change.y) > 0.0f;
+  float low = 0.0f, high = 1.0f, t = 0.5f;
+#pragma unroll 1
+  for (u32 i = 0; i < 20u; ++i) {
+    const float2 off = arc_point(arc, t) - *place, slope = arc_slope(arc, t);
+    const float value = by_radius ? off.x : off.y;
+    if ((value < 0.0f) == rises)
+      low = t;
+    else
+      high = t;
+    const float next = newton_step(t, value, by_radius ? slope.x : slope.y, low, high);
+    if (fabs(next - t) <= 0x1p-24f) break;
+    t = next;
+  }
+  return t;
+}
+
+// v is the share of the profile's length, on an arc by a cubic with the right slopes at its ends.
+static inline SurfacePoints points_on_lathe(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  SurfacePoints at;
+  at.u = turns(p.x, -p.z);
+  at.dpdu = round_tangents(p);
+  EACH_LANE(i, ALL_LANES) {
+    ProfileArc arc;
+    float2 place;
+    const float3 q = get3(&p, i);
+    const float t = find_on_arc(scene, parameters, q, MASK_LANE(part, i), &arc, &place);
+    const float s = 1.0f - t, before = arc.along.x, own = arc.along.y, whole = arc.along.z;
+    const float way = own * (t * t * fma(2.0f, s, 1.0f)) + length(arc_slope(&arc, 0.0f)) * (s * s * t) -
+                      length(arc_slope(&arc, 1.0f)) * (t * t * s);
+    REAL_LANE(at.v, i) = (before + clamp(way, 0.0f, own)) / whole;
+    const float2 tangent = normalize(arc_way(&arc, t)) * whole,
+                 out = place.x > 0.0f ? (float2)(q.x, q.z) / place.x : (float2)(1.0f, 0.0f);
+    set3(&at.dpdv, i, (float3)(tangent.x * out.x, tangent.y, tangent.x * out.y));
+  }
+  return at;
+}
+
+static inline REAL curvature_of_lathe(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
+  REAL curvature = (REAL)(0.0f);
+  EACH_LANE(i, ALL_LANES) {
+    ProfileArc arc;
+    float2 place;
+    const float t = find_on_arc(scene, parameters, get3(&p, i), MASK_LANE(part, i), &arc, &place);
+    const float2 way = arc_way(&arc, t), bend = arc_bend(&arc, t);
+    const float size = length(way);
+    REAL_LANE(curvature, i) = 0.5f * ((way.x * bend.y - way.y * bend.x) / (size * size * size) +
+                                      way.y / (size * fmax(place.x, 1e-6f)));
+  }
+  return curvature;
+}
+#endif
+
+static inline float4 reach_of_lathe(float4 parameters) {
+  return (float4)(parameters.z, parameters.w, parameters.z, REACH_ROUND);
+}
+static inline u32 convexity_of_lathe(float4 parameters) { return CONCAVE; }
