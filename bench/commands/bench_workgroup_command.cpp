@@ -159,6 +159,7 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
   const auto options = std::make_shared<WorkgroupOptions>();
   Arguments* app = add_bench_command(bench, chosen, "workgroup", "Times of each kernel by work-group size",
                                      options, bench_workgroup);
+  add_bench_size(app, *options);
   values(app, "--kernel", "NAME", options->kernels,
          fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
   value(app, "--sizes", "N,WxH...", options->sizes,

@@ -24,6 +24,7 @@ static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK l
 // The lanes of `lanes` whose ways (o, d) meet one of `solids` before `t_max`.
 static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, REAL t_max, MASK lanes) {
   Hits hits = no_hits(t_max);
+  prepare_hits(scene, (REAL)(0.0f), &hits);  // shafts know nothing that moves
   const REAL t_min = (REAL)(0.0f);
   for (; HAS_SOLID && solids; solids &= solids - 1u) {
     const u32 i = lowest_bit(solids);

@@ -154,6 +154,7 @@ std::vector<Ray> rays_down() {
 
 TEST_CASE("each kind of solid has points whose coordinates are known") {
   for (const Shape& solid : every_solid()) {
+    if (std::holds_alternative<LatheShape>(solid)) continue;  // needs its scene's table: below
     INFO(name_of(solid));
     const std::vector<Chart> all = charts();
     CHECK(std::any_of(all.begin(), all.end(),
@@ -225,6 +226,34 @@ TEST_CASE("hits on a placed sphere have coordinates of its own space and dpdu in
       CHECK(found.uv.y == Approx(0.5 + std::asin(p.y) / pi).margin(1e-4));
       const dvec3 expected = glm::dmat3(place) * (2 * pi * dvec3(p.z, 0, -p.x));
       CHECK(glm::distance(found.dpdu, expected) < 1e-3);
+    }
+  });
+}
+
+TEST_CASE("hits on a lathe have its angle and the share of its profile's length, and dpdu in the world") {
+  const double r = 1.3, whole = 2 * r + 2;
+  LatheShape lathe;
+  lathe.profile = {{{0, -1}, {0, -1}, {r, -1}, {r, -1}},
+                   {{r, -1}, {r, -1}, {r, 1}, {r, 1}},
+                   {{r, 1}, {r, 1}, {0, 1}, {0, 1}}};
+  lathe.radius = r;
+  SceneDescription scene = scenes::line_of_sight({0, 5, 0}, {0, 0, 0}, {0, 0, 1});
+  scenes::place(scene, lathe, scenes::add_white(scene));
+  std::vector<Ray> rays = rays_down();
+  const std::size_t down = rays.size();
+  for (int i = 0; i < 40; ++i)
+    rays.push_back({5, float(i % 8) * 0.25f - 0.9f, float(i / 8) * 0.5f - 0.99f, 0, -1, 0, 0, INFINITY});
+  on_every_device([&](const DeviceInfo& info) {
+    Device device(info);
+    const std::vector<Found> found = look(device, scene, rays);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const dvec3 p = found[i].p;
+      const double turn = std::atan2(-p.z, p.x) / (2 * pi), away = std::hypot(p.x, p.z);
+      const double along = i < down ? whole - away : r + p.y + 1;
+      REQUIRE((i < down ? p.y : away) == Approx(i < down ? 1 : r).epsilon(1e-5));
+      CHECK(found[i].uv.x == Approx(turn - std::floor(turn)).margin(1e-4));
+      CHECK(found[i].uv.y == Approx(along / whole).margin(1e-4));
+      CHECK(glm::distance(found[i].dpdu, 2 * pi * dvec3(p.z, 0, -p.x)) < 1e-3);
     }
   });
 }
