@@ -127,6 +127,37 @@ TEST_CASE("where shafts tell what reaches a surface, shadow rays find the same")
   });
 }
 
+TEST_CASE("a lamp shines through an open tube whose wall hides all of its corners") {
+  SceneDescription scene = scenes::line_of_sight({0, 0.8, 2}, {0, 0, 0});
+  scene.camera.fov = 2;
+  scene.image.width = scene.image.height = 16;
+  scenes::place(scene, PlaneShape{}, scenes::add_white(scene));
+  CylinderShape tube;
+  tube.radius = 0.3;
+  tube.half_height = 0.5;
+  tube.capped = false;
+  scenes::place(scene, tube, scenes::add_white(scene), glm::translate(glm::dmat4(1), {0, 1.5, 0}));
+  LightDescription light;
+  light.type = LightType::rectangle;
+  light.position = {0, 4, 0};
+  light.direction = {0, -1, 0};
+  light.size = {1, 1};
+  light.samples = 16;
+  light.intensity = 60;
+  scene.lights.push_back(light);
+  on_picture_devices([&](const DeviceInfo& device) {
+    CompiledScene compiled = compile(scene);
+    REQUIRE(compiled.info.shafts == 1);
+    const RenderResult by_shafts = render(compiled, {device});
+    compiled.info.shafts = 0;
+    const RenderResult by_rays = render(compiled, {device});
+    for (std::size_t i = 0; i < by_rays.image.data.size(); i += 4) {
+      REQUIRE(by_rays.image.data[i] > 0);
+      CHECK(by_shafts.image.data[i] == Approx(by_rays.image.data[i]).epsilon(1e-4));
+    }
+  });
+}
+
 TEST_CASE("a rectangle that stands in the horizon lights a floor by what is above it, without noise") {
   // From the origin: the part above the floor's plane of an upright rectangle is a rectangle as well.
   LightDescription light;
