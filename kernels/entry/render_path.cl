@@ -152,7 +152,6 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     }
     HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
   }
-  counts[COUNT_MARCH_LEFT] = 0u;
   add_counts(counters, counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }

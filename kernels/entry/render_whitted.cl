@@ -59,9 +59,8 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
       radiance[lane] = limit_components(radiance[lane], scene->info->max_component);
     store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);
   }
-  counts[COUNT_MARCH_LEFT] = 0u;
-  add_counts(counters, counts);
   add_ray_counts(launch, pixels, item, counts, ray_counts);
+  add_counts(counters, counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }
 

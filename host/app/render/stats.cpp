@@ -94,6 +94,7 @@ json counters_json(const RayCounts& counts) {
           {"media_stack_overflow", counts[COUNT_MEDIA_STACK_OVERFLOW]},
           {"non_finite", counts[COUNT_NON_FINITE]},
           {"stray_exit", counts[COUNT_STRAY_EXIT]},
+          {"lost_media_pixel", counts[COUNT_LOST_PIXEL]},
           {"shadow_limit", counts[COUNT_SHADOW_LIMIT]},
           {"march_limit", counts[COUNT_MARCH_LIMIT]},
           {"march_budget", counts[COUNT_MARCH_BUDGET]},
@@ -172,16 +173,13 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
   };
   constexpr Loss kinds[] = {
       {COUNT_RAY_STACK_OVERFLOW, "rays were dropped because the ray stack was full: lower max_depth"},
-      {COUNT_MEDIA_STACK_OVERFLOW,
-       "rays entered more solids inside each other than the media stack holds, 8: take some of them apart"},
       {COUNT_SHADOW_LIMIT, "shadow rays were given up after too many transmissive surfaces"},
       {COUNT_MARCH_BUDGET,
        "marches through a field were not made because the pixels had cost too much: lower its iterations, "
        "step_limit or max_depth"},
       {COUNT_CAMERA_DEPTH_LIMIT,
        "camera rays went straight through more surfaces than max_depth allows and are dark behind them: "
-       "raise "
-       "max_depth"},
+       "raise max_depth"},
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"}};
   std::vector<std::string> sentences;
   if (const std::uint64_t deep = counts[COUNT_DEPTH_LIMIT]; deep > 0 && scene.render.max_depth >= depth_cap)
@@ -189,12 +187,17 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
   for (const Loss& kind : kinds)
     if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)])
       sentences.push_back(fmt::format("{} {}", count, kind.what));
+  if (const std::uint64_t deep = counts[COUNT_MEDIA_STACK_OVERFLOW])
+    sentences.push_back(
+        fmt::format("{} rays entered more solids inside each other than the media stack holds, 8, {}: "
+                    "take some of them apart",
+                    deep, lost_pixels(counts, scene)));
   // A handful of stray exits comes from rays that start within rounding of an edge of a closed mesh; an open
   // mesh gives many more.
   constexpr std::uint64_t rays_per_stray = 1'000'000;
   const std::uint64_t strays = counts[COUNT_STRAY_EXIT];
   if (strays > 0 && strays * rays_per_stray >= ray_count(counts))
-    for (std::string& sentence : explain_stray_exits(strays, scene)) sentences.push_back(std::move(sentence));
+    for (std::string& sentence : explain_stray_exits(counts, scene)) sentences.push_back(std::move(sentence));
   return sentences;
 }
 

@@ -96,7 +96,13 @@ Suspects find_suspects(const SceneDescription& scene) {
 
 }  // namespace
 
-std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDescription& scene) {
+std::string lost_pixels(const RayCounts& counts, const SceneDescription& scene) {
+  const double all = double(scene.image.width) * scene.image.height;
+  const double lost = std::min(all, double(counts[COUNT_LOST_PIXEL]));
+  return fmt::format("in at most {:.0f} pixels ({:.2g} %)", lost, 100 * lost / all);
+}
+
+std::vector<std::string> explain_stray_exits(const RayCounts& counts, const SceneDescription& scene) {
   const Suspects found = find_suspects(scene);
   std::vector<std::string> sentences;
   const auto say = [&](const ObjectNames& names, const char* one, const char* several) {
@@ -111,10 +117,8 @@ std::vector<std::string> explain_stray_exits(std::uint64_t count, const SceneDes
       "have an interior, but their meshes are not closed");
   say(found.flat, "has an interior, but its shape is not closed",
       "have an interior, but their shapes are not closed");
-  const double pixels = double(scene.image.width) * scene.image.height;
-  std::string all =
-      fmt::format("{} rays, in at most {:.2g} % of the pixels, left a solid that they had not entered", count,
-                  100 * std::min(1.0, static_cast<double>(count) / pixels));
+  std::string all = fmt::format("{} rays left a solid that they had not entered, {}",
+                                counts[COUNT_STRAY_EXIT], lost_pixels(counts, scene));
   if (sentences.empty() && !found.all.empty())
     all += fmt::format(
         ": surfaces of {} may coincide; let one reach into the other, its medium with the higher "

@@ -254,14 +254,14 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   result.sums.resize(pixels);
   result.weights.resize(pixels);
   const std::size_t counted = kernels_.counts_rays || request.costs ? pixels : 0;
-  if (rays_.count < std::max<std::size_t>(1, counted))
-    rays_ = device_.make<u32>(std::max<std::size_t>(1, counted));
+  if (rays_.count < pixels) rays_ = device_.make<u32>(pixels);
   result.rays.resize(counted);
   if (request.first_sample > 0) {  // kernels initialise the others to 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
     if (sums > 0 && request.surfaces) write_sums(request);
     device_.begin_write(weights_, std::span<const float>(request.weights));
-    if (counted > 0) device_.begin_write(rays_, std::span<const u32>(request.rays));
+    if (counted == 0) no_rays_.resize(pixels);
+    device_.begin_write(rays_, std::span<const u32>(counted > 0 ? request.rays : no_rays_));
   }
   static constexpr LaunchCounts none{};
   if (counters_.count == 0) counters_ = device_.make<u32>(none.size());
@@ -298,6 +298,7 @@ void TileRenderer::read_result(unsigned samples, TileResult& result) {
     if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
   }
   device_.read(counters_, std::span<u32>(counts));
+  for (u32& rays : result.rays) rays &= ~LOST_PIXEL;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (i % COUNTER_BLOCK < COUNTERS) result.counts[i % COUNTER_BLOCK] += counts[i];
   readback_seconds_ += reading.seconds();

@@ -79,7 +79,8 @@ class TileRenderer {
   Buffer<float4> film_;  // the sums of a tile's pixels, then those of its AOVs
   Buffer<float> weights_;
   Buffer<float4> aovs_;
-  Buffer<u32> rays_;  // per pixel if requested, else one
+  Buffer<u32> rays_;          // per pixel, with LOST_PIXEL
+  std::vector<u32> no_rays_;  // zeros, for passes that do not count them
   Buffer<u32> counters_;
   double readback_seconds_ = 0;
 };

@@ -7,7 +7,9 @@ static inline __global u32* counters_of(__global u32* counters, u32 item) {
   return counters + item / COUNTER_ITEMS % COUNTER_BLOCKS * COUNTER_BLOCK;
 }
 
-static inline void add_counts(__global u32* restrict counters, const u32* counts) {
+static inline void add_counts(__global u32* restrict counters, u32* counts) {
+  counts[COUNT_MARCH_LEFT] = 0u;
+  counts[COUNT_LOST_LANES] = 0u;
   for (u32 i = 0; i < COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);
 }

@@ -1,6 +1,6 @@
-// Counts camera, reflected, refracted and shadow rays of pixels, on request. With RAYS_BY_LANE they are
-// counted per pixel of a work-item, after the launch's counters; else for all its pixels together, as the
-// first one's.
+// Counts pixels with rays that have lost count of the media they are in, and, on request, camera, reflected,
+// refracted and shadow rays of pixels. With RAYS_BY_LANE they are counted per pixel of a work-item, after the
+// launch's counters; else for all its pixels together, as the first one's.
 #pragma once
 #include "lib/core/lanes.h"
 #include "lib/path/tile.cl"
@@ -26,23 +26,38 @@ static inline void note_own_rays(MASK lanes, u32* counts) {
   float* own = (float*)(counts + COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
-// Adds a lane's rays to those of the rectangle's pixel `place`.
+// The lanes' bits in counts[COUNT_LOST_LANES] become those of their pixels in a work-item, in
+// counts[COUNT_LOST_PIXEL].
+static inline void note_lost_pixels(MASK pixels, u32* counts) {
+  for (u32 left = counts[COUNT_LOST_LANES]; left; left &= left - 1u)
+    counts[COUNT_LOST_PIXEL] |= 1u << MASK_LANE(pixels, lowest_bit(left));
+  counts[COUNT_LOST_LANES] = 0u;
+}
+// Adds what a lane has counted to the rectangle's pixel `place`.
 static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32* counts,
                                  __global u32* restrict rays) {
-  if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];
-  counts[COUNTERS + lane] = 0u;
+  if (RAYS_BY_LANE) {
+    if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];
+    counts[COUNTERS + lane] = 0u;
+  }
+  if (!(counts[COUNT_LOST_LANES] >> lane & 1u)) return;
+  counts[COUNT_LOST_LANES] &= ~(1u << lane);
+  counts[COUNT_LOST_PIXEL] += rays[place] & LOST_PIXEL ? 0u : 1u;
+  rays[place] |= LOST_PIXEL;
 }
+// Adds what the work-item's pixels, a lane each, have counted.
 static inline void add_ray_counts(const Launch* launch, __global const u32* restrict pixels, u32 item,
                                   u32* counts, __global u32* restrict rays) {
-  for (u32 lane = 0; lane < (RAYS_BY_LANE ? BATCH : 1u); ++lane) {
+  const u32 all =
+      counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
+  counts[COUNT_LOST_LANES] = counts[COUNT_LOST_PIXEL];
+  counts[COUNT_LOST_PIXEL] = 0u;
+  for (u32 lane = 0; lane < (RAYS_BY_LANE || counts[COUNT_LOST_LANES] ? BATCH : 1u); ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
     if (!image_pixel(launch, pixels, at, &pixel)) continue;
     const u32 place = at.y * launch->width + at.x;
-    if (RAYS_BY_LANE)
-      add_lane_rays(launch, place, lane, counts, rays);
-    else if (launch->counts_rays)
-      rays[place] +=
-          counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
+    add_lane_rays(launch, place, lane, counts, rays);
+    if (!RAYS_BY_LANE && lane == 0u && launch->counts_rays) rays[place] += all;
   }
 }

@@ -66,12 +66,19 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
   return true;
 }
 
+// Counts media that lane i's stack had no room for, and exits from media that it was not in.
+static inline void note_lost_media(u32 i, u32 overflows, u32 strays, u32* counts) {
+  counts[COUNT_MEDIA_STACK_OVERFLOW] += overflows;
+  counts[COUNT_STRAY_EXIT] += strays;
+  if (overflows + strays) counts[COUNT_LOST_LANES] |= 1u << i;
+}
+
 // The media stack behind the interface that lane i has hit.
 static inline MediaStack media_behind(const SceneRays* rays, const Encounters* met, u32 i, u32* counts) {
   const bool entering = MASK_LANE(met->face.entering, i);
   MediaStack crossed = get_media(rays, i);
   if (!cross_boundary(&crossed, (u32)MASK_LANE(met->face.medium, i), entering))
-    counts[entering ? COUNT_MEDIA_STACK_OVERFLOW : COUNT_STRAY_EXIT] += 1u;
+    note_lost_media(i, entering ? 1u : 0u, entering ? 0u : 1u, counts);
   return crossed;
 }
 
@@ -86,8 +93,7 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
     const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
     REAL_LANE(met->apart, i) = apart;
     set_behind(met, i, seen.behind);
-    counts[COUNT_MEDIA_STACK_OVERFLOW] += seen.overflows;
-    counts[COUNT_STRAY_EXIT] += seen.strays;
+    note_lost_media(i, seen.overflows, seen.strays, counts);
     if (((u32)MASK_LANE(met->face.flags, i) & INTERFACE) != MATERIAL_TRANSMITS) continue;
     if (!cross_if_unseen(scene->media, rays, met, i, seen.behind)) continue;
     MASK_LANE(unseen, i) = -1;

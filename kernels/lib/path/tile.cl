@@ -72,7 +72,7 @@ static inline MASK item_pixels(const Launch* launch, __global const u32* restric
   return lanes;
 }
 
-// Clears film, weights and, if counted, rays of the work-item's pixels if the launch makes their first
+// Clears film, weights and rays of the work-item's pixels if the launch makes their first
 // samples.
 static inline void begin_film(const Launch* launch, u32 item, __global float4* restrict film,
                               __global float* restrict weights, __global u32* restrict rays) {
@@ -85,7 +85,7 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
       film[pixel] = (float4)(0.0f);
       weights[pixel] = 0.0f;
       clear_sample_sums(launch, film, pixel);
-      if (launch->counts_rays) rays[pixel] = 0u;
+      rays[pixel] = 0u;
     }
     return;
   }
@@ -96,7 +96,7 @@ static inline void begin_film(const Launch* launch, u32 item, __global float4* r
     film[pixel] = (float4)(0.0f);
     weights[pixel] = 0.0f;
     clear_sample_sums(launch, film, pixel);
-    if (launch->counts_rays) rays[pixel] = 0u;
+    rays[pixel] = 0u;
   }
 }
 

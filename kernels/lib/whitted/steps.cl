@@ -70,6 +70,7 @@ static inline MASK meet_surfaces(const Scene* scene, const TileSamples* tile, co
                                  const Encounters* met, Shading* at, REAL3* light, RayStack* stack,
                                  float4* radiance, u32* counts) {
   HAVING(HAS_MATTES, const WaitingRays arriving = *paths;)
+  if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
   REAL3 seen = see_glow(rays, paths);
   paths->throughput = multiply3(paths->throughput, met->absorbed);
   if (BATCH > 1 && any_lane(unseen)) push_rays(stack, rays, paths, unseen);

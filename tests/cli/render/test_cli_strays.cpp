@@ -51,7 +51,7 @@ std::string warnings_with(const std::string& objects) {
 TEST_CASE("a mesh that is inside out is named in a warning of its own") {
   const std::string text =
       warnings_with(R"([{"type": "model", "file": "turned.obj", "name": "jug", "material": "glass"}])");
-  CHECK_THAT(text, ContainsSubstring("% of the pixels, left a solid that they had not entered"));
+  CHECK_THAT(text, ContainsSubstring(" rays left a solid that they had not entered, in at most "));
   CHECK_THAT(text, ContainsSubstring("\"jug: turned\" is inside out"));
   CHECK_THAT(text, !ContainsSubstring("closed"));
 }

@@ -1,13 +1,19 @@
 // The AOV of rays: for every pixel those of its samples, in plain frames and in passes; together those of the
-// statistics.
+// statistics. The pixels of rays that leave what they had not entered.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <atomic>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "catch.h"
 #include "devices.h"
 #include "render/film/part.h"
 #include "same_bits.h"
+#include "scene/json/parse.h"
 #include "scene/load.h"
+#include "scene/read/scene_reader.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 
@@ -44,7 +50,38 @@ RenderOptions with_rays() {
   return options;
 }
 
+/// Two round panes one behind the other, seen from behind, of a material.
+SceneDescription panes(const char* material, const char* integrator) {
+  const nlohmann::json document =
+      parse_json(fmt::format(R"({{"image": {{"width": 22, "height": 19}}, "render": {{"integrator": "{}"}},
+    "camera": {{"position": [0, 0, 5], "target": [0, 0, 0], "orthographic": 4}},
+    "lights": [{{"type": "point", "position": [0, 0, 6]}}],
+    "media": {{"glass": {{"ior": 1.5}}}},
+    "materials": {{"glass": {{"type": "dielectric", "medium": "glass"}}, "matte": {{"color": [0.8, 0.8, 0.8]}}}},
+    "objects": [
+      {{"type": "disk", "radius": 1.3, "normal": [0, 0, -1], "material": "{}"}},
+      {{"type": "disk", "radius": 1.3, "center": [0, 0, -1], "normal": [0, 0, -1], "material": "{}"}}]}})",
+                             integrator, material, material),
+                 "test.json");
+  const JsonContext context{"test.json"};
+  return read_scene(JsonValue(document, context));
+}
+
 }  // namespace
+
+TEST_CASE("a pixel is counted once, however many of its rays leave what they had not entered") {
+  for (const char* integrator : {"whitted", "path"})
+    on_picture_devices([&](const DeviceInfo& device) {
+      const Image lit = scenes::render_on(device, panes("matte", integrator)).image;
+      std::size_t pixels = 0;
+      for (int i = 0; i < lit.width * lit.height; ++i) pixels += lit.pixel(i, 0)[0] > 0 ? 1 : 0;
+      const RenderResult result = scenes::render_on(device, panes("glass", integrator));
+      CHECK(pixels > 90);
+      CHECK(result.counts[COUNT_LOST_PIXEL] == pixels);
+      CHECK(result.counts[COUNT_STRAY_EXIT] >= 2 * pixels);
+      CHECK(scenes::render_on(device, things(integrator, false)).counts[COUNT_LOST_PIXEL] == 0);
+    });
+}
 
 TEST_CASE("rays of all pixels are those of the statistics, the same for every tile and group") {
   for (const char* integrator : {"whitted", "path"})
