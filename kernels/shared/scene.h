@@ -156,9 +156,8 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNT_MARCH_LEFT 16          // not a counter: remaining march budget of a sample (lib/path/fields.cl)
 #define COUNT_FINISHED 17            // twice the camera rays of finished work-items (lib/core/counters.cl)
 #define COUNT_CAMERA_DEPTH_LIMIT 18  // camera rays going straight on, of those ended by max_depth
-#define COUNT_LOST_PIXEL 19          // pixels with such overflows or exits
-#define COUNT_LOST_LANES 20          // not a counter: the lanes with these since it was last read
-#define COUNTERS 21
+#define COUNT_LOST_PIXEL 19          // pixels with such overflows or exits; the host counts them (LOST_PIXEL)
+#define COUNTERS 20
 // A launch uses several blocks of counters, to be summed: COUNTER_ITEMS consecutive work-items share one, so
 // that processors rarely write to the same cache line.
 #define COUNTER_BLOCKS 16

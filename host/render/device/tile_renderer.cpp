@@ -288,6 +288,13 @@ void TileRenderer::read_aovs(const TileRequest& request, TileResult& result) {
   put_vectors(sums, layout_.sums(), layout_.surfaces, layout_.vectors(), result.aovs);
 }
 
+std::uint64_t TileRenderer::count_lost_pixels(std::size_t pixels) {
+  std::vector<u32> rays(pixels);
+  device_.read(rays_, std::span<u32>(rays));
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(rays, [](u32 count) { return (count & LOST_PIXEL) != 0; }));
+}
+
 // Waits once for all arrays.
 void TileRenderer::read_result(unsigned samples, TileResult& result) {
   const Stopwatch reading;
@@ -298,9 +305,11 @@ void TileRenderer::read_result(unsigned samples, TileResult& result) {
     if (!result.rays.empty()) device_.begin_read(rays_, std::span<u32>(result.rays));
   }
   device_.read(counters_, std::span<u32>(counts));
-  for (u32& rays : result.rays) rays &= ~LOST_PIXEL;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (i % COUNTER_BLOCK < COUNTERS) result.counts[i % COUNTER_BLOCK] += counts[i];
+  if (result.counts[COUNT_STRAY_EXIT] + result.counts[COUNT_MEDIA_STACK_OVERFLOW] > 0)
+    result.counts[COUNT_LOST_PIXEL] = count_lost_pixels(pixel_count(result.tile));
+  for (u32& rays : result.rays) rays &= ~LOST_PIXEL;
   readback_seconds_ += reading.seconds();
 }
 

@@ -55,6 +55,7 @@ class TileRenderer {
  private:
   TileResult try_render(const TileRequest& request, const StopFlags& flags);
   void write_start(const TileRequest& request, TileResult& result);
+  std::uint64_t count_lost_pixels(std::size_t pixels);
   void read_result(unsigned samples, TileResult& result);
   unsigned launch_samples(const TileRequest& request, const StopFlags& flags);
   double launch_integrator(const Launch& launch, const SizedLaunch& sized);

@@ -1,6 +1,13 @@
 // Adds a work-item's ray counts to the launch's with integer atomics, so the order does not matter.
 #pragma once
+#include "lib/core/config.h"
 #include "shared/scene.h"
+
+// The counter that holds a bit of each lane whose ray has lost count of media, until its pixel takes it
+// (lib/path/ray_counts.cl). Where a work-item has one lane, registers are scarce: it is the top bit of
+// another.
+#define LOST_LANES (BATCH > 1 ? COUNT_LOST_PIXEL : COUNT_STRAY_EXIT)
+#define LOST_LANE(lane) (1u << (BATCH > 1 ? (lane) : 31u))
 
 // The block of counters that the item uses.
 static inline __global u32* counters_of(__global u32* counters, u32 item) {
@@ -9,7 +16,7 @@ static inline __global u32* counters_of(__global u32* counters, u32 item) {
 
 static inline void add_counts(__global u32* restrict counters, u32* counts) {
   counts[COUNT_MARCH_LEFT] = 0u;
-  counts[COUNT_LOST_LANES] = 0u;
+  counts[COUNT_LOST_PIXEL] = 0u;
   for (u32 i = 0; i < COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);
 }

@@ -2,6 +2,7 @@
 // refracted and shadow rays of pixels. With RAYS_BY_LANE they are counted per pixel of a work-item, after the
 // launch's counters; else for all its pixels together, as the first one's.
 #pragma once
+#include "lib/core/counters.cl"
 #include "lib/core/lanes.h"
 #include "lib/path/tile.cl"
 
@@ -26,12 +27,16 @@ static inline void note_own_rays(MASK lanes, u32* counts) {
   float* own = (float*)(counts + COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
-// The lanes' bits in counts[COUNT_LOST_LANES] become those of their pixels in a work-item, in
-// counts[COUNT_LOST_PIXEL].
+// Bits of lanes whose rays have lost count of media become those of their pixels in a work-item, from this
+// one on.
+#define LOST_PIXELS 16u
 static inline void note_lost_pixels(MASK pixels, u32* counts) {
-  for (u32 left = counts[COUNT_LOST_LANES]; left; left &= left - 1u)
-    counts[COUNT_LOST_PIXEL] |= 1u << MASK_LANE(pixels, lowest_bit(left));
-  counts[COUNT_LOST_LANES] = 0u;
+  const u32 lost = counts[COUNT_LOST_PIXEL];
+  if (BATCH == 1 || !(lost & 0xffffu)) return;
+  u32 noted = lost & 0xffff0000u;
+  for (u32 left = lost & 0xffffu; left; left &= left - 1u)
+    noted |= 1u << LOST_PIXELS << MASK_LANE(pixels, lowest_bit(left));
+  counts[COUNT_LOST_PIXEL] = noted;
 }
 // Adds what a lane has counted to the rectangle's pixel `place`.
 static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32* counts,
@@ -40,9 +45,8 @@ static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32*
     if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];
     counts[COUNTERS + lane] = 0u;
   }
-  if (!(counts[COUNT_LOST_LANES] >> lane & 1u)) return;
-  counts[COUNT_LOST_LANES] &= ~(1u << lane);
-  counts[COUNT_LOST_PIXEL] += rays[place] & LOST_PIXEL ? 0u : 1u;
+  if (!(counts[LOST_LANES] & LOST_LANE(lane))) return;
+  counts[LOST_LANES] -= LOST_LANE(lane);
   rays[place] |= LOST_PIXEL;
 }
 // Adds what the work-item's pixels, a lane each, have counted.
@@ -50,9 +54,8 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
                                   u32* counts, __global u32* restrict rays) {
   const u32 all =
       counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
-  counts[COUNT_LOST_LANES] = counts[COUNT_LOST_PIXEL];
-  counts[COUNT_LOST_PIXEL] = 0u;
-  for (u32 lane = 0; lane < (RAYS_BY_LANE || counts[COUNT_LOST_LANES] ? BATCH : 1u); ++lane) {
+  if (BATCH > 1) counts[COUNT_LOST_PIXEL] >>= LOST_PIXELS;
+  for (u32 lane = 0; lane < (RAYS_BY_LANE || counts[COUNT_LOST_PIXEL] ? BATCH : 1u); ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
     if (!image_pixel(launch, pixels, at, &pixel)) continue;

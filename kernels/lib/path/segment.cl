@@ -2,6 +2,7 @@
 // priority, maintains the media stack and accumulates absorption.
 #pragma once
 #include "lib/core/config.h"
+#include "lib/core/counters.cl"
 #include "lib/path/faces.cl"
 #include "lib/path/media.cl"
 #include "lib/path/nearest.cl"
@@ -70,7 +71,7 @@ static inline bool cross_if_unseen(__global const Medium* restrict media, SceneR
 static inline void note_lost_media(u32 i, u32 overflows, u32 strays, u32* counts) {
   counts[COUNT_MEDIA_STACK_OVERFLOW] += overflows;
   counts[COUNT_STRAY_EXIT] += strays;
-  if (overflows + strays) counts[COUNT_LOST_LANES] |= 1u << i;
+  if (overflows + strays) counts[LOST_LANES] |= LOST_LANE(i);
 }
 
 // The media stack behind the interface that lane i has hit.

@@ -86,10 +86,10 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
   return true;
 }
 
-// Perhaps takes the photon's stretch for its beam. A number that has made one choice is as good for the next.
+// A number that has made one choice is as good for the next.
 HAVING(HAS_SCATTERING)
-static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
-                               const Encounter* met, Photon* photon) {
+static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
+                                     const Encounter* met, Photon* photon) {
   const Stretch s = find_stretch(scene, begun, ray, met, &photon->path);
   if (!photon->bent || !s.scatters) return;
   const SampledSpectrum flux = photon->path.throughput * spectrum_over(s.decay, s.begin);
@@ -108,6 +108,12 @@ static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun
   photon->beam.sent_on = photon->path.depth - 1;
 }
 
+// Perhaps takes the photon's stretch for its beam.
+static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
+                               const Encounter* met, Photon* photon) {
+  if (HAS_SCATTERING) choose_scattering(scene, begun, ray, met, photon);
+}
+
 // Moves the photon by one step. Returns whether it continues; `landed`: it ends on a surface that scatters
 // light.
 ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneRay* ray, Landing* landed,
@@ -117,7 +123,7 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
   const BegunRay begun = begun_ray_of(ray);
   const bool unseen = meet_interfaces(scene, ray, false, &met, counts);
   forget_glow(ray);
-  if (HAS_SCATTERING) choose_beam(scene, &begun, ray, &met, photon);
+  choose_beam(scene, &begun, ray, &met, photon);
   photon->path.throughput *= spectrum_kept(&photon->path.wavelengths, met.absorbed);
   if (unseen || !hit_anything(&met.hit)) return unseen;
   if (HAS_FOG) photon->path.throughput *= clear_of_fog(scene, &met);
