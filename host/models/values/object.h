@@ -5,15 +5,10 @@
 #include <variant>
 #include <vector>
 
-#include "models/values/profile.h"
+#include "models/values/solids.h"
 #include "shared/scene.h"
-#include "shared/shapes.h"
 
 namespace sundog {
-
-using glm::dmat4;
-using glm::dvec2;
-using glm::dvec3;
 
 struct MeshShape {
   int mesh = 0;
@@ -21,68 +16,6 @@ struct MeshShape {
 struct FieldShape {
   int field = 0;
 };  // index into fields
-
-// The exact solids of shared/shapes.h. half_size(): of the bounding box about the origin; open(): has no
-// inside.
-struct PlaneShape {  // y = 0, normal +y, inside below
-  bool open() const { return false; }
-};
-struct SphereShape {
-  double radius = 1;
-  dvec3 half_size() const { return dvec3(radius); }
-  bool open() const { return false; }
-};
-struct BoxShape {
-  dvec3 half{1, 1, 1};
-  dvec3 half_size() const { return half; }
-  bool open() const { return false; }
-};
-struct CylinderShape {  // about y, centred
-  double radius = 1, half_height = 1;
-  bool capped = true;
-  dvec3 half_size() const { return {radius, half_height, radius}; }
-  bool open() const { return !capped; }
-};
-struct ConeShape {
-  double bottom_radius = 1, top_radius = 0, half_height = 1;
-  bool capped = true;
-  dvec3 half_size() const {
-    const double radius = bottom_radius > top_radius ? bottom_radius : top_radius;
-    return {radius, half_height, radius};
-  }
-  bool open() const { return !capped; }
-};
-struct DiskShape {  // in y = 0
-  double radius = 1, inner_radius = 0;
-  dvec3 half_size() const { return {radius, 0, radius}; }
-  bool open() const { return true; }
-};
-struct RectangleShape {  // in y = 0; half sizes along x and z
-  dvec2 half{1, 1};
-  dvec3 half_size() const { return {half.x, 0, half.y}; }
-  bool open() const { return true; }
-};
-struct TorusShape {  // about y
-  double major_radius = 1, minor_radius = 0.25;
-  dvec3 half_size() const { return {major_radius + minor_radius, minor_radius, major_radius + minor_radius}; }
-  bool open() const { return false; }
-};
-struct RoundBoxShape {  // outer half sizes, edge radius
-  dvec3 half{1, 1, 1};
-  double radius = 0.1;
-  dvec3 half_size() const { return half; }
-  bool open() const { return false; }
-};
-/// A surface of revolution about y, to the right of its profile; of the profile the middle height is 0.
-struct LatheShape {
-  std::vector<ProfileCubic> profile{{{0, -1}, {0, -1}, {1, -1}, {1, -1}},
-                                    {{1, -1}, {0.2, -0.4}, {0.2, 0.4}, {1, 1}},
-                                    {{1, 1}, {1, 1}, {0, 1}, {0, 1}}};
-  bool closed = true;  // it ends on the axis, or where it began, and encloses a solid
-  double radius = 1, half_height = 1;
-  dvec3 half_size() const { return {radius, half_height, radius}; }
-  bool open() const { return !closed; }
-};
 
 #define SUNDOG_SHAPE_TYPE(constant, type, name) type##Shape,
 /// Alternatives are in the order of the SHAPE_* constants.

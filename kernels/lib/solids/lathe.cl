@@ -1,5 +1,5 @@
 // Intersects rays with a surface of revolution about the y axis. Its profile is a list of arcs, cubics (R(t),
-// Y(t)) along which R, Y and the derivatives of both are monotone (host/compile/revolution.h).
+// Y(t)) along which R, Y and the derivatives of both are monotone (host/models/values/revolution.h).
 //
 // In the half plane of radius r and height y a line is a hyperbola, whose halves part where the line is
 // nearest to the axis. With a unit direction e, its sine S to the axis and its distance m from it, a half is

@@ -1,5 +1,5 @@
 // See revolution.h.
-#include "compile/revolution.h"
+#include "models/values/revolution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,8 +89,9 @@ bool is_beside(const ProfileCubic& p, const dvec2& q) {
 
 }  // namespace
 
-Revolution::Revolution(const LatheShape& shape, double scale) : closed_(shape.closed) {
-  for (ProfileCubic cubic : shape.profile) {
+Revolution::Revolution(const std::vector<ProfileCubic>& profile, bool closed, double scale)
+    : closed_(closed) {
+  for (ProfileCubic cubic : profile) {
     for (dvec2* point : {&cubic.a, &cubic.b, &cubic.c, &cubic.d}) *point /= scale;
     for (const ProfileCubic& part : monotone_parts(cubic)) parts_.push_back(part);
   }

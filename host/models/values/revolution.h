@@ -2,9 +2,13 @@
 #pragma once
 #include <vector>
 
-#include "models/values/object.h"
+#include "models/values/profile.h"
+#include "shared/shapes.h"
 
 namespace sundog {
+
+using glm::dvec2;
+using glm::dvec3;
 
 inline bool operator==(const ProfileArc& a, const ProfileArc& b) {
   return a.r == b.r && a.y == b.y && a.end == b.end && a.along == b.along;
@@ -12,8 +16,8 @@ inline bool operator==(const ProfileArc& a, const ProfileArc& b) {
 
 class Revolution {
  public:
-  /// `scale`: from unit to object space.
-  Revolution(const LatheShape& shape, double scale);
+  /// `scale`: from unit to object space. `closed`: encloses a solid.
+  Revolution(const std::vector<ProfileCubic>& profile, bool closed, double scale);
 
   const std::vector<ProfileArc>& arcs() const { return arcs_; }
   /// The support along a direction across the axis and one along it.
