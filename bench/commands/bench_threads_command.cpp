@@ -22,6 +22,7 @@ struct ThreadsOptions : BenchOptions {
   std::string sizes, counts;  // empty: the usual ones
   double budget = -1;         // seconds; 0: no limit; below: not given
   bool no_plain = false;
+  ThreadsOptions() { seconds = 0.3; }  // a handful of frames of a few milliseconds is all luck
 };
 
 /// PoCL has as many compute units as the machine has cores, unless told otherwise before the first OpenCL
