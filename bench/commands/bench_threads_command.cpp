@@ -128,7 +128,8 @@ int bench_threads(const ThreadsOptions& options) {
   const std::vector<ThreadScaling> plans = make_plans(options, plan, run);
   announce(options, plans, head);
   head.notes.push_back(fmt::format(
-      "Median of {} frames after two to warm up, sizes and counts in turn, from the first launch until the "
+      "Median of {} frames or more after two to warm up, sizes and counts in turn, from the first launch "
+      "until the "
       "film is on the host, without building kernels. Threads are compute units of a sub-device. All "
       "images of a size are the same to the bit.",
       plans.empty() ? options.repeat : plans.front().repeat));
