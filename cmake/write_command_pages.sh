@@ -32,7 +32,7 @@ done < <(commands_of)
 troff() { sed -e 's/\\/\\e/g' -e 's/-/\\-/g' -e "s/^\([.']\)/\\\\\&\1/" <<<"$1"; }
 
 {
-  version=$("$sundog" --version)
+  read -r version < <("$sundog" --version)
   echo ".TH SUNDOG 1 \"\" \"${version}\" \"User Commands\""
   printf '.SH NAME\nsundog \\- OpenCL renderer for meshes, solids, glass and fractals\n.SH SYNOPSIS\n.B sundog\n.I COMMAND\n[\\fIOPTIONS\\fR]\n'
   printf '.SH DESCRIPTION\nRenders scenes (.json) and models (.gltf .glb .obj .ply .stl .nff) on any OpenCL 1.2 device, and measures devices.\n.SH COMMANDS\n'

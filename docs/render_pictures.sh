@@ -20,6 +20,8 @@ for scene in "$root"/scenes/*.json; do
   case "$name" in scene.schema | fractal_light_*) continue ;; esac
   "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
 done
+"$root/run.sh" render "$root/scenes/gallery/mountain_lake.json" -o "$root/docs/pictures/evening.jpg" --size 960x540 --samples 64 \
+  --denoise --exposure 8.7 --set /environment/sun/altitude=-4 --set /environment/sun/azimuth=15 --set /environment/turbidity=4 "$@"
 "$root/run.sh" render "$root/docs/presets.json" -o "$root/docs/pictures/presets.jpg" "$@"
 "$root/run.sh" halo "$root/scenes/sundog.json" -o "$root/docs/pictures/halo_fisheye.png" --view fisheye --sky --size 600
 if [ -x "$root/build/release/bench/formula_sheet" ]; then

@@ -18,11 +18,18 @@
 #include "bench/rays/ray_tracer.h"
 #include "bench/report/machine.h"
 #include "render/film/hash.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
 
-constexpr std::array kernel_names{"render_whitted", "trace_rays", "occluded_rays"};
+constexpr std::array kernel_names{"render_whitted", "render_path", "trace_rays", "occluded_rays"};
+
+/// Frames are made by the scene's integrator, whichever name they were asked for by.
+bool is_frame(const std::string& kernel) { return kernel.starts_with("render_"); }
+const char* integrator_kernel(const CompiledScene& scene) {
+  return find_integrator(scene.integrator)->kernel;
+}
 
 struct WorkgroupOptions : BenchOptions {
   std::vector<std::string> kernels;
@@ -67,8 +74,9 @@ void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledSc
     return frames->run();
   };
   kernel.beyond_events = [frames] { return beyond_events(frames->kernel_times()); };
-  const char* tracer = scene.integrator == "path" ? "render_path" : "render_whitted";
-  kernel.local = [frames, tracer] { return local_of(frames->kernel_times(), tracer); };
+  kernel.local = [frames, tracer = integrator_kernel(scene)] {
+    return local_of(frames->kernel_times(), tracer);
+  };
   kernel.result = [frames] { return hash_of(frames->image().data); };
 }
 
@@ -114,16 +122,17 @@ int bench_workgroup(const WorkgroupOptions& options) {
           fmt::format("--kernel {}: {}", name,
                       did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
                                    fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
-  if (kernels.empty()) kernels.assign(kernel_names.begin(), kernel_names.end());
+  if (kernels.empty()) kernels = {"render_whitted", "trace_rays", "occluded_rays"};
   TimedKernel head;
   head.sizes = parse_sizes(options.sizes);
   BenchRun run("workgroup", "Times by work-group size", options);
   run.head().notes = {
       fmt::format(
-          "Median of {} runs after one to warm up, all sizes in shuffled turn. render_whitted is a "
-          "whole frame with its transfers, the others are {}x{} camera rays through the tracer alone. "
-          "Each result was compared with the default's to the bit before its time counted.",
-          options.repeat, options.rays, options.rays),
+          "Median of {} runs after one to warm up{}, all sizes in shuffled turn. render_whitted or "
+          "render_path is a whole frame with its transfers, the others are {}x{} camera rays through the "
+          "tracer alone. Each result was compared with the default's to the bit before its time counted.",
+          options.repeat, options.budget > 0 ? ", or of fewer that the budget allowed" : "", options.rays,
+          options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
       "the interval of its median lies below that of the default's.",
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
@@ -138,10 +147,10 @@ int bench_workgroup(const WorkgroupOptions& options) {
       for (const std::string& name : kernels) {
         head.scene = scene_name(file);
         head.device = device_place(device);
-        head.name = name;
+        head.name = is_frame(name) ? integrator_kernel(*scene) : name;
         const auto open = [=, rays = options.rays] {
           TimedKernel kernel = head;
-          if (name == "render_whitted")
+          if (is_frame(name))
             time_frames(kernel, device, *scene);
           else
             time_rays(kernel, device, *scene, name == "occluded_rays", rays);
@@ -161,7 +170,7 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
                                      options, bench_workgroup);
   add_bench_size(app, *options);
   values(app, "--kernel", "NAME", options->kernels,
-         fmt::format("one of {} (default: all)", fmt::join(kernel_names, ", ")));
+         fmt::format("one of {}; the first two are the frame (default: all)", fmt::join(kernel_names, ", ")));
   value(app, "--sizes", "N,WxH...", options->sizes,
         "work-groups to compare with the default (default: all that make sense)");
   app->add_option(

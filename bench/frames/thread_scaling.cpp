@@ -141,7 +141,27 @@ Table ThreadTimes::pivot(const std::string& title, const std::string& unit,
   return table;
 }
 
+/// Sizes whose frames are so short that starting and ending them counts.
+std::string ThreadTimes::tiny_sizes() const {
+  constexpr double tiny = 0.01;  // seconds
+  std::string sizes;
+  for (const int size : plan_.sizes) {
+    const auto is_tiny = [&](unsigned count) {
+      const Subject* time = find(size, count);
+      return time && time->seconds().median < tiny;
+    };
+    if (std::ranges::any_of(plan_.counts, is_tiny))
+      sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
+  }
+  return sizes;
+}
+
 void ThreadTimes::add_to(Report& report) const {
+  if (const std::string sizes = tiny_sizes(); !sizes.empty())
+    report.notes.push_back(fmt::format(
+        "{}, {} pixels a side: frames take less than 10 ms, of which launches and transfers are a part "
+        "that no thread shortens. Do not conclude from these efficiencies; take larger --sizes.",
+        plan_.scene, sizes));
   const auto time_cell = [&](int size, unsigned count) {
     const Subject* time = find(size, count);
     return time ? Cell(scaled(time->seconds(), 1e3)) : Cell();

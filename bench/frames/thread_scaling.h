@@ -49,6 +49,7 @@ class ThreadTimes {
  private:
   const Subject* find(int size, unsigned threads) const;
   std::optional<Spread> speed_up(int size, unsigned count) const;
+  std::string tiny_sizes() const;
   Table pivot(const std::string& title, const std::string& unit,
               const std::function<Cell(int, unsigned)>& cell) const;
 

@@ -131,7 +131,8 @@ std::string WorkGroupTimes::verdict() const {
     if (!subject.problem.empty())
       return fmt::format("no clear winner: {} failed: {}", subject.name, subject.problem);
   const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
-  if (best.runs.size() < 3) return "no clear winner: too few runs to name one (--repeat 3 or more)";
+  if (best.runs.size() < 3)
+    return "no clear winner: too few runs to name one (--repeat 3 or more, and a --budget for them)";
   const Subject* winner = least();
   const std::string name = winner ? text_of(*winner) : "";
   if (!is_clear())

@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "app/job/job.h"
 #include "app/options/command_words.h"
+#include "app/process/environment.h"
+#include "app/process/revision.h"
 #include "base/arguments.h"
 #include "base/error.h"
 #include "bench/commands/bench_options.h"
@@ -52,13 +55,22 @@ Command text_command(const std::string& text, int status = exit_done) {
   return {.run = show, .in_first_thread = true};
 }
 
+/// Shows what a report of a bug should name. The first lines stand even if a driver crashes.
+int show_version() {
+  fmt::print("sundog " SUNDOG_VERSION "\nrevision {}\n", build_revision());
+  std::fflush(stdout);
+  for (const DeviceInfo& device : list_devices())
+    if (device.usable()) fmt::print("device {}, driver {}\n", device.label(), device.driver);
+  return exit_done;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
   remember_command_line(argc, argv);
   Arguments arguments("sundog renders scenes with OpenCL, on any device there is.", "sundog");
   CLI::App& root = arguments.parser();
-  root.set_version_flag("--version", "sundog " SUNDOG_VERSION);
+  root.set_version_flag("--version", SUNDOG_VERSION);
   root.require_subcommand(1);
   Command chosen;
   for (AddCommand* add :
@@ -73,8 +85,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     root.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     return text_command(root.help());
-  } catch (const CLI::CallForVersion& version) {
-    return text_command(std::string(version.what()) + "\n");
+  } catch (const CLI::CallForVersion&) {
+    return {.run = show_version};
   } catch (const CLI::ExtrasError&) {
     throw UsageError(
         fmt::format("unknown argument: {} {}", fmt::join(root.remaining(true), " "), see_help(named)));

@@ -19,7 +19,8 @@ void require(bool holds, const std::string& what) {
 }
 
 const Value& scalar(const Value& v) {
-  require(v.type == ValueType::scalar, "expected a number, found a " + name_of(v.type));
+  require(v.type == ValueType::scalar, "expected a number, found a " + name_of(v.type) +
+                                           (v.size() > 1 ? ": take its components, as v.x" : ""));
   return v;
 }
 

@@ -26,7 +26,7 @@ std::vector<WorkerPlan> plan_workers(const Scene& scene, const std::vector<Devic
 }  // namespace
 
 WorkerPlan plan_local(Scene scene, const DeviceInfo& device) {
-  return {device, device.type == "cpu" ? 0 : -1,
+  return {device, device.shares_cores() ? 0 : -1,
           [scene = std::move(scene), device](const RenderOptions& options) {
             return std::make_shared<LocalWorker>(device, scene, options);
           }};

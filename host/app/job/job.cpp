@@ -101,7 +101,7 @@ class Choice {
 
 /// Ranks of one machine share its cores.
 int processor_of(const Mailbox& job, const DeviceInfo& device) {
-  if (device.type != "cpu") return -1;
+  if (!device.shares_cores()) return -1;
   int first = 0;
   while (job.host(first) != device.host) ++first;
   return first;

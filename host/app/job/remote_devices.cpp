@@ -199,7 +199,7 @@ WorkerPlan plan_isolated(const RenderCommand& command, const DeviceInfo& device,
                          const KeptChannels& workers) {
   const auto start = [label = device.label()] { return start_worker(*program_environment(), label); };
   const RemoteDevice remote{device,
-                            device.type == "cpu" ? 0 : -1,
+                            device.shares_cores() ? 0 : -1,
                             connect_worker(command, device, workers, start),
                             remote_settings(command, device),
                             scene_hash,

@@ -183,7 +183,10 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
       {COUNT_NON_FINITE, "samples were dropped because they were not finite"}};
   std::vector<std::string> sentences;
   if (const std::uint64_t deep = counts[COUNT_DEPTH_LIMIT]; deep > 0 && scene.render.max_depth >= depth_cap)
-    sentences.push_back(fmt::format("{} paths were ended at max_depth, {}", deep, scene.render.max_depth));
+    sentences.push_back(fmt::format(
+        "{} paths were ended at max_depth, {}: give mirrors and media that lose no light a reflection or "
+        "albedo below 1, or raise max_depth",
+        deep, scene.render.max_depth));
   for (const Loss& kind : kinds)
     if (const std::uint64_t count = counts[static_cast<std::size_t>(kind.counter)])
       sentences.push_back(fmt::format("{} {}", count, kind.what));

@@ -78,7 +78,7 @@ class DeviceWorker {
   /// After so many failures it is not tried again.
   virtual unsigned failures_allowed() const { return 3; }
   /// Which cores it runs on (DeviceSpeed::processor).
-  virtual int processor() const { return info().type == "cpu" ? 0 : -1; }
+  virtual int processor() const { return info().shares_cores() ? 0 : -1; }
 };
 
 /// A worker that stays open from one scene to the next.

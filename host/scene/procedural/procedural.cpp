@@ -170,6 +170,7 @@ Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadP
 
 ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
   object.not_both("mesh", "profile");
+  object.not_both("mesh", "curve");
   const auto name = object.find("mesh");
   Lathe lathe;
   object.read("curve", lathe.curve);

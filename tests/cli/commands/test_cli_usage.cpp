@@ -146,6 +146,9 @@ TEST_CASE("help and version go to stdout with status 0") {
     CHECK(result.err.empty());
     CHECK(result.out.size() > 10);
   }
+  const std::string version = run_sundog({"--version"}).out;
+  for (const char* line : {"sundog ", "\nrevision ", "\ndevice ", ", driver "})
+    CHECK(version.find(line) != std::string::npos);
 }
 
 TEST_CASE("the help of a command tells its options, and only of commands that exist") {

@@ -77,6 +77,32 @@ TEST_CASE("what a panel offers to add or to choose, the server takes") {
   v.open_again();
 }
 
+TEST_CASE("an object of each type can be added, and a new lathe takes a spline") {
+  Viewer& v = viewer();
+  v.tab("build");
+  const json refused = v.run(R"(
+    const wait = (ms) => new Promise((r) => setTimeout(r, ms));
+    const idle = async () => { for (let i = 0; i < 400 && !store.edits.idle; ++i) await wait(5); await wait(20); };
+    const list = () => document.querySelector('[aria-label="Type of the new object"]');
+    const refused = [];
+    for (const type of [...list().options].map((o) => o.value)) {
+      if (type === 'model') continue;  // it needs a file
+      store.update({error: null});
+      const version = store.state.version;
+      list().value = type;
+      list().dispatchEvent(new Event('change', {bubbles: true}));
+      await wait(30);
+      list().parentElement.querySelector('button').click();
+      await idle();
+      if (type === 'lathe') { store.set(store.state.selection + '/curve', 'spline'); await idle(); }
+      if (store.state.error) refused.push(`${type}: ${store.state.error.reason}`);
+      while (store.state.version !== version && store.state.canUndo) { store.undo(); await idle(); }
+    }
+    return refused;)");
+  CHECK(refused == json::array());
+  v.open_again();
+}
+
 TEST_CASE("the page's tracks have the values of a render") {
   const json values = viewer().run(R"(
     const {valueAt} = await import('/tracks.js');

@@ -140,7 +140,8 @@ TEST_CASE("a best size is named only where its interval clears the default's, ru
   };
   CHECK(text_of(5, of_one(0.5, 1)) ==
         "best: 1 took 500 to 500 ms, 0.50 of the default's time (1000 to 1000 ms)");
-  CHECK(text_of(2, of_one(0.5, 1)) == "no clear winner: too few runs to name one (--repeat 3 or more)");
+  CHECK(text_of(2, of_one(0.5, 1)) ==
+        "no clear winner: too few runs to name one (--repeat 3 or more, and a --budget for them)");
   CHECK(text_of(5, of_one(2, 1)) == "no clear winner: no size has a smaller median than the default");
   int runs = 0;  // each third run of any size takes twice the time
   CHECK_THAT(text_of(9, [&](const WorkGroup& group) { return of_one(0.7, 1)(group) * (++runs % 3 ? 1 : 2); }),

@@ -95,6 +95,7 @@ TEST_CASE("/N again takes the next units of the device while it has them") {
   const auto chosen = select_devices(machine(), {"0:1/1", "0:1/5", "0:1/2"});
   REQUIRE(chosen.size() == 3);
   CHECK(chosen[1].first_unit == 1);
+  CHECK_FALSE(chosen[1].shares_cores());
   CHECK(chosen[2].first_unit == 6);
   CHECK_THROWS_WITH(selected({"0:1/5", "0:1/4"}), ContainsSubstring("of which 5 are already taken"));
   CHECK_THROWS_WITH(selected({"0:1", "0:1/4"}), ContainsSubstring("already taken as a whole"));

@@ -44,7 +44,7 @@ function ObjectList({all, chosen}) {
     const schema = variants({$ref: '#/$defs/object'})[type];
     const entry = namedIn[type] && Object.keys(store.state.document[namedIn[type]] ?? {})[0];
     if (namedIn[type] && !entry) return store.notice(`The scene has no ${namedIn[type]}: add one first, at Image → ${words(namedIn[type])}.`);
-    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}, mesh: {mesh: entry}, field: {field: entry}, scatter: {on: entry}, model: {file}};
+    const starts = {formula: {map: 'z = z^8 + c'}, hybrid: {}, lathe: {profile: [[0, 0], [0.4, 0], [0.5, 0.4], [0.25, 0.9], [0, 1]]}, mesh: {mesh: entry}, field: {field: entry}, scatter: {on: entry}, model: {file}};
     const object = {type, ...sample(schema), ...starts[type]};
     const materials = Object.keys(store.state.document.materials ?? {});
     const changes = [];
