@@ -1,5 +1,5 @@
-// See denoise.h. The functions are those of the library's C interface, of which versions 1 and 2 share all
-// that is used here but the name of one.
+// See denoise.h. The functions are those of the library's C interface, of which versions 1.4 and 2 share all
+// that is used here but the names of two.
 #include "app/render/denoise.h"
 
 #include <dlfcn.h>
@@ -106,24 +106,23 @@ Denoiser::Denoiser() {
   calls_ = std::move(calls);
 }
 
-Image Denoiser::clean(const Image& image, const Image& albedo, const Image& normal) const {
+Image Denoiser::clean(std::initializer_list<Input> inputs, std::initializer_list<const char*> flags) const {
   const Calls& call = *calls_;
   const std::shared_ptr<void> device(call.new_device(cpu_device), call.release_device);
   if (!device) call.check(nullptr);
   call.commit_device(device.get());
   call.check(device.get());
   const std::shared_ptr<void> filter(call.new_filter(device.get(), "RT"), call.release_filter);
-  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  Image clean(image.width, image.height, 3);
+  const Image& first = inputs.begin()->image;
+  const auto width = static_cast<std::size_t>(first.width), height = static_cast<std::size_t>(first.height);
+  Image clean(first.width, first.height, 3);
   const auto give = [&](const char* name, const Image& from) {  // only "output" is written to
     call.set_image(filter.get(), name, const_cast<float*>(from.data.data()), three_floats, width, height, 0,
                    sizeof(float) * static_cast<std::size_t>(from.channels), 0);
   };
-  give("color", image);
-  give("albedo", albedo);
-  give("normal", normal);
+  for (const Input& input : inputs) give(input.name, input.image);
   give("output", clean);
-  call.set_bool(filter.get(), "hdr", true);
+  for (const char* flag : flags) call.set_bool(filter.get(), flag, true);
   call.set_int(filter.get(), "maxMemoryMB", static_cast<int>(most_denoiser_bytes >> 20));
   call.commit_filter(filter.get());
   call.execute_filter(filter.get());
@@ -131,14 +130,20 @@ Image Denoiser::clean(const Image& image, const Image& albedo, const Image& norm
   return clean;
 }
 
+// Albedo and normal behind glass are noisy too, and their noise would stay in the picture: they are cleaned
+// first.
 void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
   const auto channels = static_cast<std::size_t>(image.channels);
-  const Image colors = clean(image, albedo, normal);
+  const Image clean_albedo = clean({{"albedo", albedo}}, {}), clean_normal = clean({{"normal", normal}}, {});
+  const auto clean_color = [&](const Image& color) {
+    return clean({{"color", color}, {"albedo", clean_albedo}, {"normal", clean_normal}}, {"hdr", "cleanAux"});
+  };
+  const Image colors = clean_color(image);
   if (channels == 4) {
     Image alpha(image.width, image.height, 3);
     for (std::size_t i = 0; i < alpha.data.size(); ++i) alpha.data[i] = image.data[i / 3 * 4 + 3];
     if (std::ranges::any_of(alpha.data, [&](float a) { return a != alpha.data[0]; }))
-      alpha = clean(alpha, albedo, normal);
+      alpha = clean_color(alpha);
     for (std::size_t pixel = 0; pixel < alpha.data.size() / 3; ++pixel)
       image.data[4 * pixel + 3] = std::clamp(alpha.data[3 * pixel], 0.0f, 1.0f);
   }

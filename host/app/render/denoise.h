@@ -1,5 +1,6 @@
 // `render --denoise`: Intel Open Image Denoise, loaded when it is asked for; sundog is not linked with it.
 #pragma once
+#include <initializer_list>
 #include <memory>
 
 #include "base/image.h"
@@ -9,7 +10,7 @@ namespace sundog {
 /// The library, open until the end of the process.
 class Denoiser {
  public:
-  /// Loads the file or folder that SUNDOG_OIDN names, else the system's library, of version 2 or 1. Throws
+  /// Loads the file or folder that SUNDOG_OIDN names, else the system's library, of version 2 or 1.4. Throws
   /// UsageError that says where to get it.
   Denoiser();
 
@@ -19,8 +20,12 @@ class Denoiser {
 
  private:
   struct Calls;
-  /// Returns the three channels of `color` without noise.
-  Image clean(const Image& color, const Image& albedo, const Image& normal) const;
+  struct Input {
+    const char* name;
+    const Image& image;
+  };
+  /// Returns the three channels of the first input without noise.
+  Image clean(std::initializer_list<Input> inputs, std::initializer_list<const char*> flags) const;
   std::shared_ptr<const Calls> calls_;
 };
 

@@ -51,8 +51,8 @@ constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 +
 // frames are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 10;
 
-// The denoised colours; alpha as a picture of its own, and its denoised copy.
-constexpr std::uint64_t denoised_bytes = 12, denoised_alpha_bytes = 24;
+// The denoised colours, albedo and normal; alpha as a picture of its own, and its denoised copy.
+constexpr std::uint64_t denoised_bytes = 36, denoised_alpha_bytes = 24;
 
 // Bytes a pixel that Open Image Denoise 2.5 takes for its network's layers with a small picture.
 constexpr std::uint64_t denoiser_bytes = 600;

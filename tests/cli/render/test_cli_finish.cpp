@@ -29,7 +29,9 @@ std::string text_of(const ImageTexts& texts, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("--denoise hands colours, albedo and normals to the library and takes its picture") {
+TEST_CASE(
+    "--denoise hands colours, and albedo and normals that it has cleaned, to the library and takes its "
+    "picture") {
   const CliFolder folder;
   REQUIRE(
       render(folder, "plain.exr", {"--float", "--aov", "denoise_albedo", "--aov", "denoise_normal"}).status ==
@@ -42,12 +44,12 @@ TEST_CASE("--denoise hands colours, albedo and normals to the library and takes 
   CHECK(read_image(folder / "worker.exr").data == clean.data);
   for (std::size_t i = 0; i < clean.data.size() / 4; ++i) {
     for (std::size_t c = 0; c < 3; ++c)
-      REQUIRE(clean.data[4 * i + c] == plain.data[4 * i + c] + aovs.at("denoise_albedo").data[3 * i + c] +
-                                           aovs.at("denoise_normal").data[3 * i + c]);
+      REQUIRE(clean.data[4 * i + c] == plain.data[4 * i + c] + 2 * aovs.at("denoise_albedo").data[3 * i + c] +
+                                           2 * aovs.at("denoise_normal").data[3 * i + c]);
     // Alpha too, as a grey picture.
     REQUIRE(clean.data[4 * i + 3] ==
-            std::clamp(plain.data[4 * i + 3] + aovs.at("denoise_albedo").data[3 * i] +
-                           aovs.at("denoise_normal").data[3 * i],
+            std::clamp(plain.data[4 * i + 3] + 2 * aovs.at("denoise_albedo").data[3 * i] +
+                           2 * aovs.at("denoise_normal").data[3 * i],
                        0.0f, 1.0f));
   }
 }
