@@ -1,4 +1,4 @@
-# Debian packages by `cpack`: sundog (program, manual page, completions, scenes, pages), sundog-mpi, libsundog0.1 and
+# Debian packages by `cpack`: sundog (program, manual page, completions, scenes, pages), sundog-mpi, libsundog0.2 and
 # libsundog-dev. tests/package.sh makes them and tries them on a bare system.
 install(CODE "
   set(pages \"${CMAKE_CURRENT_BINARY_DIR}/command_pages\")

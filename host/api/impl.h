@@ -14,7 +14,7 @@
 namespace sundog {
 inline namespace v0 {
 
-/// The version, "0.1.0".
+/// The version, "0.2.0".
 const char* version_text() noexcept;
 
 /// Rethrows the current exception as an Error; exceptions of callbacks stay as they are.

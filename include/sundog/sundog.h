@@ -46,7 +46,7 @@ typedef struct sundog_session sundog_session;
 /** Details of the last failure. */
 typedef struct sundog_error sundog_error;
 
-/** The library's version, "0.1.0". Valid forever. */
+/** The library's version, "0.2.0". Valid forever. */
 SUNDOG_C_API const char* sundog_version(void) SUNDOG_NOEXCEPT;
 
 /* --- errors ------------------------------------------------------------------------------------------- */

@@ -17,7 +17,7 @@ namespace sundog {
 /// Part of the symbols' names; programs write sundog::Scene and the like.
 inline namespace v0 {
 
-/// The version of the running library ("0.1.0"), which may be newer than the headers. Thread-safe.
+/// The version of the running library ("0.2.0"), which may be newer than the headers. Thread-safe.
 SUNDOG_API std::string version();
 
 }  // namespace v0
