@@ -8,7 +8,7 @@
 /// Semantic version: programs built against MAJOR.MINOR run with every library of the same MAJOR and, while
 /// MAJOR is 0, of the same MINOR.
 #define SUNDOG_VERSION_MAJOR 0
-#define SUNDOG_VERSION_MINOR 1
+#define SUNDOG_VERSION_MINOR 2
 #define SUNDOG_VERSION_PATCH 0
 
 #define SUNDOG_API __attribute__((visibility("default")))
