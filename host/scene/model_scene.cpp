@@ -46,21 +46,15 @@ json to_json(const LightDescription& light) {
 
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-/// Reflectance of the model's brightest material when it faces each light.
-struct Brightness {
-  double of_ambient = 0, of_key = 0;
-};
-
-Brightness brightness_of(const Model& model) {
-  double vertex_color = 0;
+/// The greatest reflectance of the model's materials, where they face a light.
+double brightness_of(const Model& model) {
+  double vertex_color = 0, brightest = 0;
   for (const Mesh& mesh : model.meshes)
     for (const glm::vec3& color : mesh.colors) vertex_color = std::max(vertex_color, greatest(dvec3(color)));
-  Brightness brightest;
   const auto add = [&](const MaterialDescription& m) {
     const double color = m.vertex_color ? vertex_color : 1;
     const double broad = 20 / std::max(m.exponent, 20.0);  // a narrow highlight may be white
-    brightest.of_ambient = std::max(brightest.of_ambient, color * greatest(m.ambient));
-    brightest.of_key = std::max(brightest.of_key, color * greatest(m.diffuse) + broad * greatest(m.specular));
+    brightest = std::max(brightest, color * greatest(m.diffuse) + broad * greatest(m.specular));
   };
   std::ranges::for_each(model.materials, add);
   const auto is_grey = [&](const Object& object) {  // it gets a generated material
@@ -72,39 +66,56 @@ Brightness brightness_of(const Model& model) {
   return brightest;
 }
 
-/// A key light above the camera's left shoulder, and an ambient one.
+/// A soft key light above the camera's left shoulder, and a sky of the background's colours.
 struct MadeUpLights {
   dvec3 direction;
-  double ambient = 0, key = 0;  // intensities
+  double key = 0, sky = 0;  // intensities
+  dvec3 bottom, top;        // of the sky
+  /// What a white ground sends back.
+  dvec3 on_ground() const {
+    const dvec3 above =
+        glm::mix(bottom, top, 5.0 / 6);  // its mean over the hemisphere, weighted by the cosine
+    return sky * above - key * direction.y;
+  }
 };
 
-/// The model's brightest material, facing the key light, gets 0.18 + 0.66: almost white. Dark models get at
-/// most half as much light again as grey ones.
-MadeUpLights expose(const Model& model, const Camera& camera) {
+/// The model's brightest material, facing the key light and the zenith, gets 0.75, and more by what lies
+/// around it. Dark models get at most half as much light again as grey ones.
+MadeUpLights expose(const Model& model, const Camera& camera, const ImageSettings& image) {
   const dvec3 forward = glm::normalize(camera.target - camera.position);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
   const dvec3 up = glm::cross(right, forward);
-  const Brightness brightness = brightness_of(model);
-  return {glm::normalize(forward + 0.6 * right - 0.7 * up), 0.18 / std::max(brightness.of_ambient, 0.07),
-          0.66 / std::max(brightness.of_key, 0.5)};
+  const double all = 0.75 / std::max(brightness_of(model), 0.5);
+  MadeUpLights lights{glm::normalize(forward + 0.6 * right - 0.7 * up), 0.6 * all, 0, image.background_bottom,
+                      image.background_top};
+  lights.sky = 0.4 * all / std::max(greatest(glm::mix(lights.bottom, lights.top, 5.0 / 6)), 0.05);
+  return lights;
 }
 
-json to_json(const MadeUpLights& lights) {
-  return {{{"type", "ambient"}, {"intensity", lights.ambient}},
-          {{"type", "directional"}, {"direction", to_json(lights.direction)}, {"intensity", lights.key}}};
+json key_light(const MadeUpLights& lights) {
+  return {{{"type", "directional"},
+           {"direction", to_json(lights.direction)},
+           {"intensity", lights.key},
+           {"angle", 4},
+           {"visible", false}}};
+}
+
+json soft_sky(const MadeUpLights& lights) {
+  return {{"type", "gradient"},
+          {"bottom", to_json(lights.bottom)},
+          {"top", to_json(lights.top)},
+          {"intensity", lights.sky},
+          {"visible", false}};
 }
 
 /// Adds a matte plane just below the model for its shadow. Lit, it matches the background at the horizon, so
 /// no edge shows. Not for a camera from below.
 void add_ground(json& document, const SceneBounds& bounds, const Camera& camera, const ImageSettings& image,
                 const MadeUpLights& lights) {
-  constexpr double ambient = 0.2, diffuse = 0.8;
   const double height = bounds.lower.y - 1e-3 * glm::length(bounds.upper - bounds.lower);
   if (camera.position.y <= height || lights.direction.y >= 0) return;
-  const double lit = ambient * lights.ambient - diffuse * lights.key * lights.direction.y;
   const dvec3 horizon = 0.5 * (image.background_bottom + image.background_top);
-  document["materials"]["ground"] = {
-      {"color", to_json(horizon / lit)}, {"ambient", ambient}, {"diffuse", diffuse}};
+  document["materials"]["ground"] = {{"color", to_json(horizon / lights.on_ground())}, {"diffuse", 1}};
   const dvec3 centre = 0.5 * (bounds.lower + bounds.upper);
   document["objects"].push_back({{"type", "plane"},
                                  {"name", "ground"},
@@ -136,7 +147,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
   const SceneBounds bounds = plays && model.pose && !model.camera ? bounds_of_motion(file, model)
                                                                   : bounds_of(model.objects, model.meshes);
   const Camera camera = model.camera ? *model.camera : frame(bounds, fitted, {});
-  const MadeUpLights made_up = expose(model, camera);
+  const MadeUpLights made_up = expose(model, camera, image);
   json document = {
       {"camera", to_json(camera)},
       {"image",
@@ -146,8 +157,12 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
          {{"bottom", to_json(image.background_bottom)}, {"top", to_json(image.background_top)}}}}},
       {"render", json::object()},
       {"materials", json::object()},
-      {"lights", to_json(made_up)},
+      {"lights", key_light(made_up)},
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
+  if (model.lights.empty()) {
+    document["environment"] = soft_sky(made_up);
+    document["render"] = {{"integrator", "path"}, {"samples", 64}};
+  }
   set_view(document, model);
   if (!model.camera && model.lights.empty() && !bounds.empty())
     add_ground(document, bounds, camera, image, made_up);
