@@ -22,7 +22,6 @@ struct ThreadsOptions : BenchOptions {
   std::string sizes, counts;  // empty: the usual ones
   double budget = -1;         // seconds; 0: no limit; below: not given
   bool no_plain = false;
-  ThreadsOptions() { seconds = 0.3; }  // a handful of frames of a few milliseconds is all luck
 };
 
 /// PoCL has as many compute units as the machine has cores, unless told otherwise before the first OpenCL
@@ -128,8 +127,7 @@ int bench_threads(const ThreadsOptions& options) {
   const std::vector<ThreadScaling> plans = make_plans(options, plan, run);
   announce(options, plans, head);
   head.notes.push_back(fmt::format(
-      "Median of {} frames or more after two to warm up, sizes and counts in turn, from the first launch "
-      "until the "
+      "Median of {} frames after two to warm up, sizes and counts in turn, from the first launch until the "
       "film is on the host, without building kernels. Threads are compute units of a sub-device. All "
       "images of a size are the same to the bit.",
       plans.empty() ? options.repeat : plans.front().repeat));

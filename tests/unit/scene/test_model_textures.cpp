@@ -30,9 +30,11 @@ std::string clear_and_red() {
 SceneDescription quad_with(const std::string& material, const std::string& png = two_pixels()) {
   const TemporaryFolder folder;
   const std::string image = R"("images":[{"uri":"data:image/png;base64,)" + base64(png) + R"("}])";
-  return load_scene(folder.write(
-      "a.gltf", quad(one_node + "," + image + R"(,"textures":[{"source":0}],"materials":[)" + material + "]",
-                     R"(,"material":0)")));
+  return load_scene(
+      folder.write("a.gltf", quad(one_node + "," + image + R"(,"textures":[{"source":0}],"materials":[)" +
+                                      material + "]",
+                                  R"(,"material":0)")),
+      {"/render/integrator=whitted"});
 }
 
 /// A quad with COLOR_0, a texture 0 and this material.

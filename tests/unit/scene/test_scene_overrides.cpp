@@ -93,13 +93,13 @@ TEST_CASE("overrides change what is made up around a model") {
   const SceneDescription plain = load_scene(file);
   const SceneDescription changed = load_scene(
       file, {"/camera/fov=10", "/image/width=64", "/image/height=48", "/image/background=[1, 0, 0]",
-             "/lights/1/intensity=7", "/camera/position/1=50", "/render/max_depth=2"});
+             "/lights/0/intensity=7", "/camera/position/1=50", "/render/max_depth=2"});
   CHECK(plain.camera.fov == 45);
   CHECK(changed.camera.fov == 10);
   CHECK(changed.camera.position == dvec3(plain.camera.position.x, 50, plain.camera.position.z));
   CHECK(changed.image.width == 64);
   CHECK(changed.image.background_top == dvec3(1, 0, 0));
-  CHECK(changed.lights[1].intensity == 7);
+  CHECK(changed.lights[0].intensity == 7);
   CHECK(changed.render.max_depth == 2);
   try {
     load_scene(file, {"/camera/fov=0"});
