@@ -272,6 +272,8 @@ def prefix(case):
     if not where.exists():
         for component in ("library", "development"):
             case.run("cmake", "--install", build, "--component", component, "--prefix", where)
+        # The cases were written when the library was of version 0.1.
+        (where / "lib" / "libsundog.so.0.1").symlink_to("libsundog.so")
         for file in (path for pattern in ("c/*", "cpp/*", "iso/*") for path in case.folder.glob(pattern)):
             file.write_text(file.read_text().replace("PREFIX", str(where)).replace("SUNDOG_ROOT", str(TREE)))
     return where
