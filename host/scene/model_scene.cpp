@@ -108,6 +108,11 @@ json soft_sky(const MadeUpLights& lights) {
           {"visible", false}};
 }
 
+json background(const ImageSettings& image, double share) {
+  return {{"bottom", to_json(share * image.background_bottom)},
+          {"top", to_json(share * image.background_top)}};
+}
+
 /// Adds a matte plane just below the model for its shadow. Lit, it matches the background at the horizon, so
 /// no edge shows. Not for a camera from below.
 void add_ground(json& document, const SceneBounds& bounds, const Camera& camera, const ImageSettings& image,
@@ -115,7 +120,11 @@ void add_ground(json& document, const SceneBounds& bounds, const Camera& camera,
   const double height = bounds.lower.y - 1e-3 * glm::length(bounds.upper - bounds.lower);
   if (camera.position.y <= height || lights.direction.y >= 0) return;
   const dvec3 horizon = 0.5 * (image.background_bottom + image.background_top);
-  document["materials"]["ground"] = {{"color", to_json(horizon / lights.on_ground())}, {"diffuse", 1}};
+  const dvec3 wanted = horizon / lights.on_ground();
+  // It returns no more light than white paint does: under weak lights the background is darker instead.
+  const double share = std::min(1.0, 0.8 / greatest(wanted));
+  document["materials"]["ground"] = {{"color", to_json(share * wanted)}, {"diffuse", 1}};
+  document["image"]["background"] = background(image, share);
   const dvec3 centre = 0.5 * (bounds.lower + bounds.upper);
   document["objects"].push_back({{"type", "plane"},
                                  {"name", "ground"},
@@ -150,11 +159,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
   const MadeUpLights made_up = expose(model, camera, image);
   json document = {
       {"camera", to_json(camera)},
-      {"image",
-       {{"width", image.width},
-        {"height", image.height},
-        {"background",
-         {{"bottom", to_json(image.background_bottom)}, {"top", to_json(image.background_top)}}}}},
+      {"image", {{"width", image.width}, {"height", image.height}, {"background", background(image, 1)}}},
       {"render", json::object()},
       {"materials", json::object()},
       {"lights", key_light(made_up)},

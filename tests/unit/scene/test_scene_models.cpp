@@ -119,6 +119,7 @@ TEST_CASE("a model without camera and lights stands on a matte ground of the hor
   const dvec3 lit_color = m.diffuse * (sky_of(scene) - key.intensity * glm::normalize(key.direction).y);
   const dvec3 horizon = 0.5 * (scene.image.background_bottom + scene.image.background_top);
   CHECK(glm::length(lit_color - horizon) < 1e-6);
+  CHECK(std::max({m.diffuse.x, m.diffuse.y, m.diffuse.z}) < 0.8 + 1e-9);  // or light between would grow
 }
 
 TEST_CASE("a model with a camera or lights of its own, or seen from below, has no made-up ground") {
