@@ -66,6 +66,15 @@ double brightness_of(const Model& model) {
   return brightest;
 }
 
+/// Whether a Phong material returns more light than it gets, as many files say. Along paths between such
+/// surfaces light would grow.
+bool makes_light(const Model& model) {
+  return std::ranges::any_of(model.materials, [](const MaterialDescription& m) {
+    return m.type == MaterialType::phong && !m.metal_rough && !m.layers && !m.by_paths &&
+           greatest(m.diffuse + m.specular + m.reflection + m.transmission) > 1;
+  });
+}
+
 /// A soft key light above the camera's left shoulder, and a sky of the background's colours.
 struct MadeUpLights {
   dvec3 direction;
@@ -166,7 +175,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
   if (model.lights.empty()) {
     document["environment"] = soft_sky(made_up);
-    document["render"] = {{"integrator", "path"}, {"samples", 64}};
+    document["render"] = {{"integrator", makes_light(model) ? "whitted" : "path"}, {"samples", 64}};
   }
   set_view(document, model);
   if (!model.camera && model.lights.empty() && !bounds.empty())

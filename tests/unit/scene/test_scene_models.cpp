@@ -105,6 +105,11 @@ TEST_CASE("made-up lights leave no matte material white, and dark ones not black
   CHECK(dark < 0.3);
 }
 
+TEST_CASE("a model whose materials return more light than they get is not traced by paths") {
+  CHECK(lit(dvec3(0), dvec3(0.8), 0.2).render.integrator == "path");
+  CHECK(lit(dvec3(0), dvec3(0.8), 0.5).render.integrator == "whitted");  // Blender's usual MTL
+}
+
 TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
   const bool metal = GENERATE(false, true);
   const SceneDescription scene = metal ? lit(dvec3(0.1), dvec3(1), 1, 1) : read(two_spheres());
