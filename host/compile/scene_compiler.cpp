@@ -109,49 +109,31 @@ void add_features(const SceneFeatures& part, SceneFeatures& whole) {
   whole.bvh_stack = std::max(whole.bvh_stack, part.bvh_stack);
 }
 
+/// Copies the tables and features of a step's result.
+template <class Step>
+void take_tables(const Step& step, CompiledScene& out) {
+#define SUNDOG_TAKE_TABLE(type, host_type, name, label) \
+  if constexpr (requires { step.name; }) out.name = step.name;
+  SCENE_TABLES(SUNDOG_TAKE_TABLE)
+#undef SUNDOG_TAKE_TABLE
+  if constexpr (requires { step.features; }) add_features(step.features, out.features);
+}
+
 void take(const Lights& lights, CompiledScene& out) {
-  out.environments = lights.environments;
-  out.environment = lights.environment;
-  out.environment_shares = lights.environment_shares;
-  out.environment_cutpoints = lights.environment_cutpoints;
+  take_tables(lights, out);
   out.info.ambient = lights.ambient;
   out.info.fog = lights.fog;
   out.info.sees_environment = lights.sees_environment;
-  add_features(lights.features, out.features);
 }
 
 void take(const Surfaces& surfaces, CompiledScene& out) {
-  out.media = surfaces.media;
-  out.spectra = surfaces.spectra;
-  out.materials = surfaces.materials;
-  out.material_maps = surfaces.material_maps;
-  out.texture_nodes = surfaces.texture_nodes;
-  out.texture_values = surfaces.texture_values;
-  out.texel_levels = surfaces.texel_levels;
-  SharedTable<u32>* const texels[TEXEL_PAGES] = {&out.texels0, &out.texels1, &out.texels2, &out.texels3};
-  for (std::size_t i = 0; i < TEXEL_PAGES; ++i) *texels[i] = surfaces.texels[i];
-  out.layers = surfaces.layers;
-  out.layer_rows = surfaces.layer_rows;
+  take_tables(surfaces, out);
   out.info.texel_page = surfaces.texel_page;
   out.pattern_source = surfaces.pattern_source;
-  add_features(surfaces.features, out.features);
-}
-
-void take(const Meshes& meshes, const MeshMapping& mapping, CompiledScene& out) {
-  out.blocks = meshes.blocks;
-  out.triangles = meshes.triangles;
-  out.vertices = meshes.vertices;
-  out.extra_uvs = mapping.extra_uvs;
-  out.vertex_alphas = mapping.vertex_alphas;
-  out.tangents = mapping.tangents;
-  out.figures.mean_block_fill = meshes.mean_block_fill;
 }
 
 void take(const Instances& instances, CompiledScene& out) {
-  out.nodes = instances.nodes;
-  out.moves = instances.moves;
-  out.turns = instances.turns;
-  out.profiles = instances.profiles;
+  take_tables(instances, out);
   out.info.tlas_root = instances.tlas_root;
   out.info.bounded_count = instances.bounded_count;
   out.info.scene_center = instances.scene_center;
@@ -159,14 +141,6 @@ void take(const Instances& instances, CompiledScene& out) {
   out.info.field_end = instances.field_end;
   out.figures.sah_cost = instances.sah_cost;
   out.figures.box = instances.box;
-  add_features(instances.features, out.features);
-}
-
-void take(const Fields& fields, CompiledScene& out) {
-  out.field_source = fields.source;
-  out.sdf_fields = fields.fields;
-  out.sdf_parameters = fields.parameters;
-  add_features(fields.features, out.features);
 }
 
 /// The view, and a scene's settings.
@@ -187,23 +161,18 @@ CompiledScene begin(const SceneDescription& scene, const dvec3& origin) {
 /// Adds the tables that need all parts: lights of meshes, the tree over lights, photons.
 void finish(const SceneDescription& scene, const Lights& lights, const Instances& instances,
             CompiledScene& out) {
-  MeshLights with_meshes = add_mesh_lights(scene, out.origin, {lights.lights, out.instances});
-  out.lights = std::move(with_meshes.lights);
-  out.instances = std::move(with_meshes.instances);
+  const MeshLights with_meshes = add_mesh_lights(scene, out.origin, {lights.lights, out.instances});
+  take_tables(with_meshes, out);
   out.features.area_lights |= with_meshes.any;
   set_light_groups(scene, out);
-  LightTree tree = make_light_tree(scene.render, out.lights, lights.light_rays);
-  out.features.light_tree = !tree.nodes.empty();
-  out.light_nodes = std::move(tree.nodes);
-  out.light_leaves = std::move(tree.leaves);
-  out.light_rays = std::move(tree.rays);
+  take_tables(make_light_tree(scene.render, out.lights, lights.light_rays), out);
+  out.features.light_tree = !out.light_nodes.empty();
   if (out.features.rough || out.features.layers)
     out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
-  Photons photons = plan_photons(scene, instances.boxes, out);
+  const Photons photons = plan_photons(scene, instances.boxes, out);
+  take_tables(photons, out);
   out.photons_by = photons.plan;
-  out.features.caustics = !photons.targets.empty();
-  out.photon_targets = std::move(photons.targets);
-  out.photon_lights = std::move(photons.lights);
+  out.features.caustics = !out.photon_targets.empty();
   set_counts(out);
   set_figures(out);
 }
@@ -226,11 +195,11 @@ SceneCompiler::~SceneCompiler() = default;
 SceneCompiler::SceneCompiler(SceneCompiler&&) noexcept = default;
 SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
 
-//   environment ─▶ halo ─┐
-//   lights, fog ─────────┴▶ lights ──────────────────────────────────────┐
-//   materials, media, textures, images ─▶ surfaces ─┬▶ mapping ──────────┤
+//   materials, media, textures, images ─▶ surfaces ─┬▶ mapping ──────────┐
 //   meshes ────────────────────────────▶ meshes ────┴▶ instances ─┬──────┼▶ CompiledScene
 //   objects ──────────────────────────────────────────▲           └▶ touching ─▶ fields
+//   environment ─▶ halo ─┐                                               │
+//   lights, fog ─────────┴▶ lights ─▶ lights of meshes, tree, photons ───┘
 CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
   check_objects(scene);
@@ -240,22 +209,21 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   CompiledScene out = begin(scene, origin);
 
   auto& [halo, lights, surfaces, meshes, mapping, instances, touching, fields] = *parts_;
-  memo(halo, HaloInputs{&scene.environment}, compile_halo);
-  work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
   work_.surfaces += memo(surfaces, surface_inputs(scene), compile_surfaces);
+  take(surfaces.value, out);
   if (memo(meshes, mesh_inputs(scene, surfaces.value), compile_meshes)) {
     ++work_.meshes;
     work_.bvhs +=
         static_cast<std::uint64_t>(std::ranges::count(meshes.value.placed, true, &PlacedMesh::used));
   }
+  take_tables(meshes.value, out);
+  out.figures.mean_block_fill = meshes.value.mean_block_fill;
   memo(mapping, mapping_inputs(scene, meshes.known(), surfaces.value), compile_mapping);
+  take_tables(mapping.value, out);
   if (memo(instances, instance_inputs(scene, origin, meshes.known(), surfaces.value), compile_instances)) {
     ++work_.instances;
     ++work_.bvhs;
   }
-  take(lights.value, out);
-  take(surfaces.value, out);
-  take(meshes.value, mapping.value, out);
   take(instances.value, out);
   const bool media = out.features.media;
   if (media)
@@ -267,10 +235,14 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
            field_inputs(scene, origin, views, {&out.instances, media ? touching.key : instances.key},
                         instances.value.instance_count),
            compile_field_tables);
-  take(fields.value, out);
-  if (any_deep(views)) out.instances = fields.value.instances;
+  take_tables(fields.value, out);
+  out.field_source = fields.value.source;
+  if (any_deep(views)) out.instances = fields.value.deep_instances;
   out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
                                                 instances.value.instances.rows(), instances.value.boxes);
+  memo(halo, HaloInputs{&scene.environment}, compile_halo);
+  work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
+  take(lights.value, out);
   finish(scene, lights.value, instances.value, out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -71,7 +71,7 @@ struct Surfaces {
   SharedTable<TextureNode> texture_nodes;
   SharedTable<float> texture_values;
   SharedTable<TexelLevel> texel_levels;
-  SharedTable<u32> texels[TEXEL_PAGES];
+  SharedTable<u32> texels0, texels1, texels2, texels3;
   SharedTable<Layers> layers;
   SharedTable<float> layer_rows;
   SceneFeatures features;
@@ -204,9 +204,9 @@ struct FieldInputs {
 };
 struct Fields {
   std::string source;  // generated/sdf.cl
-  SharedTable<SdfField> fields;
-  SharedTable<float> parameters;
-  SharedTable<Instance> instances;  // of deep views: with the indices of these fields
+  SharedTable<SdfField> sdf_fields;
+  SharedTable<float> sdf_parameters;
+  SharedTable<Instance> deep_instances;  // with the indices of these fields
   SceneFeatures features;
 };
 Fields compile_field_tables(const FieldInputs& in);

@@ -7,7 +7,7 @@
 
 #include "app/process/environment.h"
 #include "base/error.h"
-#include "compile/surfaces/textures.h"
+#include "compile/bvh/tangents.h"
 #include "models/model.h"
 #include "scene/json/parse.h"
 #include "scene/load.h"

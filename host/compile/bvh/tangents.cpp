@@ -2,14 +2,14 @@
 // Revisited", and the conventions of MikkTSpace): at each corner the mean of the tangents of the triangles
 // that share its position, normal, coordinates and handedness, each projected to the normal's plane and
 // weighted by its angle there. Works per triangle corner, without an index list.
+#include "compile/bvh/tangents.h"
+
 #include <tbb/parallel_for.h>
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
-
-#include "compile/surfaces/textures.h"
 
 namespace sundog {
 namespace {

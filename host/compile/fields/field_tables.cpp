@@ -91,8 +91,8 @@ Fields compile_field_tables(const FieldInputs& in) {
   Fields out;
   CompiledFields made;
   try {
-    if (in.deep) out.instances = *in.instances;
-    made = in.deep ? separate_fields(in, out.instances.edit()) : compile_fields(in.fields);
+    if (in.deep) out.deep_instances = *in.instances;
+    made = in.deep ? separate_fields(in, out.deep_instances.edit()) : compile_fields(in.fields);
   } catch (const FormulaError& error) {
     // Formulas were checked on reading; only their number and combination may still fail.
     throw SceneError(*in.file, "", error.what());
@@ -102,8 +102,8 @@ Fields compile_field_tables(const FieldInputs& in) {
     for (SdfField& field : made.fields) field.shadow_hardness = field.occlusion_reach = 0;
   out.features = features_of(made.fields);
   out.source = std::move(made.source);
-  out.fields = std::move(made.fields);
-  out.parameters = std::move(made.parameters);
+  out.sdf_fields = std::move(made.fields);
+  out.sdf_parameters = std::move(made.parameters);
   return out;
 }
 

@@ -70,7 +70,7 @@ void append(std::span<Lamp> lamps, std::vector<LightNode>& nodes) {
 LightTree make_light_tree(const RenderSettings& settings, const std::vector<Light>& lights,
                           SharedTable<LightRay> rays) {
   LightTree tree;
-  tree.rays = std::move(rays);
+  tree.light_rays = std::move(rays);
   const bool paths = traces_paths(settings.integrator);
   std::vector<Lamp> lamps;
   for (u32 i = 0; i < lights.size(); ++i)
@@ -81,15 +81,15 @@ LightTree make_light_tree(const RenderSettings& settings, const std::vector<Ligh
   // General kernels request the path to each light, even where there is nothing to choose.
   std::vector<u32> leaves(lights.size());
   if (chooses && !lamps.empty() && (lamps.size() > 1 || triangles)) {
-    append(lamps, tree.nodes.edit());
-    for (u32 node = 0; node < tree.nodes.size(); ++node)
-      if (const u32 next = tree.nodes[node].next; next & LIGHT_LEAF) leaves[next & ~LIGHT_LEAF] = node;
-    std::erase_if(tree.rays.edit(), [&](const LightRay& ray) { return has_extent(lights[ray.light]); });
+    append(lamps, tree.light_nodes.edit());
+    for (u32 node = 0; node < tree.light_nodes.size(); ++node)
+      if (const u32 next = tree.light_nodes[node].next; next & LIGHT_LEAF) leaves[next & ~LIGHT_LEAF] = node;
+    std::erase_if(tree.light_rays.edit(), [&](const LightRay& ray) { return has_extent(lights[ray.light]); });
     const auto count = static_cast<u32>(std::max(settings.light_samples, 1));
-    for (u32 ray = 0; ray < count; ++ray) tree.rays.push_back({LIGHT_CHOSEN, ray, count, 0});
+    for (u32 ray = 0; ray < count; ++ray) tree.light_rays.push_back({LIGHT_CHOSEN, ray, count, 0});
   }
-  tree.leaves = std::move(leaves);
-  if (paths) std::erase_if(tree.rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
+  tree.light_leaves = std::move(leaves);
+  if (paths) std::erase_if(tree.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
   return tree;
 }
 

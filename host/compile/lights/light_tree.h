@@ -5,9 +5,9 @@
 namespace sundog {
 
 struct LightTree {
-  SharedTable<LightNode> nodes;  // empty: there is nothing to choose
-  SharedTable<u32> leaves;       // of each light: its node
-  SharedTable<LightRay> rays;    // to lights, or to chosen ones
+  SharedTable<LightNode> light_nodes;  // empty: there is nothing to choose
+  SharedTable<u32> light_leaves;       // of each light: its node
+  SharedTable<LightRay> light_rays;    // to lights, or to chosen ones
 };
 
 /// A tree over the area lights among `lights`, whose rays become `settings.light_samples` to chosen lights.

@@ -7,8 +7,8 @@
 namespace sundog {
 
 struct Photons {
-  SharedTable<PhotonTarget> targets;
-  SharedTable<float> lights;
+  SharedTable<PhotonTarget> photon_targets;
+  SharedTable<float> photon_lights;
   PhotonPlan plan;
 };
 

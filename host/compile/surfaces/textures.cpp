@@ -270,7 +270,8 @@ class TextureCompiler {
     const TexelPages pages = made.pages;
     out_.texel_page = static_cast<u32>(pages.units);
     out_.features.texel_pages = made.several;
-    std::ranges::move(made.tables, out_.texels);
+    std::tie(out_.texels0, out_.texels1, out_.texels2, out_.texels3) =
+        std::tie(made.tables[0], made.tables[1], made.tables[2], made.tables[3]);
     const std::vector<std::pair<std::pair<int, SampleUse>, std::pair<u32, u32>>> images(levels_.begin(),
                                                                                         levels_.end());
     tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
@@ -314,54 +315,5 @@ TexelTables make_texel_tables(std::size_t units, u32 least_page) {
 }
 
 void add_textures(const SurfaceInputs& in, Surfaces& out) { TextureCompiler(in, out).compile(); }
-
-namespace {
-
-/// Calls put(table vertex, mesh vertex) for each vertex that vertices.cpp creates.
-void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
-  if (!mesh.normals.empty())
-    for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) put(first_vertex + vertex, vertex);
-  else  // three per triangle
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      for (int corner = 0; corner < 3; ++corner)
-        put(first_vertex + 3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
-}
-
-/// Calls visit(mesh, its place in the tables) for each mesh that is placed.
-void for_each_mesh(const MappingInputs& in, const auto& visit) {
-  for (std::size_t i = 0; i < in.sources->size(); ++i)
-    if (const Mesh* mesh = (*in.sources)[i]) visit(*mesh, in.meshes->placed[i]);
-}
-
-}  // namespace
-
-SharedTable<float> further_uvs(const MappingInputs& in) {
-  const std::size_t sets = in.extra_uvs;
-  if (sets == 0) return {};
-  std::vector<float> table(in.meshes->vertices.size() * sets * 2);
-  for_each_mesh(in, [&](const Mesh& mesh, const PlacedMesh& placed) {
-    for (std::size_t set = 0; set < std::min(sets, mesh.further_uvs.size()); ++set) {
-      const MeshArray<glm::vec2>& uvs = mesh.further_uvs[set];
-      if (uvs.empty()) continue;
-      each_vertex(mesh, placed.first_vertex, [&](std::size_t vertex, std::size_t from) {
-        float* to = &table[2 * (vertex * sets + set)];
-        to[0] = uvs[from].x;
-        to[1] = uvs[from].y;
-      });
-    }
-  });
-  return table;
-}
-
-SharedTable<float> vertex_alphas(const MappingInputs& in) {
-  if (!in.vertex_colors) return {};
-  std::vector<float> table(in.meshes->vertices.size(), 1.0f);
-  for_each_mesh(in, [&](const Mesh& mesh, const PlacedMesh& placed) {
-    if (mesh.alphas.empty()) return;
-    each_vertex(mesh, placed.first_vertex,
-                [&](std::size_t vertex, std::size_t from) { table[vertex] = mesh.alphas[from]; });
-  });
-  return table;
-}
 
 }  // namespace sundog

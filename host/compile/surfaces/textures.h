@@ -9,24 +9,6 @@ namespace sundog {
 /// after add_materials(). Throws SceneError for an unknown texture.
 void add_textures(const SurfaceInputs& in, Surfaces& out);
 
-/// The texture coordinate sets after the first that textures use.
-SharedTable<float> further_uvs(const MappingInputs& in);
-
-/// The alpha of all vertices, if a texture uses it.
-SharedTable<float> vertex_alphas(const MappingInputs& in);
-
-/// A tangent in object space, and whether the bitangent is opposite to cross(normal, tangent).
-struct CornerTangent {
-  dvec3 tangent;
-  bool mirrored;
-};
-
-/// Tangents for normal maps at the corners of each triangle (compile/bvh/tangents.cpp).
-std::vector<CornerTangent> corner_tangents(const Mesh& mesh);
-
-/// Packed corner_tangents() of all meshes, if surfaces have relief.
-SharedTable<u32> tangents_of(const MappingInputs& in);
-
 /// Whether a material needs more than its Material: it has textures, or is not opaque.
 bool has_maps(const MaterialDescription& material);
 

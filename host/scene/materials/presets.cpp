@@ -17,7 +17,8 @@ namespace {
 // indices of glasses, water, ice and diamond: spectra/refraction.cpp; of plastics: Sultanova and others 2009;
 // of drinks: by their sugar (ICUMSA) and alcohol (CRC Handbook). Absorption of water: Pope and Fry 1997; ice:
 // Warren and Brandt 2008; beer, wine, juice, cola: Narasimhan and others 2006; whisky: by eye. The rest, and
-// the colours of metals (indices by Palik and others) and matte surfaces: physicallybased.info (CC0).
+// the colours of metals (indices by Palik and others) and matte surfaces: physicallybased.info (CC0). Wax,
+// jade, wood and the textures: by eye. The index of jade (jadeite): CRC Handbook.
 constexpr const char* table = R"({
 "glass": {"type": "dielectric", "ior": 1.5},
 "window_glass": {"type": "dielectric", "inside": {"ior": 1.52, "absorption": [1.6, 0.5, 0.5]}},
@@ -67,6 +68,16 @@ constexpr const char* table = R"({
 "charcoal": {"type": "openpbr", "base_color": [0.02, 0.02, 0.02], "specular_roughness": 0.9},
 "chocolate": {"type": "openpbr", "base_color": [0.162, 0.091, 0.06], "specular_roughness": 0.4},
 "concrete": {"type": "openpbr", "base_color": [0.51, 0.51, 0.51], "base_diffuse_roughness": 0.5, "specular_roughness": 0.8},
+"jade": {"type": "openpbr", "base_color": "jade_veins", "specular_ior": 1.66, "specular_roughness": 0.15},
+"oak": {"type": "openpbr", "base_color": "oak_rings", "specular_roughness": 0.45, "bump": {"texture": "oak_pores", "height": 0.0003}},
+"oak_floor": {"type": "openpbr", "base_color": "oak_planks", "specular_roughness": 0.4, "bump": {"texture": "oak_pores", "height": 0.0003}},
+"open_water": {"type": "openpbr", "base_color": [0.004, 0.02, 0.026], "specular_ior": 1.333, "specular_roughness": 0.015,
+  "bump": {"texture": "ripples", "height": 0.004}},
+"stone_floor": {"type": "openpbr", "base_color": "slabs", "base_diffuse_roughness": 0.5, "specular_roughness": 0.6,
+  "bump": {"texture": "slabs", "height": 0.004}},
+"wax": {"type": "openpbr", "base_color": [0.82, 0.72, 0.5], "specular_ior": 1.44, "specular_roughness": 0.35},
+"snow_ground": {"type": "openpbr", "base_color": [0.85, 0.85, 0.85], "specular_ior": 1.31, "specular_roughness": 0.5,
+  "bump": {"texture": "snow_crust", "height": 0.01}},
 "grey_card": {"type": "openpbr", "base_color": [0.18, 0.18, 0.18], "specular_weight": 0},
 "marble": {"type": "openpbr", "base_color": [0.83, 0.791, 0.753], "specular_roughness": 0.1},
 "milk": {"type": "openpbr", "base_color": [0.815, 0.813, 0.682], "specular_ior": 1.348, "specular_roughness": 0},
@@ -79,8 +90,33 @@ constexpr const char* table = R"({
 "velvet": {"type": "openpbr", "base_color": [0.12, 0.02, 0.2], "specular_weight": 0, "fuzz_weight": 1, "fuzz_color": [0.6, 0.4, 0.8]}
 })";
 
+// Textures, with sizes in metres. Boards, slabs and ripples lie in the plane of x and z.
+constexpr const char* texture_table = R"json({
+"drops": {"type": "formula", "size": 0.008, "formula": ["c = floor(p)", "n = c.x * 0.8192 + c.y * 0.6711 + c.z * 0.5497",
+  "r = 0.12 + 0.3 * fract(7 * n)", "o = vec3(fract(n), fract(3 * n), fract(5 * n)) * (1 - 2 * r) + r",
+  "sqrt(max(1 - pow(distance(p, c + o) / r, 2), 0)) * r"]},
+"smudges": {"type": "noise", "size": 0.03, "octaves": 6, "gain": 0.65, "colors": [[0, 0, 0], [0.3, 0.3, 0.3]]},
+"jade_veins": {"type": "marble", "size": 0.06, "turbulence": 2, "octaves": 6, "colors": [[0.08, 0.3, 0.14], [0.32, 0.52, 0.34]]},
+"oak_rings": {"type": "wood", "size": 0.007, "turbulence": 0.5, "octaves": 6, "colors": [[0.42, 0.27, 0.14], [0.27, 0.15, 0.07]],
+  "transform": [{"rotate": {"axis": [0, 0, 1], "degrees": 88}}, {"scale": [9, 1, 1]}]},
+"oak_pores": {"type": "noise", "size": 0.002, "octaves": 4, "gain": 0.6, "transform": [{"scale": [12, 1, 1]}]},
+"planks": {"type": "brick", "size": 1.2, "mortar": 0.002, "colors": [[1, 1, 1], [0.1, 0.08, 0.07]],
+  "transform": [{"scale": [1, 0.2, 1]}, {"rotate": {"axis": [1, 0, 0], "degrees": -90}}]},
+"oak_planks": {"type": "product", "of": ["oak_rings", "planks"]},
+"slab_stone": {"type": "noise", "size": 0.05, "octaves": 7, "gain": 0.6, "colors": [[0.24, 0.23, 0.21], [0.42, 0.4, 0.37]]},
+"slabs": {"type": "brick", "size": 0.6, "mortar": 0.012, "colors": ["slab_stone", [0.08, 0.075, 0.07]],
+  "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": -90}}]},
+"ripples": {"type": "noise", "size": 0.35, "octaves": 3, "transform": [{"scale": [2.5, 1, 1]}]},
+"snow_crust": {"type": "noise", "size": 0.3, "octaves": 7, "gain": 0.55, "transform": [{"scale": [1, 1, 1.6]}]}
+})json";
+
 const json& presets() {
   static const json all = json::parse(table);
+  return all;
+}
+
+const json& texture_presets() {
+  static const json all = json::parse(texture_table);
   return all;
 }
 
@@ -93,9 +129,16 @@ void find_material_names(const json& value, std::set<std::string>& names) {
     for (const json& member : value) find_material_names(member, names);
 }
 
-json section(const json& document, const char* key) {
+std::vector<std::string> names_of(const json& list) {
+  std::vector<std::string> names;
+  for (const auto& [name, preset] : list.items()) names.push_back(name);
+  return names;
+}
+
+const json& section(const json& document, const char* key) {
+  static const json none = json::object();
   const auto found = document.find(key);
-  return found != document.end() && found->is_object() ? *found : json::object();
+  return found != document.end() && found->is_object() ? *found : none;
 }
 
 double unit_of(const json& document) {
@@ -115,51 +158,96 @@ json make_medium(json inside, double unit, json& own) {
   return inside;
 }
 
+/// The preset of a list that `own` names under "preset"; throws where there is none.
+const json& find_preset(const json& own, const json& list, const JsonContext& context,
+                        const std::string& place) {
+  const JsonValue asked(own["preset"], context, place + "/preset");
+  const auto preset = list.find(asked.text());
+  if (preset == list.end()) {
+    const std::vector<std::string> names = names_of(list);
+    asked.wanted("the name of a preset (" +
+                 did_you_mean(asked.text(), names, fmt::format("there is {}", fmt::join(names, ", "))) + ")");
+  }
+  return *preset;
+}
+
+json without_preset(json own) {
+  own.erase("preset");
+  return own;
+}
+
+/// Calls visit(text) for each string of a value.
+void each_text(const json& value, const auto& visit) {
+  if (value.is_string()) visit(value.get_ref<const std::string&>());
+  if (value.is_structured())
+    for (const json& member : value) each_text(member, visit);
+}
+
+/// The textures of a document with presets written out, and those that materials use.
+json texture_section(const json& named, const json& materials, double unit, const JsonContext& context) {
+  json section = named;
+  std::set<std::string> used;
+  const auto use = [&](const std::string& name) {
+    if (texture_presets().contains(name) && !section.contains(name)) used.insert(name);
+  };
+  const auto add = [&](const std::string& name, json texture, const json& own) {
+    if (texture.contains("size")) texture["size"] = texture["size"].get<double>() / unit;
+    texture.update(own);
+    each_text(section[name] = texture, use);
+  };
+  for (const auto& [name, own] : named.items())
+    if (own.is_object() && own.contains("preset"))
+      add(name, find_preset(own, texture_presets(), context, join_pointer("/textures", name)),
+          without_preset(own));
+    else
+      each_text(own, use);
+  each_text(materials, use);
+  while (!used.empty()) {
+    const std::string name = *used.begin();
+    used.erase(used.begin());
+    add(name, texture_presets()[name], json::object());
+  }
+  return section;
+}
+
 }  // namespace
 
 json preset_sections(const json& document, const JsonContext& context) {
-  json sections = json::object();
-  if (!document.is_object()) return sections;
-  const json named = section(document, "materials");
+  if (!document.is_object()) return json::object();
+  const json &named = section(document, "materials"), &textures = section(document, "textures");
+  const double unit = unit_of(document);
+  json materials = named, media = section(document, "media");
   const auto add = [&](const std::string& name, json own, const json& preset) {
-    if (sections.empty()) sections = {{"materials", named}, {"media", section(document, "media")}};
     json material = preset;
     if (preset.contains("inside") && !own.contains("medium")) {
-      const json medium = make_medium(preset["inside"], unit_of(document), own);
-      if (!sections["media"].contains(name)) sections["media"][name] = medium;
+      const json medium = make_medium(preset["inside"], unit, own);
+      if (!media.contains(name)) media[name] = medium;
       material["medium"] = name;
     }
     material.erase("inside");
     if (own.contains("medium")) material.erase("ior"), material.erase("abbe");
+    if (material.contains("bump"))
+      material["bump"]["height"] = material["bump"]["height"].get<double>() / unit;
     material.update(own);
-    sections["materials"][name] = material;
+    materials[name] = material;
   };
-  for (const auto& [name, own] : named.items()) {
-    if (!own.is_object() || !own.contains("preset")) continue;
-    const JsonValue asked(own["preset"], context, join_pointer("/materials", name) + "/preset");
-    const auto preset = presets().find(asked.text());
-    if (preset == presets().end())
-      asked.wanted("the name of a preset (" +
-                   did_you_mean(asked.text(), preset_names(),
-                                fmt::format("there is {}", fmt::join(preset_names(), ", "))) +
-                   ")");
-    json others = own;
-    others.erase("preset");
-    add(name, others, *preset);
-  }
+  for (const auto& [name, own] : named.items())
+    if (own.is_object() && own.contains("preset"))
+      add(name, without_preset(own), find_preset(own, presets(), context, join_pointer("/materials", name)));
   std::set<std::string> used;
   if (const auto objects = document.find("objects"); objects != document.end())
     find_material_names(*objects, used);
   for (const std::string& name : used)
     if (const auto preset = presets().find(name); preset != presets().end() && !named.contains(name))
       add(name, json::object(), *preset);
+  json sections = json::object();
+  if (json with = texture_section(textures, materials, unit, context); with != textures)
+    sections["textures"] = std::move(with);
+  if (materials != named) sections.update({{"materials", materials}, {"media", media}});
   return sections;
 }
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, preset] : presets().items()) names.push_back(name);
-  return names;
-}
+std::vector<std::string> preset_names() { return names_of(presets()); }
+std::vector<std::string> texture_preset_names() { return names_of(texture_presets()); }
 
 }  // namespace sundog

@@ -2,6 +2,7 @@
 #include "scene/procedural/extrusion.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "models/polygon.h"
 #include "scene/procedural/ice_block.h"
@@ -49,6 +50,43 @@ Mesh make_extrusion(const Extrusion& extrusion) {
       add(step.a, top ? extrusion.height : 0, {0, top ? 1 : -1, 0}, step.a);
     for (const glm::uvec3& t : face) triangles.push_back(first + (top ? t : glm::uvec3(t.x, t.z, t.y)));
   }
+  Mesh mesh;
+  mesh.positions = std::move(positions);
+  mesh.normals = std::move(normals);
+  mesh.uvs = std::move(uvs);
+  mesh.triangles = std::move(triangles);
+  return mesh;
+}
+
+Mesh make_sweep(const Sweep& sweep) {
+  if (sweep.radius > std::min(sweep.size.y, sweep.height))
+    throw GenerateError("the curve's \"radius\" is more than the floor's depth or the wall's \"height\"");
+  constexpr int facets = 96;
+  const glm::dvec2 half = 0.5 * sweep.size;
+  const glm::dvec2 centre(sweep.radius, sweep.radius - half.y);  // of the curve, in y and z
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> uvs;
+  std::vector<glm::uvec3> triangles;
+  const auto add_row = [&](const glm::dvec2& at, const glm::dvec2& normal, double way) {
+    for (const double x : {-half.x, half.x}) {
+      positions.emplace_back(x, at.x, at.y);
+      normals.emplace_back(0, normal.x, normal.y);
+      uvs.emplace_back(x + half.x, way);
+    }
+    if (const auto n = static_cast<unsigned>(positions.size()); n > 2) {
+      triangles.emplace_back(n - 4, n - 3, n - 1);
+      triangles.emplace_back(n - 4, n - 1, n - 2);
+    }
+  };
+  const double floor = sweep.size.y - sweep.radius;
+  add_row({0, half.y}, {1, 0}, 0);
+  for (int i = 0; i <= facets; ++i) {
+    const double angle = 0.5 * std::numbers::pi * i / facets;
+    const glm::dvec2 normal(std::cos(angle), std::sin(angle));
+    add_row(centre - sweep.radius * normal, normal, floor + sweep.radius * angle);
+  }
+  add_row({sweep.height, -half.y}, {0, 1},
+          floor + sweep.radius * (0.5 * std::numbers::pi - 1) + sweep.height);
   Mesh mesh;
   mesh.positions = std::move(positions);
   mesh.normals = std::move(normals);

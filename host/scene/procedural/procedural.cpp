@@ -80,6 +80,12 @@ Extrusion read_extrusion(JsonObject& object) {
   return extrusion;
 }
 
+Sweep read_sweep(JsonObject& object) {
+  Sweep sweep;
+  object.read("size", sweep.size, "height", sweep.height, "radius", sweep.radius);
+  return sweep;
+}
+
 /// A picture's levels as its file has them: those of 8 and 16 bits say nothing of light.
 Image levels_of(const JsonValue& file, const ReadPicture& read_picture) {
   Image picture = read_picture(file);
@@ -153,6 +159,7 @@ Mesh follow(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture&
     return recipe.object("generate_" + type, [&](JsonObject& object) {
       if (type == "lathe") return made(read_lathe(object), make_lathe, checks);
       if (type == "extrusion") return made(read_extrusion(object), make_extrusion, checks);
+      if (type == "sweep") return made(read_sweep(object), make_sweep, checks);
       if (type == "terrain") return made(read_terrain(object, read_picture), make_terrain, checks);
       if (type == "fill") return read_fill(object, meshes, checks);
       return read_ice_block(object, checks);

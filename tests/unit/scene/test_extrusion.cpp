@@ -51,3 +51,28 @@ TEST_CASE("a terrain has its size and height, faces up, and is another one for a
   terrain.seed = 2;
   CHECK_FALSE(make_terrain(terrain).positions == mesh.positions);
 }
+
+TEST_CASE("a sweep is level, upright and round where it should be, and its normals point at the scene") {
+  const Sweep sweep{.size = {6, 4}, .height = 3, .radius = 1};
+  const Mesh mesh = make_sweep(sweep);
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    area += 0.5 * glm::length(normal);
+    CHECK(glm::dot(normal, glm::dvec3(mesh.normals[t.x])) > 0);
+  }
+  CHECK(area == Approx(6 * (3 + 2 + std::acos(-1.0) / 2)).epsilon(1e-4));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const dvec3 p(mesh.positions[i]), n(mesh.normals[i]);
+    if (p.z >= -1) {
+      CHECK(p.y == 0);
+      CHECK(n.y == Approx(1));
+    } else if (p.y < 1) {
+      CHECK(glm::length(p + 1.0 * n - dvec3(p.x, 1, -1)) < 1e-6);
+    } else {
+      CHECK(p.z == -2);
+    }
+  }
+  CHECK_THROWS_WITH(make_sweep({.size = {6, 4}, .height = 3, .radius = 3.5}), ContainsSubstring("radius"));
+}

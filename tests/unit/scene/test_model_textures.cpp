@@ -1,7 +1,7 @@
 // Textures that models of other formats bring: glTF's extensions and tangents, MTL's displacement.
 #include <base/image_io.h>
+#include <compile/bvh/tangents.h>
 #include <compile/compiled_scene.h>
-#include <compile/surfaces/textures.h>
 #include <models/model.h>
 #include <scene/load.h>
 

@@ -1,6 +1,7 @@
 // Materials by name.
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -86,4 +87,33 @@ TEST_CASE("a wrong preset is refused where it stands") {
   CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "gold", "roughness": 1}},)")),
              ContainsSubstring("/materials/a"));
   CHECK_THAT(refusal(with_ball("sliver")), ContainsSubstring("did you mean \"silver\"?"));
+}
+
+TEST_CASE("textures are presets, too, with sizes in metres, and bring what they are made of") {
+  CHECK(scene_schema().at("/$defs/preset_texture/properties/preset/enum"_json_pointer) ==
+        json(texture_preset_names()));
+  for (const std::string& name : texture_preset_names()) {
+    INFO(name);
+    CHECK_NOTHROW(read(with_ball(
+        "m", fmt::format(R"("materials": {{"m": {{"type": "openpbr", "base_color": "{}"}}}},)", name))));
+  }
+  const auto sizes = [](const SceneDescription& scene) {
+    std::map<std::string, double> found;
+    for (const TextureDescription& texture : scene.textures) found[texture.name] = texture.size;
+    return found;
+  };
+  const auto floor = sizes(read(with_ball("oak_floor", R"("unit": 1,)")));
+  CHECK(floor.at("planks") == Approx(1.2));
+  CHECK(floor.at("oak_rings") == Approx(0.007));
+  CHECK(floor.count("oak_pores") == 1);
+  CHECK(sizes(read(with_ball("oak_floor"))).at("planks") == Approx(12));
+  const std::string wet = R"("textures": {"rain": {"preset": "drops", "size": 3}}, "materials": {
+    "m": {"preset": "glass", "bump": {"texture": "rain", "height": 0.1}}},)";
+  CHECK(sizes(read(with_ball("m", wet))).at("rain") == 3);
+  CHECK_THAT(refusal(with_ball("m", R"("textures": {"rain": {"preset": "dops"}},)")),
+             ContainsSubstring("/textures/rain/preset") && ContainsSubstring("drops"));
+  // A scene's own texture takes the place of a preset's.
+  const SceneDescription own =
+      read(with_ball("oak_floor", R"("textures": {"planks": {"type": "noise", "size": 5}},)"));
+  CHECK(sizes(own).at("planks") == 5);
 }
