@@ -50,6 +50,7 @@
   FEATURE(bool, HAS_OBJECT_MOTION, object_motion, alters) /* some object does */                                  \
   FEATURE(bool, HAS_TURNS, turns, alters)               /* some object turns or grows meanwhile */                \
   FEATURE(bool, HAS_EMISSION, emission, same)           /* some material emits light */                           \
+  FEATURE(bool, HAS_CATCHERS, catchers, same)           /* paths: some material shows its shadows alone */        \
   FEATURE(bool, HAS_MAPS, maps, rounds)                 /* some material has a texture, emission or opacity */    \
   FEATURE(bool, HAS_RELIEF, relief, rounds)             /* some material has a normal or height map */            \
   FEATURE(bool, HAS_PARALLAX, parallax, rounds)         /* some material's heights are below its surface */       \

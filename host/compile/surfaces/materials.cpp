@@ -117,6 +117,7 @@ u32 material_flags(const MaterialDescription& material) {
   if (material.layers) flags |= MATERIAL_LAYERED;
   if (!material.multiple_scattering) flags |= MATERIAL_SCATTERS_ONCE;
   if (material.off_camera) flags |= MATERIAL_OFF_CAMERA;
+  if (material.shadow_catcher) flags |= MATERIAL_CATCHER;
   if (material.medium < 0) flags |= MATERIAL_THIN;
   if (material.medium < 0 && material.wall_ior > 0) flags |= MATERIAL_WALL;
   if (material.vertex_color) flags |= MATERIAL_VERTEX_COLOR;
@@ -182,6 +183,10 @@ u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
     else if (in.paths && passes_layers(material))
       out.features.layer_filters = true;
     out.features.checker |= material.checker;
+    if (material.shadow_catcher && !in.paths)
+      throw SceneError(*in.file, "/materials/" + material.name + "/shadow_catcher",
+                       "needs paths: set \"/render/integrator\" to \"path\", or give --integrator path");
+    out.features.catchers |= material.shadow_catcher;
     out.materials.push_back(packed);
   }
   if (!in.lacks_materials) return NO_MATERIAL;

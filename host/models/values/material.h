@@ -51,6 +51,7 @@ struct MaterialDescription {
   double opacity = 1;           // [0, 1]; the rest shows what lies behind; 1 with a medium
   double cutoff = 0;            // above 0: alpha test, opacity becomes 0 below it and 1 from there on
   bool one_sided = false;       // invisible from behind
+  bool shadow_catcher = false;  // path: the camera sees through it, darker by its shadows
   MaterialTextures textures{};  // factors on the values above
   std::optional<MetalRough> metal_rough{};  // replaces ambient, diffuse, specular and reflection
   double normal_scale = 1;                  // factor on the slopes of a normal map

@@ -96,7 +96,7 @@ constexpr const char* texture_table = R"json({
   "r = 0.12 + 0.3 * fract(7 * n)", "o = vec3(fract(n), fract(3 * n), fract(5 * n)) * (1 - 2 * r) + r",
   "sqrt(max(1 - pow(distance(p, c + o) / r, 2), 0)) * r"]},
 "smudges": {"type": "noise", "size": 0.03, "octaves": 6, "gain": 0.65, "colors": [[0, 0, 0], [0.3, 0.3, 0.3]]},
-"jade_veins": {"type": "marble", "size": 0.06, "turbulence": 2, "octaves": 6, "colors": [[0.08, 0.3, 0.14], [0.32, 0.52, 0.34]]},
+"jade_veins": {"type": "marble", "size": 0.06, "turbulence": 2, "octaves": 6, "colors": [[0.03, 0.19, 0.07], [0.2, 0.4, 0.2]]},
 "oak_rings": {"type": "wood", "size": 0.007, "turbulence": 0.5, "octaves": 6, "colors": [[0.42, 0.27, 0.14], [0.27, 0.15, 0.07]],
   "transform": [{"rotate": {"axis": [0, 0, 1], "degrees": 88}}, {"scale": [9, 1, 1]}]},
 "oak_pores": {"type": "noise", "size": 0.002, "octaves": 4, "gain": 0.6, "transform": [{"scale": [12, 1, 1]}]},

@@ -252,6 +252,9 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
   std::string sides, shadow;
   object.read("sides", sides, "shadow", shadow, "vertex_color", material.vertex_color);
+  object.read("shadow_catcher", material.shadow_catcher);
+  if (material.shadow_catcher && (material.medium >= 0 || material.wall_ior > 0))
+    object.at("shadow_catcher").fail("a material with a \"medium\" or an \"ior\" catches no shadows");
   material.one_sided = sides == "front";
   if (material.one_sided && (material.medium >= 0 || material.wall_ior > 0))
     object.find("sides")->fail("a material with a \"medium\" or an \"ior\" has both sides");

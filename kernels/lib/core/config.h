@@ -151,7 +151,7 @@
   (HAS_AREA_LIGHTS && !HAS_SDF && !HAS_OBJECT_MOTION && !HAS_RELIEF && !HAS_PARALLAX && !HAS_LAYERS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
-#define HAS_CROSSINGS ANY_OF(HAS_MEDIA, HAS_SHADOW_FILTERS)
+#define HAS_CROSSINGS ANY_OF(HAS_MEDIA, ANY_OF(HAS_SHADOW_FILTERS, HAS_CATCHERS))
 
 // Whether rays have a time.
 #define HAS_MOTION ANY_OF(HAS_CAMERA_MOTION, HAS_OBJECT_MOTION)

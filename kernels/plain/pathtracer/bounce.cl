@@ -6,6 +6,7 @@
 #include "plain/pathtracer/leave_surface.cl"
 #include "plain/pathtracer/met_light.cl"
 #include "plain/pathtracer/scatter_media.cl"
+#include "plain/pathtracer/shadow_catcher.cl"
 
 // What a lamp that is chosen sends to the surface, times what that makes of it.
 static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
@@ -137,6 +138,12 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   SurfaceShading at;
   shade_hits(scene, ray, &met, &at);
   follow_hero(&path->wavelengths, &at.bsdf);
+  if (HAS_CATCHERS && path->straight && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
+    path->radiance += light;
+    pass_catcher(scene, &met, &at, path, ray, counts);
+    note_matte(path, &at.s, true);
+    return true;
+  }
   if (HAS_EMISSION)
     light += met_light(
         path, SEEN_EMISSION, at.bsdf.flags >> (int)MATERIAL_GROUP_SHIFT,

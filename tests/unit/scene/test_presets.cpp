@@ -1,7 +1,6 @@
 // Materials by name.
 #include <fmt/format.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -97,23 +96,24 @@ TEST_CASE("textures are presets, too, with sizes in metres, and bring what they 
     CHECK_NOTHROW(read(with_ball(
         "m", fmt::format(R"("materials": {{"m": {{"type": "openpbr", "base_color": "{}"}}}},)", name))));
   }
-  const auto sizes = [](const SceneDescription& scene) {
-    std::map<std::string, double> found;
-    for (const TextureDescription& texture : scene.textures) found[texture.name] = texture.size;
-    return found;
+  const auto textures = [](const std::string& text) {
+    const json document = parse_json(text, "scene.json");
+    const JsonContext context{"scene.json"};
+    read_scene(JsonValue(document, context));
+    return preset_sections(document, context)["textures"];
   };
-  const auto floor = sizes(read(with_ball("oak_floor", R"("unit": 1,)")));
-  CHECK(floor.at("planks") == Approx(1.2));
-  CHECK(floor.at("oak_rings") == Approx(0.007));
-  CHECK(floor.count("oak_pores") == 1);
-  CHECK(sizes(read(with_ball("oak_floor"))).at("planks") == Approx(12));
+  const json floor = textures(with_ball("oak_floor", R"("unit": 1,)"));
+  CHECK(floor["planks"]["size"] == Approx(1.2));
+  CHECK(floor["oak_rings"]["size"] == Approx(0.007));
+  CHECK(floor.contains("oak_pores"));
+  CHECK(textures(with_ball("oak_floor"))["planks"]["size"] == Approx(12));
   const std::string wet = R"("textures": {"rain": {"preset": "drops", "size": 3}}, "materials": {
     "m": {"preset": "glass", "bump": {"texture": "rain", "height": 0.1}}},)";
-  CHECK(sizes(read(with_ball("m", wet))).at("rain") == 3);
+  CHECK(textures(with_ball("m", wet))["rain"]["size"] == 3);
   CHECK_THAT(refusal(with_ball("m", R"("textures": {"rain": {"preset": "dops"}},)")),
              ContainsSubstring("/textures/rain/preset") && ContainsSubstring("drops"));
   // A scene's own texture takes the place of a preset's.
-  const SceneDescription own =
-      read(with_ball("oak_floor", R"("textures": {"planks": {"type": "noise", "size": 5}},)"));
-  CHECK(sizes(own).at("planks") == 5);
+  const json own =
+      textures(with_ball("oak_floor", R"("textures": {"planks": {"type": "noise", "size": 5}},)"));
+  CHECK(own["planks"]["size"] == 5);
 }
