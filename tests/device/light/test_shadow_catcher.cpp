@@ -16,8 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-// A screen that hangs over a floor, under a lamp, a weaker one, a sun and a sky. The camera looks down past
-// it.
+// A wall beside the picture on a floor, under a lamp, a weaker one, a sun and a sky, seen from above.
 const char* const stage = R"({
   "camera": {"position": [0, 6, 0.01], "target": [0, 0, 0], "fov": 35},
   "image": {"width": 16, "height": 12, "transparent": true},
@@ -29,7 +28,7 @@ const char* const stage = R"({
   "materials": {"floor": {"color": [0.5, 0.5, 0.5], "diffuse": 1, "ambient": 0},
     "black": {"diffuse": 0, "ambient": 0}},
   "objects": [{"type": "plane", "material": "floor"},
-    {"type": "box", "min": [-1, 1, 2], "max": [1, 1.1, 4], "material": "black"}]})";
+    {"type": "box", "min": [-2.6, 0, -3], "max": [-2.2, 3, 3], "material": "black"}]})";
 
 Image render(const DeviceInfo& device, const json& document) {
   const JsonContext context{"test.json"};
