@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders every shipped scene to docs/pictures/NAME.png and every surface of the list to docs/pictures/formulas.png, as the
+# Renders every shipped scene, at least 960 pixels wide, to docs/pictures/NAME.jpg and every surface of the list to docs/pictures/formulas.png, as the
 # pages show them. Arguments go to `render`. The second needs the bench programs (./test.sh builds them).
 # `render_pictures.sh gallery [NAME...]` renders the scenes of scenes/gallery instead, all or those named: ten minutes each; what is
 # interrupted continues where it was.
@@ -15,15 +15,19 @@ if [ "${1:-}" = gallery ]; then
   done
   exit
 fi
+number() { grep -o "\"$2\": *[0-9]*" "$1" | head -1 | grep -o '[0-9]*$'; }
 for scene in "$root"/scenes/*.json; do
   name=$(basename "$scene" .json)
   case "$name" in scene.schema | fractal_light_*) continue ;; esac
-  "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.png" "$@"
+  width=$(number "$scene" width) height=$(number "$scene" height)
+  large=$((width < 960 ? 960 : width))
+  clean=$(grep -q '"integrator": "path"' "$scene" && echo --samples 64 --denoise || echo --samples 16)
+  "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.jpg" --size "${large}x$((large * height / width))" $clean "$@"
 done
 "$root/run.sh" render "$root/scenes/gallery/mountain_lake.json" -o "$root/docs/pictures/evening.jpg" --size 960x540 --samples 64 \
   --denoise --exposure 8.7 --set /environment/sun/altitude=-4 --set /environment/sun/azimuth=15 --set /environment/turbidity=4 "$@"
 "$root/run.sh" render "$root/docs/presets.json" -o "$root/docs/pictures/presets.jpg" "$@"
-"$root/run.sh" halo "$root/scenes/sundog.json" -o "$root/docs/pictures/halo_fisheye.png" --view fisheye --sky --size 600
+"$root/run.sh" halo "$root/scenes/sundog.json" -o "$root/docs/pictures/halo_fisheye.jpg" --view fisheye --sky --size 960
 if [ -x "$root/build/release/bench/formula_sheet" ]; then
   "$root/build/release/bench/formula_sheet" --size 180 -o "$root/docs/pictures/formulas.png"
   "$root/build/release/bench/formula_sheet" --size 96 --no-names -o "$root/host/app/serve/page/surfaces.jpg"  # the viewer's list

@@ -50,6 +50,7 @@ struct RenderCommand : PictureOptions {
   bool denoise = false;        // the picture, when it is made
   bool metadata = false;       // the file says what it is of, and what made it
   bool isolate = false;        // each device in a process of its own
+  bool draft = false;          // by kernels that all scenes share
   bool native_code = false;    // the scene may carry OpenCL C
   bool outside_files = false;  // the scene and its models may name files outside their folders
   bool quiet = false, verbose = false;

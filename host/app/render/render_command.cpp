@@ -93,6 +93,10 @@ RenderCommand checked(const TypedRender& typed) {
   if (!typed.region.empty()) command.region = parse_region(typed.region);
   if (command.part && command.region)
     throw UsageError("--crop makes a part of the picture as a picture: leave --tiles out");
+  if (command.draft && (command.isolate || command.part || !command.resume.empty()))
+    throw UsageError(
+        "--draft makes a preview, which other parts and passes do not fit: leave --isolate, --tiles and "
+        "--resume out");
   if (!typed.time_limit.empty()) command.time_limit = parse_amount("--time-limit", typed.time_limit);
   if (!typed.noise.empty()) command.noise = parse_amount("--noise-threshold", typed.noise);
   if (!typed.write_every.empty()) command.write_every = parse_amount("--write-every", typed.write_every);
@@ -148,6 +152,10 @@ void add_render(Arguments& root, Command& chosen) {
         "end the render when its mean estimated error is below T");
   value(app, "--write-every", "S", typed->write_every, "write the picture so far every S seconds");
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
+  app->add_flag(
+      "--draft", command.draft,
+      "a preview by kernels that all scenes share: whatever is edited, nothing is compiled anew. They "
+      "are slower and round otherwise, so a few pixels differ from the picture");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
   value(app, "--split", "HOW", typed->split,
         "share the frame among devices: dynamic (by measured speed), static (fixed parts by estimated speed) "

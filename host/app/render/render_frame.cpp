@@ -44,6 +44,7 @@ auto timed(double& seconds, const Step& step) {
 RenderOptions render_options(const RenderCommand& command, const ImageSettings& image) {
   RenderOptions options;
   options.work_group = command.work_group;
+  if (command.draft) options.kernels = KernelChoice::draft;
   options.split = command.split;
   if (command.part) options.part = *command.part;
   options.region = command.region;

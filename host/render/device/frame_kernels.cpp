@@ -100,8 +100,10 @@ KernelConfig choose_config(Device& device, const Integrator& integrator, KernelC
 void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
-  KernelConfig config = kernels.only_general ? general_config(scene, device.info(), tuning)
-                                             : make_kernel_config(scene, device.info(), tuning);
+  const auto config_of = kernels.choice == KernelChoice::general ? general_config
+                         : kernels.choice == KernelChoice::draft ? draft_config
+                                                                 : make_kernel_config;
+  KernelConfig config = config_of(scene, device.info(), tuning);
   if (kernels.mattes) config.numbers["HAS_MATTES"] = 1;
   if (kernels.light) config.numbers[kernels.groups ? "HAS_LIGHT_GROUPS" : "HAS_LIGHT_PARTS"] = 1;
   if (kernels.counts_rays) config.numbers["HAS_RAY_COUNTS"] = 1;

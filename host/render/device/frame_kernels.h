@@ -26,12 +26,12 @@ struct FrameKernels {
   struct MoreAovs {
     bool all = false, features = false;  // vectors
     friend bool operator==(const MoreAovs&, const MoreAovs&) = default;
-  } wanted_aovs, there_aovs;            // of first_surfaces
-  bool mattes = false;                  // the integrator notes what covers pixels
-  bool light = false;                   // and keeps the parts of their light apart,
-  bool groups = false;                  // or that of groups of lights
-  bool counts_rays = false;             // the integrator counts rays per pixel
-  bool only_general = false;            // use general_config() even if the scene's own could be built
+  } wanted_aovs, there_aovs;  // of first_surfaces
+  bool mattes = false;        // the integrator notes what covers pixels
+  bool light = false;         // and keeps the parts of their light apart,
+  bool groups = false;        // or that of groups of lights
+  bool counts_rays = false;   // the integrator counts rays per pixel
+  KernelChoice choice = KernelChoice::own;
   SceneKernel<Buffer<u32>> find_media;  // only if the camera has been inside a solid
   std::string entry;                    // of the integrator
   bool camera_inside = false;           // tables.camera_media are not the outside's

@@ -193,6 +193,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 }
 
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
+  if (!calls_functions(device)) return general_config(scene, device, tuning);
   KernelConfig config = deep_config(scene, device, tuning, draft_depth);
   constexpr unsigned all_kinds = 65535;
   for (auto& [name, number] : config.numbers) {

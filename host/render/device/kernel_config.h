@@ -55,7 +55,7 @@ KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& d
 bool drafts(const KernelConfig& draft, const KernelConfig& wanted);
 
 /// All features except the scene's own fog, lens, filter and motion: slow and rounding differently, so its
-/// picture is replaced later. Only if interpreting_config() may be built. Pure.
+/// picture is replaced later. general_config() if interpreting_config() may not be built. Pure.
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
 
 /// general_config() and, with fields, interpreting_config(); the first one also with and without features

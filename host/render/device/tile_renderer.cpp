@@ -61,7 +61,7 @@ bool makes_aovs(const CompiledScene& scene, const RenderOptions& options) {
 /// Applies a frame's options to the kernels.
 FrameKernels wanted_by(const RenderOptions& options, KernelStore* store, FrameKernels kernels) {
   kernels.store = options.kernels == KernelChoice::own_when_built ? store : nullptr;
-  kernels.only_general = options.kernels == KernelChoice::general;
+  kernels.choice = options.kernels;
   const AovLayout layout = aov_layout(options.aovs);
   kernels.wanted_aovs = {layout.surfaces == all_aov_vectors, shows_features(options.aovs)};
   kernels.mattes = layout.mattes;

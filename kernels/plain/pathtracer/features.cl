@@ -45,6 +45,10 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   SurfaceShading at;
   shade_hits(scene, ray, &met, &at);
   follow_hero(&f->path.wavelengths, &at.bsdf);
+  if (HAS_CATCHERS && first && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
+    pass_straight(scene, &met, &at, ray);
+    return true;
+  }
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const Numbers u = numbers_at(&f->path.at, dimension_here(&f->path, BOUNCE_DIRECTION), true, true);
   const BsdfSample sample = sample_lobes(scene, &at.bsdf, &lobes, -ray->d, u.z, u.x, u.y);

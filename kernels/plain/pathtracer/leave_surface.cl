@@ -29,6 +29,17 @@ static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* me
   *ray = child;
 }
 
+// The path continues straight behind a surface that the camera does not see.
+HAVING(HAS_CATCHERS)
+static inline void pass_straight(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
+                                 SceneRay* ray) {
+  float way;
+  SceneRay behind = leaving_ray(scene, ray, met, at, ray->d, true, &way);
+  behind.t_max = INFINITY;
+  cross_further(ray, &behind);
+  *ray = behind;
+}
+
 // The shadow ray to a light that was chosen.
 static inline SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
                                     const SurfaceShading* at, const LightSample* light, bool below) {

@@ -56,10 +56,6 @@ HAVING(HAS_CATCHERS)
 static void pass_catcher(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                          PathState* path, SceneRay* ray, UNIFORM u32* counts) {
   if (scene->info->light_count > 0u) path->throughput *= part_arriving(scene, path, ray, met, at, counts);
-  float way;
-  SceneRay behind = leaving_ray(scene, ray, met, at, ray->d, true, &way);
-  behind.t_max = INFINITY;
-  cross_further(ray, &behind);
-  *ray = behind;
+  pass_straight(scene, met, at, ray);
   note_ray(counts);
 }
