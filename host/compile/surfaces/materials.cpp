@@ -185,7 +185,7 @@ u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
     out.features.checker |= material.checker;
     if (material.shadow_catcher && !in.paths)
       throw SceneError(*in.file, "/materials/" + material.name + "/shadow_catcher",
-                       "needs paths: set \"/render/integrator\" to \"path\", or give --integrator path");
+                       "a shadow catcher needs paths: set /render/integrator to \"path\"");
     out.features.catchers |= material.shadow_catcher;
     out.materials.push_back(packed);
   }

@@ -98,8 +98,9 @@ TEST_CASE("a shadow catcher needs paths and a surface without an inside") {
     }
     return std::string();
   };
-  CHECK_THAT(refusal(R"({"shadow_catcher": true})", "whitted"),
-             ContainsSubstring("/materials/floor/shadow_catcher") && ContainsSubstring("--integrator path"));
+  CHECK_THAT(
+      refusal(R"({"shadow_catcher": true})", "whitted"),
+      ContainsSubstring("/materials/floor/shadow_catcher") && ContainsSubstring("set /render/integrator"));
   CHECK_THAT(refusal(R"({"type": "dielectric", "ior": 1.5, "shadow_catcher": true})", "path"),
              ContainsSubstring("/materials/floor/shadow_catcher"));
 }
