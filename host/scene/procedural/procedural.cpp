@@ -10,6 +10,7 @@
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
 #include "scene/procedural/terrain.h"
+#include "scene/read/field_formulas.h"
 
 namespace sundog {
 
@@ -94,6 +95,19 @@ Image levels_of(const JsonValue& file, const ReadPicture& read_picture) {
   return picture;
 }
 
+/// A formula of p that is a number.
+LoweredPattern read_heights(JsonObject& object) {
+  try {
+    LoweredPattern formula = lower_pattern({read_text(object, "formula"), {}});
+    if (formula.values.size() != 1) object.at("formula").fail("a height is a number, found a vec3");
+    return formula;
+  } catch (const FormulaError& error) {
+    FormulaError placed = error;
+    placed.section = "formula";
+    fail_formula(object.value(), placed);
+  }
+}
+
 Terrain read_terrain(JsonObject& object, const ReadPicture& read_picture) {
   Terrain terrain;
   object.read("seed", terrain.seed, "size", terrain.size, "height", terrain.height);
@@ -101,6 +115,10 @@ Terrain read_terrain(JsonObject& object, const ReadPicture& read_picture) {
   object.read("cells", terrain.cells);
   if (const auto file = object.find("file"); file && read_picture)
     terrain.picture = levels_of(*file, read_picture);
+  if (object.has("formula")) {
+    object.not_both("formula", "file");
+    terrain.formula = read_heights(object);
+  }
   return terrain;
 }
 

@@ -3,9 +3,13 @@
 
 #include <tbb/parallel_for.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "scene/procedural/ice_block.h"
 #include "scene/procedural/random.h"
 
 namespace sundog {
@@ -56,6 +60,20 @@ double value_at(const Image& picture, double u, double v) {
                   y - top);
 }
 
+/// The heights of a row of places with the same z.
+void follow_formula(const LoweredPattern& formula, std::span<const dvec2> places, double* heights) {
+  GraphProgram program(formula.graph, formula.values);
+  for (const dvec2& place : places) {
+    const dvec3 p(place.x, 0, place.y);
+    const auto input = [&](int index) { return index < 3 ? p[index] : 0.0; };
+    const double height = program.run([&](int index) { return input(index - formula_input::p); }).front();
+    if (!(std::abs(height) <= 1e6))
+      throw GenerateError(
+          fmt::format("the formula has no height up to 1e6 at x = {:.4g}, z = {:.4g}", p.x, p.z));
+    *heights++ = height;
+  }
+}
+
 /// From 0 to the terrain's height.
 void even_out(const Terrain& terrain, std::vector<double>& heights) {
   const auto [low, high] = std::ranges::minmax(heights);
@@ -80,9 +98,13 @@ Mesh make_terrain(const Terrain& terrain) {
     return terrain.height * value_at(*terrain.picture, double(i) / double(nx), double(k) / double(nz));
   };
   tbb::parallel_for(std::size_t{0}, nz + 1, [&](std::size_t k) {
-    for (std::size_t i = 0; i <= nx; ++i) heights[k * (nx + 1) + i] = height_of(i, k);
+    double* const row = &heights[k * (nx + 1)];
+    std::vector<dvec2> places;
+    for (std::size_t i = 0; terrain.formula && i <= nx; ++i) places.push_back(place(i, k));
+    if (terrain.formula) return follow_formula(*terrain.formula, places, row);
+    for (std::size_t i = 0; i <= nx; ++i) row[i] = height_of(i, k);
   });
-  if (!terrain.picture) even_out(terrain, heights);
+  if (!terrain.picture && !terrain.formula) even_out(terrain, heights);
 
   const auto height = [&](std::size_t i, std::size_t k) { return heights[k * (nx + 1) + i]; };
   Mesh mesh;

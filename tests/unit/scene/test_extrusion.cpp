@@ -76,3 +76,11 @@ TEST_CASE("a sweep is level, upright and round where it should be, and its norma
   }
   CHECK_THROWS_WITH(make_sweep({.size = {6, 4}, .height = 3, .radius = 3.5}), ContainsSubstring("radius"));
 }
+
+TEST_CASE("a terrain by a formula has its values as heights, and refuses what is no height") {
+  const Mesh mesh = make_terrain(
+      {.size = {4, 2}, .cells = 32, .formula = lower_pattern({"r = p.x * p.x\n0.25 * r - p.z", {}})});
+  for (const glm::vec3& p : mesh.positions) CHECK(p.y == Approx(0.25f * p.x * p.x - p.z).margin(1e-6));
+  CHECK_THROWS_WITH(make_terrain({.formula = lower_pattern({"1e9 * p.x", {}})}),
+                    ContainsSubstring("no height up to 1e6"));
+}

@@ -59,6 +59,7 @@ const std::string everything = R"({
     "v": {"generate": {"type": "lathe", "profile": [[0, 0], [1, 0], [1, 2], [0.8, 2, 0.05], [0.8, 0.2], [0, 0.2]], "segments": 8}},
     "e": {"generate": {"type": "extrusion", "outline": [[0, 0], [1, 0], [0, 1, 0.1]]}},
     "m": {"generate": {"type": "terrain", "cells": 4, "octaves": 2}},
+    "tf": {"generate": {"type": "terrain", "cells": 4, "formula": "p.x"}},
     "sw": {"generate": {"type": "sweep"}},
     "w": {"generate": {"type": "fill", "vessel": "v", "to": 1, "meniscus": 0.01}}},
   "animate": [{"type": "smooth", "value": "/camera/fov", "keys": [{"frame": 0, "value": 30}, {"frame": 9, "value": 40}]},
