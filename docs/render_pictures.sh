@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # Renders every shipped scene, at least 960 pixels wide, to docs/pictures/NAME.jpg and every surface of the list to docs/pictures/formulas.png, as the
 # pages show them. Arguments go to `render`. The second needs the bench programs (./test.sh builds them).
-# `render_pictures.sh gallery [NAME...]` renders the scenes of scenes/gallery instead, all or those named: ten minutes each; what is
-# interrupted continues where it was.
+# `render_pictures.sh gallery [NAME...] [OPTION...]` renders the scenes of scenes/gallery instead, all or those named, with as many
+# samples as each scene says, so each takes the time that docs/gallery.md states. What is interrupted continues where it was.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 if [ "${1:-}" = gallery ]; then
   shift
-  scenes=$root/scenes/gallery pictures=$root/docs/pictures/gallery
+  scenes=$root/scenes/gallery pictures=$root/docs/pictures/gallery names=()
   [ -e "$scenes/whisky_glass.ply" ] || "$scenes/make_meshes.py"
-  [ $# -gt 0 ] || set -- $(cd "$scenes" && basename -s .json ./*.json)
-  for name; do
-    "$root/run.sh" render "$scenes/$name.json" -o "$pictures/$name.jpg" --time-limit 600 --denoise --resume "$pictures/$name.checkpoint"
+  while [ $# -gt 0 ] && [[ $1 != -* ]]; do names+=("$1"); shift; done
+  [ ${#names[@]} -gt 0 ] || mapfile -t names < <(cd "$scenes" && basename -s .json ./*.json)
+  for name in "${names[@]}"; do
+    "$root/run.sh" render "$scenes/$name.json" -o "$pictures/$name.jpg" --denoise --resume "$pictures/$name.checkpoint" "$@"
   done
   exit
 fi

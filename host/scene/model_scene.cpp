@@ -6,6 +6,7 @@
 
 #include "scene/bounds.h"
 #include "scene/kinds.h"
+#include "scene/materials/by_integrator.h"
 
 namespace sundog {
 using nlohmann::json;
@@ -46,12 +47,14 @@ json to_json(const LightDescription& light) {
 
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-/// The greatest reflectance of the model's materials, where they face a light.
+/// The greatest reflectance of the model's materials for paths, where they face a light.
 double brightness_of(const Model& model) {
   double vertex_color = 0, brightest = 0;
   for (const Mesh& mesh : model.meshes)
     for (const glm::vec3& color : mesh.colors) vertex_color = std::max(vertex_color, greatest(dvec3(color)));
-  const auto add = [&](const MaterialDescription& m) {
+  const auto add = [&](MaterialDescription material) {
+    conserve_light(material);
+    const MaterialDescription& m = surface_for(true, material);
     const double color = m.vertex_color ? vertex_color : 1;
     const double broad = 20 / std::max(m.exponent, 20.0);  // a narrow highlight may be white
     brightest = std::max(brightest, color * greatest(m.diffuse) + broad * greatest(m.specular));
@@ -64,15 +67,6 @@ double brightness_of(const Model& model) {
   };
   if (std::ranges::any_of(model.objects, is_grey)) add({});
   return brightest;
-}
-
-/// Whether a Phong material returns more light than it gets, as many files say. Along paths between such
-/// surfaces light would grow.
-bool makes_light(const Model& model) {
-  return std::ranges::any_of(model.materials, [](const MaterialDescription& m) {
-    return m.type == MaterialType::phong && !m.metal_rough && !m.layers && !m.by_paths &&
-           greatest(m.diffuse + m.specular + m.reflection + m.transmission) > 1;
-  });
 }
 
 /// A soft key light above the camera's left shoulder, and a sky of the background's colours.
@@ -172,10 +166,10 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
       {"render", json::object()},
       {"materials", json::object()},
       {"lights", key_light(made_up)},
-      {"objects", {{{"type", "model"}, {"file", file.filename().string()}}}}};
+      {"objects", {{{"type", "model"}, {"file", file.filename().string()}, {"conserve", true}}}}};
   if (model.lights.empty()) {
     document["environment"] = soft_sky(made_up);
-    document["render"] = {{"integrator", makes_light(model) ? "whitted" : "path"}, {"samples", 64}};
+    document["render"] = {{"integrator", "path"}, {"samples", 64}};
   }
   set_view(document, model);
   if (!model.camera && model.lights.empty() && !bounds.empty())

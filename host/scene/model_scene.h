@@ -11,9 +11,8 @@ namespace sundog {
 /// A scene document that places `file` (with content `model`). Camera, lights, image size and background come
 /// from the model; defaults are a camera that frames the bounds, of all of its animations if it `plays`, in
 /// an image of width / height `aspect` (none: the document's image), and a light background. A model without
-/// lights is traced by paths (by `whitted` if a material returns more light than it gets) under a soft sky
-/// and a key light, which expose its brightest material just below white; without a camera too it gets a
-/// matte ground, the second object.
+/// lights is traced by paths under a soft sky and a key light, which expose its brightest material just below
+/// white; without a camera too it gets a matte ground, the second object.
 nlohmann::json make_model_scene(const std::filesystem::path& file, const Model& model,
                                 std::optional<double> aspect = std::nullopt, bool plays = false);
 

@@ -75,7 +75,8 @@ double sun_share(const EnvironmentDescription& e) {
   return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));
 }
 
-/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below it.
+/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below it. The row below
+/// the horizon repeats the one above: interpolated with the ground, the sky would have a dark rim there.
 template <class Light>
 Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, const Light& light_along) {
   const dvec3 factor = e.color * e.intensity;
@@ -90,7 +91,8 @@ Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, c
     }
   level += sky_of(e).sun_irradiance() * (std::max(0.0, sun_in_axes(e).y) * sun_share(e));
   const auto horizon = picture.pixels.begin() + std::ptrdiff_t{rows / 2} * columns;
-  std::fill(horizon, picture.pixels.end(), pack(level * e.ground * factor));
+  std::copy(horizon - columns, horizon, horizon);
+  std::fill(horizon + columns, picture.pixels.end(), pack(level * e.ground * factor));
   return picture;
 }
 

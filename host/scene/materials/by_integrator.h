@@ -1,5 +1,6 @@
 // Materials that differ between path tracing and the classical integrator.
 #pragma once
+#include <algorithm>
 #include <memory>
 
 #include "models/values/material.h"
@@ -19,6 +20,19 @@ void change_all(MaterialDescription& material, const Change& change) {
   auto other = std::make_shared<MaterialDescription>(*material.by_paths);
   change(*other);
   material.by_paths = std::move(other);
+}
+
+/// Gives a Phong material that returns more light than it gets, as many files say, a dimmer one for paths:
+/// between such surfaces light would grow.
+inline void conserve_light(MaterialDescription& m) {
+  if (m.type != MaterialType::phong || m.metal_rough || m.layers || m.by_paths) return;
+  const dvec3 returned = m.diffuse + m.specular + m.reflection + m.transmission;
+  const double most = std::max({returned.x, returned.y, returned.z});
+  if (most <= 1) return;
+  auto dimmer = std::make_shared<MaterialDescription>(m);
+  for (dvec3* part : {&dimmer->diffuse, &dimmer->specular, &dimmer->reflection, &dimmer->transmission})
+    *part /= most;
+  m.by_paths = std::move(dimmer);
 }
 
 }  // namespace sundog

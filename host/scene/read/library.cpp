@@ -87,13 +87,14 @@ Model ModelLibrary::read(const std::string& key, const fs::path& file, const Mod
 }
 
 const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValue& from, const fs::path& file,
-                                              const ModelOptions& options) {
+                                              const ModelOptions& options, bool conserve) {
   Playing playing;
   object.read("animation", playing.animation, "cycle", playing.cycle);
   const auto name = object.find("animation"), cycle = object.find("cycle");
-  const std::tuple key(file_key(file), options.crease_angle, playing.animation, playing.cycle);
+  const std::tuple key(file_key(file), options.crease_angle, playing.animation, playing.cycle, conserve);
   if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
   Model model = read(std::get<0>(key), file, options, from.pointer());
+  if (conserve) std::ranges::for_each(model.materials, conserve_light);
   const std::vector<std::string>& known = model.animations;
   if (const auto& asked = name ? name : cycle; asked && known.empty() && (name || playing.cycle))
     asked->fail(fmt::format("{} has no animations", file.filename().string()));
@@ -109,11 +110,13 @@ const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValu
 
 void ModelLibrary::keep(const fs::path& file, Model model) {
   const std::string key = file_key(file);
-  if (model.pose)
+  if (model.pose) {
     kept_.emplace(key, std::move(model));
-  else
-    loaded_.emplace(std::tuple(key, std::nullopt, "", false),
-                    add(std::move(model), file.filename().string()));
+    return;
+  }
+  std::ranges::for_each(model.materials, conserve_light);
+  loaded_.emplace(std::tuple(key, std::nullopt, "", false, true),
+                  add(std::move(model), file.filename().string()));
 }
 
 void ModelLibrary::place(const Parts& parts, const Placement& placement) {

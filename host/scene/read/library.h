@@ -39,10 +39,11 @@ class ModelLibrary {
   /// Adds a model; `name` prefixes its materials' and media's names.
   Parts add(Model model, const std::string& name);
   /// Adds what the object names: the model file at `from`, with its animations at the scene's time, or what
-  /// was added before. Throws what load_model() throws.
+  /// was added before. If asked to `conserve`, its materials return no more light along paths than they get.
+  /// Throws what load_model() throws.
   const Parts& load(JsonObject& object, const JsonValue& from, const std::filesystem::path& file,
-                    const ModelOptions& options);
-  /// Adds a model that has been read already, for load() to find.
+                    const ModelOptions& options, bool conserve = false);
+  /// Adds a model that has been read already, for load() that is to `conserve`.
   void keep(const std::filesystem::path& file, Model model);
 
   /// Adds each part of a model to the scene's objects.
@@ -58,7 +59,7 @@ class ModelLibrary {
   FrameCache* cache_;
   std::optional<double> seconds_;
   std::map<std::string, Model> kept_;  // by file
-  std::map<std::tuple<std::string, std::optional<double>, std::string, bool>, Parts> loaded_;
+  std::map<std::tuple<std::string, std::optional<double>, std::string, bool, bool>, Parts> loaded_;
   int grey_ = -1;
 };
 

@@ -203,7 +203,9 @@ class SceneReader {
         library_.place(find_mesh(name), placement);
       } else if (type == "model") {
         const JsonValue file = object.at("file");
-        library_.place(library_.load(object, file, find_model(file), model_options()), placement);
+        bool conserve = false;
+        object.read("conserve", conserve);
+        library_.place(library_.load(object, file, find_model(file), model_options(), conserve), placement);
       } else if (type == "field") {
         place_field(object, find_name(object.at("field"), fields_, "field"), placement);
       } else if (field) {

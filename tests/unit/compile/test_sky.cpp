@@ -109,3 +109,13 @@ TEST_CASE("the sky of a low sun meets that of dusk and that of the day") {
     CHECK(most_apart < 0.01);
   }
 }
+
+TEST_CASE("the sky keeps its colour down to the horizon, and the ground begins below it") {
+  SceneDescription scene;
+  scene.environment.type = EnvironmentType::sky;
+  const auto pixels = compile(scene).environment;
+  constexpr std::size_t columns = 512, horizon = 128 * columns;  // the first row below it
+  for (std::size_t i = horizon; i < horizon + columns; ++i) REQUIRE(pixels[i].w == pixels[i - columns].w);
+  CHECK(pixels[horizon + columns].w == pixels.at(horizon + 2 * columns).w);
+  CHECK(pixels[horizon + columns].w < pixels[horizon].w);
+}

@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "scene/bounds.h"
 #include "scene/load.h"
+#include "scene/materials/by_integrator.h"
 #include "scene/model_scene.h"
 #include "scene/read/scene_reader.h"
 #include "scene_text.h"
@@ -86,7 +87,8 @@ double brightest(const SceneDescription& scene) {
   const double light = scene.lights.at(0).intensity + std::max({sky.x, sky.y, sky.z});
   double most = 0;
   for (std::size_t i = 0; i < 2; ++i) {
-    const MaterialDescription& m = scene.materials.at(static_cast<std::size_t>(scene.objects[i].material));
+    const MaterialDescription& m =
+        surface_for(true, scene.materials.at(static_cast<std::size_t>(scene.objects[i].material)));
     const dvec3 sum = light * (m.exponent < 20 ? m.diffuse + m.specular : m.diffuse);
     most = std::max({most, sum.x, sum.y, sum.z});
   }
@@ -105,9 +107,18 @@ TEST_CASE("made-up lights leave no matte material white, and dark ones not black
   CHECK(dark < 0.3);
 }
 
-TEST_CASE("a model whose materials return more light than they get is not traced by paths") {
-  CHECK(lit(dvec3(0), dvec3(0.8), 0.2).render.integrator == "path");
-  CHECK(lit(dvec3(0), dvec3(0.8), 0.5).render.integrator == "whitted");  // Blender's usual MTL
+TEST_CASE("for paths a bare model's materials return no more light than they get") {
+  const SceneDescription fine = lit(dvec3(0), dvec3(0.8), 0.2), bright = lit(dvec3(0), dvec3(0.8), 0.5);
+  CHECK(bright.render.integrator == "path");
+  const auto material_of = [](const SceneDescription& scene) {
+    return scene.materials.at(static_cast<std::size_t>(scene.objects[0].material));
+  };
+  CHECK(!material_of(fine).by_paths);
+  const MaterialDescription m = material_of(bright);  // as Blender's usual MTL
+  CHECK(m.diffuse.x == 0.8);
+  REQUIRE(m.by_paths);
+  CHECK(m.by_paths->diffuse.x == Approx(0.8 / 1.3));
+  CHECK(m.by_paths->specular.x == Approx(0.5 / 1.3));
 }
 
 TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
