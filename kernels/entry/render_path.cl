@@ -14,58 +14,59 @@
 #include "plain/pathtracer/bounce.cl"
 #include "shared/launch.h"
 
-#define NO_PLACE (-1)
+#define NO_PLACE 0
 
-// What a work-item's lanes are at. All zero is a work-item that has ended: Mesa's llvmpipe (22.3) runs groups
-// in whole vectors, and where a group does not fill one, the others loop by the zeros that they read here.
+// What a work-item's lanes are at; the pixels and samples are in their paths. All zero is a work-item that
+// has ended: Mesa's llvmpipe (22.3) runs groups in whole vectors, and where a group does not fill one, the
+// others loop by the zeros that they read here.
 typedef struct LaneWork {
   u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item
-  LaneSamples at;     // the lanes' pixels of the image, and the samples that they take next
-  MASK left;          // the samples that their pixels still get
-  MASK place;         // the same pixels in the rectangle, or NO_PLACE
+  MASK place;         // 1 + the lanes' pixels in the rectangle, or NO_PLACE
   float sign[BATCH];  // what the sample counts that the lane is at
 } LaneWork;
 
-static inline LaneWork begin_work(const Scene* scene, u32 first, u32 end) {
+static inline LaneWork begin_work(u32 first, u32 end) {
   LaneWork work;
   work.untaken = first * BATCH;
   work.end = end * BATCH;
-  work.at.x = work.at.y = work.at.sample = work.left = NO_LANES;
-  work.at.seed = scene->info->seed;
   work.place = (MASK)(NO_PLACE);
   return work;
 }
 
 // The lane is done with its pixel and takes the next that no lane has, if there is one.
-static inline void take_pixel(const Launch* launch, __global const u32* restrict pixels, u32 lane,
-                              LaneWork* work, u32* counts, __global u32* restrict ray_counts) {
+static inline void take_pixel(const Launch* launch, __global const u32* restrict pixels, u32 lane, u32 seed,
+                              LaneWork* work, LaneSamples* at, u32* counts,
+                              __global u32* restrict ray_counts) {
   const int done = MASK_LANE(work->place, lane);
-  if (done != NO_PLACE) add_lane_rays(launch, (u32)done, lane, counts, ray_counts);
+  if (done != NO_PLACE) add_lane_rays(launch, (u32)done - 1u, lane, counts, ray_counts);
   MASK_LANE(work->place, lane) = NO_PLACE;
   while (work->untaken < work->end) {
     const u32 taken = work->untaken++;
-    const uint2 at = lane_pixel(launch, taken / BATCH, taken % BATCH);
+    const uint2 offset = lane_pixel(launch, taken / BATCH, taken % BATCH);
     uint2 pixel;
-    if (!image_pixel(launch, pixels, at, &pixel)) continue;
-    MASK_LANE(work->at.x, lane) = (int)pixel.x;
-    MASK_LANE(work->at.y, lane) = (int)pixel.y;
-    MASK_LANE(work->at.sample, lane) = (int)launch->first_sample;
-    MASK_LANE(work->left, lane) = (int)launch->sample_count;
-    MASK_LANE(work->place, lane) = (int)(at.y * launch->width + at.x);
+    if (!image_pixel(launch, pixels, offset, &pixel)) continue;
+    MASK_LANE(at->x, lane) = (int)pixel.x;
+    MASK_LANE(at->y, lane) = (int)pixel.y;
+    MASK_LANE(at->sample, lane) = (int)launch->first_sample;
+    at->seed = seed;
+    MASK_LANE(work->place, lane) = (int)(offset.y * launch->width + offset.x) + 1;
     return;
   }
 }
 
-// The lanes of `idle` that have samples left begin with them. Returns those lanes.
+// The lanes of `idle` begin with their pixels' next samples. Returns those that have one.
 NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
-                                  __global const u32* restrict pixels, MediaStack around, MASK idle,
-                                  LaneWork* work, PathStates* paths, SceneRays* rays, u32* counts,
+                                  __global const u32* restrict pixels,
+                                  __global const u32* restrict camera_media, MASK idle, LaneWork* work,
+                                  PathStates* paths, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
-  EACH_LANE(lane, idle & MASK_OF(work->left == 0)) take_pixel(launch, pixels, lane, work, counts, ray_counts);
-  const BegunSamples begun = {work->at, idle & MASK_OF(work->left != 0)};
+  const int last = (int)(launch->first_sample + launch->sample_count);
+  const MASK done = idle & (MASK_OF(paths->at.sample == last) | MASK_OF(work->place == NO_PLACE));
+  EACH_LANE(lane, done)
+  take_pixel(launch, pixels, lane, scene->info->seed, work, &paths->at, counts, ray_counts);
+  const BegunSamples begun = {paths->at, idle & MASK_OF(work->place != NO_PLACE)};
   if (!any_lane(begun.lanes)) return NO_LANES;
-  work->at.sample -= begun.lanes;
-  work->left += begun.lanes;
+  const MediaStack around = (MediaStack)camera_media[1] << 32 | camera_media[0];
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
   *rays = select_SceneRay(*rays, first, begun.lanes);
   *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);
@@ -77,7 +78,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
 static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
                               const PathStates* paths, MASK lanes, __global float4* restrict film) {
   EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f)) {
-    add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane)),
+    add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane) - 1u),
               MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
               work->sign[lane] * REAL_LANE(paths->matte, lane));
   }
@@ -89,7 +90,7 @@ static inline void add_mattes(const Scene* scene, const Launch* launch, const La
 static inline void add_part(const Launch* launch, const LaneWork* work, const REAL3* light,
                             const float* shares, MASK lanes, u32 part, __global float4* restrict film) {
   EACH_LANE(lane, lanes) {
-    const u32 place = (u32)MASK_LANE(work->place, lane);
+    const u32 place = (u32)MASK_LANE(work->place, lane) - 1u;
     __global float* sum =
         (__global float*)(sample_sums(launch, film, place) + FIRST_LIGHT_VECTOR) + 3u * part;
     const float3 added = shares[lane] * get3(light, lane);
@@ -119,21 +120,20 @@ NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, cons
 #endif
 
 // One work-item of the kernel below: items [first, end).
-NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Launch* launch, u32 first,
-                               u32 end, __global const u32* restrict pixels, __global float4* restrict film,
-                               __global float* restrict weights, __global u32* restrict counters,
-                               __global u32* restrict ray_counts) {
-  u32 counts[ALL_COUNTS];
-  for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
+NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict camera_media,
+                               const Launch* launch, u32 first, u32 end, __global const u32* restrict pixels,
+                               __global float4* restrict film, __global float* restrict weights,
+                               __global u32* restrict counters, __global u32* restrict ray_counts) {
+  u32 counts[ALL_COUNTS];  // volatile: in memory, since a GPU's registers are for the path
+  for (u32 i = 0; i < ALL_COUNTS; ++i) ((volatile u32*)counts)[i] = 0;
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
-  LaneWork work = begin_work(scene, first, end);
-  const Rays none = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  PathStates paths = start_path(scene, &work.at, NO_LANES);
-  SceneRays rays = scene_rays(&none, around);
+  LaneWork work = begin_work(first, end);
+  PathStates paths;  // set where lanes begin; nothing reads the others
+  SceneRays rays;
   MASK lanes = NO_LANES;
   for (;;) {
-    const MASK begun =
-        fill_idle_lanes(scene, launch, pixels, around, ~lanes, &work, &paths, &rays, counts, ray_counts);
+    const MASK begun = fill_idle_lanes(scene, launch, pixels, camera_media, ~lanes, &work, &paths, &rays,
+                                       counts, ray_counts);
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
@@ -148,12 +148,14 @@ NEVER_INLINE void render_items(const Scene* scene, MediaStack around, const Laun
     EACH_LANE(lane, over) {
       const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane)),
                    limited = limit_components(radiance, scene->info->max_component);
-      store_sample((u32)MASK_LANE(work.place, lane), limited, work.sign[lane], film, weights, counts);
+      store_sample((u32)MASK_LANE(work.place, lane) - 1u, limited, work.sign[lane], film, weights, counts);
     }
     HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
+    paths.at.sample -= over;
   }
-  add_counts(counters, counts);
-  add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
+  __global u32* own = counters_of(counters, first);
+  add_counts(own, counts);
+  add_finished(own, counts[COUNT_PRIMARY], launch->sample_count);
 }
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of items
@@ -168,7 +170,6 @@ __kernel void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_
   const u32 place = get_global_id(1) * launch.row_items + get_global_id(0),
             first = launch.first_item + place * launch.run;
   if (get_global_id(0) >= launch.row_items || first >= launch.last_item) return;
-  render_items(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, first,
-               min(first + launch.run, launch.last_item), pixels, film, weights, counters_of(counters, first),
-               ray_counts);
+  render_items(&scene, camera_media, &launch, first, min(first + launch.run, launch.last_item), pixels, film,
+               weights, counters, ray_counts);
 }

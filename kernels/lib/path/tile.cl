@@ -33,8 +33,8 @@ static inline u32 pixel_of_tile(const Launch* launch, uint2 corner, u32 lane) {
 // The image pixel that pixel `at` of the rectangle stands for. False: none.
 static inline bool image_pixel(const Launch* launch, __global const u32* restrict pixels, uint2 at,
                                uint2* pixel) {
-  if (at.x >= launch->width || at.y >= launch->height) return false;
   *pixel = (uint2)(launch->x0, launch->y0) + at;
+  if (at.x >= launch->width || at.y >= launch->height) return false;
   if (!launch->listed) return true;
   const u32 listed = pixels[at.y * launch->width + at.x];
   *pixel = (uint2)(listed & 0xffffu, listed >> 16);

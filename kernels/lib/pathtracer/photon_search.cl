@@ -112,7 +112,7 @@ static inline MASK next_photon(const Scene* scene, PhotonSearches* searches, MAS
                                REAL3* flux) {
   MASK found = NO_LANES;
   EACH_LANE(i, lanes) {
-    float3 from, light;
+    float3 from = (float3)(0.0f), light = from;
     if (!find_photon(scene, searches->of + i, &from, &light)) continue;
     set3(wi, i, from);
     set3(flux, i, light);

@@ -8,14 +8,28 @@
 #include "plain/pathtracer/scatter_media.cl"
 #include "plain/pathtracer/shadow_catcher.cl"
 
-// What a lamp that is chosen sends to the surface, times what that makes of it.
-static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
-                                     const Encounter* met, const SurfaceShading* at, const LobeSet* lobes,
-                                     const Numbers* u, UNIFORM u32* counts) {
+// Light on its way to a surface: of a lamp that the surface has chosen, and of photons. The shadow ray waits
+// until the path has its next ray: then a GPU's registers hold that and no longer the surface.
+typedef struct LampLight {
+  bool some;
+  SceneRay ray;                                  // from the surface to the lamp
+  SampledSpectrum light;                         // what the surface makes of it, if all arrives
+  HAVING(HAS_CAUSTICS) SampledSpectrum photons;  // what it makes of theirs
+  HAVING(HAS_LIGHT_GROUPS) int chosen;
+  HAVING(HAS_LIGHT_PARTS) LobeShares shares;  // of the lobes that scattered it last before the camera
+  HAVING(HAS_LIGHT_PARTS) bool direct;        // those are the surface's
+} LampLight;
+
+// What the lamp sends to the surface, times what that makes of it.
+static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
+                        const Encounter* met, const SurfaceShading* at, const LobeSet* lobes, LampLight* lamp,
+                        UNIFORM u32* counts) {
+  const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
+  const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
   bool seen;  // rays may meet the lamp: the path's next ray has its share
   float scattered;
   int chosen;
-  const LightSample light = choose_one(scene, at->s.p, u, &chosen, &seen);
+  const LightSample light = choose_one(scene, at->s.p, &u, &chosen, &seen);
   const float3 scattering = bsdf_scatter(scene, &at->bsdf, lobes, -ray->d, light.wi, &scattered);
   scattered = guided_pdf(scene, lobes, at->s.p, light.wi, scattered);
   const float weight = weight_of_chosen(scene, light.pdf, seen ? scattered : 0.0f);
@@ -30,19 +44,27 @@ static SampledSpectrum light_of_lamp(UNIFORM const Scene* scene, PathState* path
   }
   if (HAS_MEDIA && below) possible *= 1.0f / (lobes->split.eta * lobes->split.eta);
   possible *= path->throughput;
-  if (!(spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f)) return (SampledSpectrum)(0.0f);
+  lamp->some = spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f;
+  lamp->light = kept_hero(scene, at, &lobes->split, path, possible);
+  lamp->ray = ray_to_light(scene, ray, met, at, &light, below);
+  if (HAS_LIGHT_GROUPS) lamp->chosen = chosen;
+  if (HAS_LIGHT_PARTS) {
+    lamp->direct = path->scatterings == 0;
+    lamp->shares = path->shares;
+    if (lamp->direct)
+      lamp->shares = shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, -ray->d, light.wi, below);
+  }
+}
+
+// The part of the lamp's light that arrives.
+static SampledSpectrum arriving_of_lamp(UNIFORM const Scene* scene, PathState* path, LampLight* lamp,
+                                        UNIFORM u32* counts) {
   count(counts, COUNT_SHADOW);
   note_ray(counts);
-  SceneRay to_light = ray_to_light(scene, ray, met, at, &light, below);
   const SampledSpectrum arriving =
-      kept_hero(scene, at, &lobes->split, path,
-                arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts));
-  if (HAS_LIGHT_GROUPS) note_group(path, group_of(scene, chosen), arriving);
-  if (HAS_LIGHT_PARTS) {
-    const LobeShares shares =
-        shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, -ray->d, light.wi, below);
-    note_sent(path, &shares, true, arriving);
-  }
+      arriving_spectrum(scene, &path->wavelengths, &lamp->ray, lamp->light, counts);
+  if (HAS_LIGHT_GROUPS) note_group(path, group_of(scene, lamp->chosen), arriving);
+  if (HAS_LIGHT_PARTS) add_scattered(path, &lamp->shares, lamp->direct, arriving);
   return arriving;
 }
 
@@ -103,6 +125,45 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   return true;
 }
 
+// The path at a surface: adds what that sends along it to `light`. Returns whether the path continues.
+static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, PathState* path, SceneRay* ray,
+                          SampledSpectrum* light, UNIFORM u32* counts) {
+  SurfaceShading at;
+  shade_hits(scene, ray, met, &at);
+  follow_hero(&path->wavelengths, &at.bsdf);
+  if (HAS_CATCHERS && path->straight && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
+    pass_catcher(scene, met, &at, path, ray, counts);
+    note_matte(path, &at.s, true);
+    return true;
+  }
+  if (HAS_EMISSION)
+    *light += met_light(
+        path, SEEN_EMISSION, at.bsdf.flags >> (int)MATERIAL_GROUP_SHIFT,
+        path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met->hit, &at)));
+  const bool deep = path->depth > (int)scene->info->max_depth;
+  const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
+  const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
+  const bool free = nothing && may_cross(ray);
+  if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
+  if (deep && !free && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
+    count(counts, COUNT_DEPTH_LIMIT);
+    if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
+  }
+  LampLight lamp;
+  lamp.some = false;
+  if (HAS_CAUSTICS) lamp.photons = (SampledSpectrum)(0.0f);
+  if (!deep && scattered_share(&lobes) > 0.0f) {
+    if (scene->info->light_count > 0u) choose_lamp(scene, path, ray, met, &at, &lobes, &lamp, counts);
+    if (HAS_CAUSTICS) lamp.photons = gather_photons(scene, path, ray, &at, &lobes);
+  }
+  bool going = false;
+  if (!deep || free) going = scatter(scene, met, &at, &lobes, free, path, ray, counts);
+  note_matte(path, &at.s, going);
+  if (lamp.some) *light += arriving_of_lamp(scene, path, &lamp, counts);
+  if (HAS_CAUSTICS) *light += lamp.photons;
+  return going;
+}
+
 // Takes the path a step further: whether it continues. The light of one that does not is complete.
 // `coherent`: the rays run close together.
 ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, UNIFORM bool coherent,
@@ -125,52 +186,17 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   }
   SampledSpectrum light = (SampledSpectrum)(0.0f);
   if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, NO_LIGHT_GROUP, met_fog(scene, &met, path));
-  if (!hit_anything(&met.hit)) {
+  bool going = false;
+  if (hit_anything(&met.hit)) {
+    going = reach_surface(scene, &met, path, ray, &light, counts);
+  } else {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
     int group = NO_LIGHT_GROUP;
     if (HAS_LIGHT_GROUPS) group = note_suns(scene, path, ray->d);
-    path->radiance += light + met_light(path, SEEN_SKY, group, sky);
+    light += met_light(path, SEEN_SKY, group, sky);
     path->covered = !path->straight;
-    return false;
-  }
-
-  SurfaceShading at;
-  shade_hits(scene, ray, &met, &at);
-  follow_hero(&path->wavelengths, &at.bsdf);
-  if (HAS_CATCHERS && path->straight && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
-    path->radiance += light;
-    pass_catcher(scene, &met, &at, path, ray, counts);
-    note_matte(path, &at.s, true);
-    return true;
-  }
-  if (HAS_EMISSION)
-    light += met_light(
-        path, SEEN_EMISSION, at.bsdf.flags >> (int)MATERIAL_GROUP_SHIFT,
-        path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met.hit, &at)));
-  const bool deep = path->depth > (int)scene->info->max_depth;
-  const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
-  const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
-  const bool free = nothing && may_cross(ray);
-  if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
-  if (deep && !free && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
-    count(counts, COUNT_DEPTH_LIMIT);
-    if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
-  }
-  if (!deep && scattered_share(&lobes) > 0.0f) {
-    if (scene->info->light_count > 0u) {
-      const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
-      const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
-      light += light_of_lamp(scene, path, ray, &met, &at, &lobes, &u, counts);
-    }
-    if (HAS_CAUSTICS) light += gather_photons(scene, path, ray, &at, &lobes);
   }
   path->radiance += light;
-  if (deep && !free) {
-    note_matte(path, &at.s, false);
-    return false;
-  }
-  const bool going = scatter(scene, &met, &at, &lobes, free, path, ray, counts);
-  note_matte(path, &at.s, going);
   return going;
 }

@@ -83,8 +83,9 @@ static inline void scatter_highlight(UNIFORM const Scene* scene, const Bsdf* bsd
   if (!(lobes->highlight > 0.0f && is_above(bsdf, wi))) return;
   local_highlight(scene, bsdf, wo, wi, false, &sum->value);
   const float3 h = safe_unit3(wi + wo), mirrored = reflect_direction(-wo, bsdf->ns);
-  const float of_half = lobe_pdf(dot(bsdf->ns, h), lobes->exponent) / (4.0f * real_max(dot(wo, h), 1e-6f));
-  sum->pdf += lobes->highlight * (lobes->blinn ? of_half : lobe_pdf(dot(mirrored, wi), lobes->exponent));
+  const float cosine = lobes->blinn ? dot(bsdf->ns, h) : dot(mirrored, wi);
+  const float turned = lobes->blinn ? 4.0f * real_max(dot(wo, h), 1e-6f) : 1.0f;
+  sum->pdf += lobes->highlight * (lobe_pdf(cosine, lobes->exponent) / turned);
 }
 
 static inline float3 sample_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
