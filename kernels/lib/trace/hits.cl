@@ -116,7 +116,10 @@ static inline REAL number_below(REAL t) { return AS_REAL(AS_MASK(t) - 1); }
 static inline REAL number_above(REAL t) { return AS_REAL(AS_MASK(t) + 1); }
 static inline SolidHits begin_solids(const Hits* hits, MASK index) {
   const MASK earlier = hit_anything(hits) & MASK_OF(hits->instance <= index);
-  SolidHits solid = {select(hits->t, number_below(hits->t), earlier), hits->ng, NO_LANES, NO_LANES};
+  SolidHits solid;
+  solid.t = select(hits->t, number_below(hits->t), earlier);
+  solid.ng = hits->ng;
+  solid.part = solid.found = NO_LANES;
   HAVING(HAS_LATHE, solid.profiles = hits->profiles;)
   return solid;
 }
