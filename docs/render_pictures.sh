@@ -16,16 +16,18 @@ if [ "${1:-}" = gallery ]; then
   done
   exit
 fi
+[ $# -gt 0 ] || set -- --samples 64
 number() { grep -o "\"$2\": *[0-9]*" "$1" | head -1 | grep -o '[0-9]*$'; }
 for scene in "$root"/scenes/*.json; do
   name=$(basename "$scene" .json)
-  case "$name" in scene.schema | fractal_light_*) continue ;; esac
+  case "$name" in scene.schema | fractal_light_* | antialiasing | cornell) continue ;; esac
   width=$(number "$scene" width) height=$(number "$scene" height)
   large=$((width < 960 ? 960 : width))
-  clean=$(grep -q '"integrator": "path"' "$scene" && echo --samples 64 --denoise || echo --samples 16)
-  "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.jpg" --size "${large}x$((large * height / width))" $clean "$@"
+  clean=$(grep -q '"integrator": "path"' "$scene" && echo --denoise || true)
+  kind=$(grep -q '"transparent": true' "$scene" && echo png || echo jpg)
+  "$root/run.sh" render "$scene" -o "$root/docs/pictures/$name.$kind" --size "${large}x$((large * height / width))" $clean "$@"
 done
-"$root/run.sh" render "$root/scenes/gallery/mountain_lake.json" -o "$root/docs/pictures/evening.jpg" --size 960x540 --samples 64 \
+"$root/run.sh" render "$root/scenes/gallery/mountain_lake.json" -o "$root/docs/pictures/evening.jpg" --size 960x540 \
   --denoise --exposure 8.7 --set /environment/sun/altitude=-4 --set /environment/sun/azimuth=15 --set /environment/turbidity=4 "$@"
 "$root/run.sh" render "$root/docs/presets.json" -o "$root/docs/pictures/presets.jpg" "$@"
 "$root/run.sh" halo "$root/scenes/sundog.json" -o "$root/docs/pictures/halo_fisheye.jpg" --view fisheye --sky --size 960
