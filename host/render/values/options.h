@@ -25,8 +25,8 @@ struct Split {
 };
 
 /// The kernels that a scene is drawn with: its own; its own, but others that draw the same bits may stand in
-/// while they are built; always general ones, which most scenes share, so that few are built; or drafts, which
-/// nearly all share, and which round otherwise.
+/// while they are built; always general ones, which most scenes share, so that few are built; or drafts,
+/// which nearly all share, and which round otherwise.
 enum class KernelChoice { own, own_when_built, general, draft };
 
 /// Part `index` (from 1) of `count`.
