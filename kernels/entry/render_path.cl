@@ -128,7 +128,8 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
   for (u32 i = 0; i < ALL_COUNTS; ++i) ((volatile u32*)counts)[i] = 0;
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
   LaneWork work = begin_work(first, end);
-  PathStates paths;  // set where lanes begin; nothing reads the others
+  PathStates paths;  // set where lanes begin, as `rays`; of others their samples alone are read
+  paths.at.sample = NO_LANES;
   SceneRays rays;
   MASK lanes = NO_LANES;
   for (;;) {
