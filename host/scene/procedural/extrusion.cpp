@@ -64,16 +64,15 @@ Mesh make_sweep(const Sweep& sweep) {
   constexpr int facets = 96;
   const glm::dvec2 half = 0.5 * sweep.size;
   const glm::dvec2 centre(sweep.radius, sweep.radius - half.y);  // of the curve, in y and z
-  std::vector<glm::vec3> positions, normals;
-  std::vector<glm::vec2> uvs;
-  std::vector<glm::uvec3> triangles;
+  Mesh mesh;
+  std::vector<glm::uvec3>& triangles = mesh.triangles.values();
   const auto add_row = [&](const glm::dvec2& at, const glm::dvec2& normal, double way) {
     for (const double x : {-half.x, half.x}) {
-      positions.emplace_back(x, at.x, at.y);
-      normals.emplace_back(0, normal.x, normal.y);
-      uvs.emplace_back(x + half.x, way);
+      mesh.positions.values().emplace_back(x, at.x, at.y);
+      mesh.normals.values().emplace_back(0, normal.x, normal.y);
+      mesh.uvs.values().emplace_back(x + half.x, way);
     }
-    if (const auto n = static_cast<unsigned>(positions.size()); n > 2) {
+    if (const auto n = static_cast<unsigned>(mesh.positions.size()); n > 2) {
       triangles.emplace_back(n - 4, n - 3, n - 1);
       triangles.emplace_back(n - 4, n - 1, n - 2);
     }
@@ -87,11 +86,6 @@ Mesh make_sweep(const Sweep& sweep) {
   }
   add_row({sweep.height, -half.y}, {0, 1},
           floor + sweep.radius * (0.5 * std::numbers::pi - 1) + sweep.height);
-  Mesh mesh;
-  mesh.positions = std::move(positions);
-  mesh.normals = std::move(normals);
-  mesh.uvs = std::move(uvs);
-  mesh.triangles = std::move(triangles);
   return mesh;
 }
 
