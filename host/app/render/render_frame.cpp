@@ -16,6 +16,7 @@
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
+#include "app/render/draft.h"
 #include "app/render/render_result.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -94,6 +95,12 @@ std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const Loaded
     plans.push_back(command.isolate ? plan_isolated(command, device, hash, setup.workers)
                                     : plan_local(scene.flat, device));
   return plans;
+}
+
+/// Whether somebody looks at the picture on its way, of which a device of this process can make a draft.
+bool shows_draft(const RenderCommand& command, const LoadedScene& scene, const Setup& setup) {
+  return command.write_every > 0 && !command.draft && !command.isolate && !setup.job && !setup.session &&
+         scene.times == 1;
 }
 
 /// Joins the parts of light, or the light of groups. Other AOVs are those of the first time.
@@ -198,7 +205,12 @@ DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setu
     options.picture_seconds = command.write_every;
     options.on_picture = [&](const Film& film) { write_so_far(command, scene.description->image, film); };
   }
-  options.on_progress = [&](const RenderProgress& now) { bar.update(now); };
+  std::optional<Draft> draft;
+  if (shows_draft(command, scene, setup)) draft.emplace(scene.flat, setup.devices.front(), options);
+  options.on_progress = [&](const RenderProgress& now) {
+    if (draft && now.pixels_done > 0) draft->end();
+    bar.update(now);
+  };
   EnergyMeter energy(setup.devices);
   const Stopwatch frame;
   const auto make = [&](const LoadedScene& at) {
@@ -210,6 +222,7 @@ DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setu
     add_samples(make(scene.at_time(time)), options.channels, drawn.result);
   times.joules = energy.joules(), times.frame = frame.seconds(), times.joules_by = energy.source();
   times.render = drawn.result.times;
+  if (draft) times.draft_pictures = draft->pictures();
   bar.erase();
   drawn.told = setup.job && drawn.result.checkpoint_kept && !drawn.result.failure;
   if (drawn.told) tell_kept(drawn.result, drawn.checkpoint);

@@ -153,6 +153,7 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"counters", counters_json(result.counts)},
           {"kernels_cached", times.render.cached},
           {"energy", energy_json(times)},
+          {"draft_pictures", times.draft_pictures},
           {"peak_memory", peak_memory()}};
 }
 

@@ -15,6 +15,7 @@ struct TimeLedger {
   double waited = 0;              // for other frames, not in the total
   double joules = -1, frame = 0;  // that the devices used for the frame (below 0: unknown), and its seconds
   std::string joules_by;          // what counts them, or why nothing does
+  unsigned draft_pictures = 0;    // that were written while kernels were built
   RenderTimes render;
 
   double other() const {

@@ -203,6 +203,16 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
   return update;
 }
 
+bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning) {
+  Device device(info);
+  const Integrator& integrator = *find_integrator(scene.integrator);
+  const auto has = [&](const KernelConfig& config) {
+    return device.has(integrator.entry, config.defines(), config.generated) &&
+           (!scene.features.caustics || device.has(photon_entry, config.defines(), config.generated));
+  };
+  return !has(make_kernel_config(scene, info, tuning)) && has(draft_config(scene, info, tuning));
+}
+
 FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                  const WorkGroup& asked, bool aovs, RenderTimes& times) {
   FrameKernels kernels;

@@ -47,6 +47,9 @@ struct FrameKernels {
 FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                  const WorkGroup& asked, bool aovs, RenderTimes& times);
 
+/// Whether the frame's kernels must be built on the device, while those of its draft are in its cache.
+bool has_only_draft(const DeviceInfo& device, const CompiledScene& scene, const Tuning& tuning);
+
 /// The result of an update.
 struct KernelUpdate {
   UploadFigures uploads;

@@ -64,19 +64,22 @@ Tile area_of(const CompiledScene& scene, const RenderOptions& options) {
   return frame_area(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
 }
 
+Sampling sampling_of(const CompiledScene& scene, const RenderOptions& options) {
+  Sampling sampling = scene.sampling;
+  sampling.progressive |= options.passes && !in_passes(sampling);
+  return sampling;
+}
+
 SamplingPlan plan_of(const CompiledScene& scene, const RenderOptions& options) {
-  return {scene.sampling,
-          scene.info.samples,
-          options.noise,
-          show_surfaces(options.aovs),
-          aov_layout(options.aovs).sums() > 0,
-          clear_materials(scene)};
+  return {
+      sampling_of(scene, options),         scene.info.samples,    options.noise, show_surfaces(options.aovs),
+      aov_layout(options.aovs).sums() > 0, clear_materials(scene)};
 }
 
 FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
   FilmNeeds needs = film_needs(options.aovs);
   needs.shows_surfaces |= needs_surfaces(scene.sampling);
-  needs.grows = in_passes(scene.sampling);
+  needs.grows = in_passes(sampling_of(scene, options));
   needs.keeps_earlier =
       needs.grows && (options.noise > 0 || std::ranges::count(options.aovs, "variance") > 0 ||
                       !checkpoint_path(options).empty());

@@ -48,6 +48,7 @@ struct RenderOptions {
   PartOfFrame part;               // what to render of the frame
   std::optional<Tile> region;     // of the picture, which is all of the frame then; none: the whole
   std::vector<std::string> aovs;  // of aov_names()
+  bool passes = false;            // samples double pass by pass, even where the scene asks for all at once
   int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
   std::filesystem::path resume;      // a checkpoint: read when it exists
   std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
