@@ -133,3 +133,24 @@ TEST_CASE("presets of materials, lights and quality are scenes that can be read"
   CHECK(refused == json::array());
   v.undo_all();
 }
+
+TEST_CASE("a colour may be a texture of the presets") {
+  Viewer& v = viewer();
+  v.run(
+      "store.edit([{at: '/objects/1/material', value: 'red'}, {at: '/materials/red/color', value: "
+      "'smudges'}])");
+  v.settle();
+  v.tab("build");
+  CHECK(v.run(R"(
+    const unfold = async () => {
+      for (let i = 0; i < 20; ++i) {
+        document.querySelectorAll('#panel details:not([open])').forEach((d) => (d.open = true));
+        await new Promise((r) => setTimeout(r, 30));
+      }
+    };
+    await unfold();
+    const lists = [...document.querySelectorAll('#panel select')];
+    return lists.some((list) => list.value === 'smudges' && [...list.options].some((one) => one.value === 'oak_rings'));)") ==
+        true);
+  v.undo_all();
+}

@@ -7,11 +7,13 @@ import {BooleanField, ChoiceField, CodeField, ColorField, NumberField, Row, Text
 
 const isColor = (s) => ['color', 'share_color', 'light_color'].includes(s.kind);
 const isVector = (s) => s.type === 'array' && s.minItems === s.maxItems && s.minItems <= 4 && ['number', 'integer'].includes(resolve(s.items).type);
+/** The presets of a 'material' or 'texture'. */
+export const presetNames = (kind) => definition('preset_' + kind).properties.preset.enum;
+const withPresets = (kind) => [...new Set([...Object.keys(store.state.document[kind + 's'] ?? {}), ...presetNames(kind)])];
 const names = {
-  material_name: () => [...new Set([...Object.keys(store.state.document.materials ?? {}), ...presetNames()])],
+  material_name: () => withPresets('material'),
   formula_name: () => store.state.formulas.map((f) => f.name),
 };
-export const presetNames = () => definition('preset_material').properties.preset.enum;
 /** Keys by which a schema refers to a table of the document, by what their descriptions say. */
 const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field|material)\b/.exec(description)?.[1];
 const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
@@ -24,7 +26,7 @@ export function Field({schema, at, value, label, required, onSet}) {
     onSet: onSet || ((next, gesture) => store.set(at, next, gesture)),
     onReset: required ? undefined : () => store.set(at, undefined),
   };
-  if (isTextureName(s)) return html`<${ChoiceField} ...${common} choices=${Object.keys(store.state.document.textures ?? {})} />`;
+  if (isTextureName(s)) return html`<${ChoiceField} ...${common} choices=${withPresets('texture')} />`;
   const table = tables[tableOf(s.description)];
   if (names[s.kind]) return html`<${ChoiceField} ...${common} choices=${names[s.kind]()} />`;
   if (table) return html`<${ChoiceField} ...${common} choices=${['', ...Object.keys(store.state.document[table] ?? {})]} onSet=${(v) => store.set(at, v || undefined)} />`;

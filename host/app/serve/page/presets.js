@@ -12,7 +12,7 @@ const painted = {
   plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
   lacquer: {ambient: 0.15, diffuse: 0.75, ...glossy(0.8, 200), reflection: 0.12},
 };
-export const materials = () => ({...painted, ...Object.fromEntries(presetNames().map((preset) => [preset, {preset}]))});
+export const materials = () => ({...painted, ...Object.fromEntries(presetNames('material').map((preset) => [preset, {preset}]))});
 
 /** Of all lights. */
 export const lights = {
