@@ -1,11 +1,8 @@
 // A draft that `render --write-every` shows while the frame's kernels are built.
 #pragma once
-#include <atomic>
-#include <functional>
 #include <memory>
-#include <mutex>
-#include <thread>
 
+#include "base/driver_threads.h"
 #include "compile/compiled_scene.h"
 #include "render/values/options.h"
 
@@ -17,20 +14,21 @@ class Draft {
  public:
   /// `options`: the frame's; what its on_picture gets is the draft's picture, pass by pass.
   Draft(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device, const RenderOptions& options);
+  /// Does not wait for the driver.
   ~Draft();
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
   /// The frame has pixels: the draft shows nothing from now on.
   void end();
-  /// Pictures of it that were shown.
-  unsigned pictures() const { return pictures_; }
+  /// Number of pictures shown.
+  unsigned pictures() const;
 
  private:
-  std::atomic<bool> stop_{false};
-  std::atomic<unsigned> pictures_{0};
-  std::mutex showing_;
-  std::thread thread_;
+  struct State;
+  std::shared_ptr<State> state_;
+  std::weak_ptr<DriverThreads> owner_;
+  DriverThread thread_;
 };
 
 }  // namespace sundog
