@@ -16,8 +16,8 @@
 
 #define NO_PLACE 0
 
-// What a work-item's lanes are at; the pixels and samples are in their paths. All zero is a work-item that
-// has ended: Mesa's llvmpipe (22.3) runs groups in whole vectors, and where a group does not fill one, the
+// The state of a work-item's lanes; their paths hold pixels and samples. All zero means that the item has
+// ended: Mesa's llvmpipe (22.3) runs groups in whole vectors, and where a group does not fill one, the
 // others loop by the zeros that they read here.
 typedef struct LaneWork {
   u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item

@@ -27,7 +27,7 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
   return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
 }
 
-// What the surfaces of `lanes` let through, where `plain` is that without their textures.
+// The transmittance of the surfaces of `lanes`; `plain`: without their textures.
 #if HAS_MAPS
 NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                   const Faces* faces, MASK lanes, REAL3 plain) {
@@ -44,9 +44,8 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
 }
 #endif
 
-// What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
-// it would be without them. Paths alone ask for it: with whitted layers take nothing from what is
-// transmitted.
+// The transmittance of the surfaces of `lanes` for straight light with their fuzz and coats; `through`:
+// without. For paths only: Whitted's layers take nothing from transmitted light.
 #define LAYERS_FILTER EITHER(HAS_LAYERS, EITHER(HAS_LAYER_FILTERS, SHADOWS_AS_PATHS, 0), 0)
 #if LAYERS_FILTER
 NEVER_INLINE REAL3 layered_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
@@ -157,7 +156,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
 
-// Of `light`, what media leave on the ways of the lanes of `arriving` to the lights, where nothing stands.
+// `light` after the media on the ways to the lights, for `arriving`, where nothing blocks it.
 static inline REAL3 unblocked_light(const Scene* scene, const SceneRays* rays, REAL3 light, MASK arriving) {
   if (!HAS_MEDIA) return light;
   const MASK here = current_media(scene->media, rays, arriving);
@@ -186,7 +185,7 @@ static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRay
   return passing & ~too_many;
 }
 
-// What the shadow rays of `lanes` meet; where nothing lets light pass, only whether they meet anything.
+// The hits of the shadow rays of `lanes`; in scenes where nothing lets light pass, any hit will do.
 static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
   Hits hits;
   if (HAS_SHADOW_FILTERS) {

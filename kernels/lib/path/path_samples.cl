@@ -7,7 +7,7 @@
 typedef struct TileSamples {
   HAVING(HAS_RANDOM, MASK x; MASK y; u32 seed;)
   u32 sample;
-  // Of the launch's pixels, see sample_sums(); of the tile's pixels among those; what their samples count.
+  // Sums of the launch's pixels, see sample_sums(); the tile's place among them; the sign of its samples.
   HAVING(HAS_MATTES, __global float4* sums; MASK place; REAL sign;)
 } TileSamples;
 

@@ -1,4 +1,4 @@
-// What surfaces return of light: the Bsdfs of plain/shade, and what they use.
+// Bsdfs in lanes: those of plain/shade, and the hand-written functions that they call.
 #pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/optics.cl"

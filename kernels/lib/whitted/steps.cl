@@ -1,6 +1,5 @@
-// What Whitted's integrator does with rays where they end: the light that they see on the way and there, each
-// kind by a step of its own. Each takes the rays of some lanes and returns the light that their pixels
-// receive.
+// The light that Whitted's rays see on their way and at its end, a step for each kind. A step takes the rays
+// of some lanes and returns the light that their pixels receive.
 #pragma once
 #include "lib/light/field_openness.cl"
 #include "lib/light/shadow_rays.cl"
@@ -22,8 +21,7 @@ static inline REAL3 see_fog(const Scene* scene, const Encounters* met, MASK ende
   return light;
 }
 
-// Of `lanes`, the pixels that show what is behind the scene, straight on, are covered by so much less: w is
-// what covers the pixel of its background. Returns these lanes.
+// Lowers the coverage (w) of pixels that show the background straight on. Returns their lanes.
 static inline MASK uncover(const WaitingRays* paths, MASK lanes, float4* radiance) {
   const MASK straight = lanes & MASK_OF((paths->depth & TURNED) == 0);
   const REAL3 t = paths->throughput;
@@ -48,7 +46,7 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
   return multiply3(paths->throughput, own);
 }
 
-// What surfaces of `lanes` shine by themselves, on their outsides.
+// Emission of the surfaces of `lanes`, on their outsides.
 static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, const SurfaceInteractions* s,
                                  const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));

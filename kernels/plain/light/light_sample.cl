@@ -1,4 +1,4 @@
-// What lights of every kind give: a sampled direction, what a point sees of them, how photons leave them.
+// The results of every light's functions: a sampled direction, the light seen from a point, a photon's start.
 #include "plain/core.h"
 
 typedef struct LightSample {
@@ -44,7 +44,7 @@ static inline Emission emit_along(float3 d, float3 radiance) {
   return emission;
 }
 
-// What a sample counts for, times pi BSDF cos: see bsdf_eval() for the units.
+// A sample's weight, to be multiplied by pi BSDF cos: see bsdf_eval() for the units.
 ENTRY static inline float light_weight(const LightSample* light) {
   if (!HAS_AREA_LIGHTS) return 1.0f;
   return light->delta ? 1.0f : 1.0f / (M_PI_F * light->pdf);

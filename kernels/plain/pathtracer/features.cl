@@ -1,4 +1,4 @@
-// What a denoiser takes for a picture's features: the albedo and the normal of the surface that a sample
+// The features that a denoiser reads: the albedo and the normal of the surface that a sample
 // sees, through the same filter, lens and time, behind smooth glass and in mirrors.
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"

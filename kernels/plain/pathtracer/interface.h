@@ -1,4 +1,4 @@
-// What plain text of the path tracer uses of what is written in lanes: of structs, the members that it reads
+// Hand-written structs and functions that the plain path tracer uses; structs with the members that it reads
 // or sets.
 #include "plain/core.h"
 #include "plain/light/sky.cl"

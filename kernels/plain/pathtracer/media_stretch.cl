@@ -4,7 +4,7 @@
 #include "plain/core.h"
 #include "plain/pathtracer/spectrum.cl"
 
-// What a scattered path remembers of the stretch that it was scattered on.
+// The stretch that a path was scattered on.
 typedef struct Scattered {
   bool is;       // scattered last by a medium
   float3 o, d;   // the stretch's beginning and direction
@@ -16,7 +16,7 @@ typedef struct Scattered {
 
 #define TOWARDS_LIGHT 0.5f  // the greatest part of the distances that are chosen for a near light
 
-// Of light, over a distance that may be infinite.
+// Beer's transmittance over a distance that may be infinite.
 static inline float kept_over(float decay, float distance) {
   return decay == 0.0f ? 1.0f : real_exp(-decay * distance);
 }
@@ -36,8 +36,8 @@ static inline float next_of(float decay, float share, float length, float at) {
   return share * decay > 0.0f ? share * decay * kept_over(decay, at) / lost_part(decay * length) : 0.0f;
 }
 
-// Of decays and shares, one a colour or a wavelength: what is kept over a distance; the sum; the decay that
-// the number u chooses by the shares, whose sum is 1; and the density of a distance by all of them.
+// Decays and shares have a number a colour or wavelength: the transmittance over a distance; the sum; the
+// decay that u chooses by the shares, whose sum is 1; the density of a distance by all of them.
 static inline SampledSpectrum spectrum_over(SampledSpectrum decay, float distance) {
   SampledSpectrum kept;
   kept.x = kept_over(decay.x, distance);
@@ -101,7 +101,7 @@ static inline SeenStretch see_stretch(float3 o, float3 d, float length, float de
   s.height = real_sqrt(real_max(dot(across, across) + light.w, 1e-12f * dot(to, to) + 1e-30f));
   s.begin = -s.nearest;
   const float end = length - s.nearest;
-  // Of a long stretch's end the angle is a right one.
+  // The angle at a long stretch's end is a right one.
   const bool far = end > 1e6f * (s.height + fabs(s.begin));
   s.angle = atan2(far ? s.height : length * s.height, far ? s.begin : fma(s.begin, end, s.height * s.height));
   const float way = real_clamp(s.nearest, 0.0f, length);

@@ -1,4 +1,4 @@
-// What a path carries from surface to surface.
+// The state of a path between two surfaces.
 #include "plain/pathtracer/interface.h"
 #include "plain/pathtracer/media_stretch.cl"
 #include "plain/pathtracer/spectrum.cl"
@@ -17,8 +17,8 @@ typedef struct LightParts {
   LIGHT_PARTS(SPECTRUM_OF_PART)
 } LightParts;
 
-// What kinds of lobes have of light that was scattered: all if a `medium` has scattered it, else what is
-// diffuse, what is transmitted, and the rest, glossy.
+// Shares of scattered light by the kind of lobe: the `medium` has all or none of it; else a diffuse and a
+// transmitted share, and the rest is glossy.
 typedef struct LobeShares {
   SampledSpectrum diffuse, transmitted;
   bool medium;
@@ -131,13 +131,12 @@ static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
   return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
 }
 
-// What a stretch makes of the density with which its distant light is chosen: in place of a surface a place
-// on it is chosen, too.
+// The density of choosing distant light from a stretch: in place of a surface, a place on it is chosen, too.
 static inline float pdf_on_stretch(const PathState* path, float pdf) {
   if (HAS_SCATTERING) return path->scattered.is ? pdf * path->scattered.chance : pdf;
   return pdf;
 }
-// The same of the light `lamp`.
+// The density of choosing the light `lamp` from a stretch.
 static inline float pdf_on_stretch_to(const PathState* path, UNIFORM __global const Light* lamp, float pdf) {
   if (HAS_SCATTERING) {
     const Scattered* s = &path->scattered;

@@ -58,8 +58,8 @@ static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photo
   photon->dimmed = NOT_DIMMED;
 }
 
-// What shading normals change of a flux that is sent from wo to wi (Veach 1997, section 5.3.2). 1 where they
-// are those of the geometry.
+// The factor of a flux sent from wo to wi that corrects for shading normals (Veach 1997, section 5.3.2);
+// 1 where they are the geometry's.
 static inline float flux_by_normals(const SurfaceInteraction* s, float3 wo, float3 wi) {
   const float shading = fabs(dot(s->ns, wo)) * fabs(dot(s->ng, wi));
   const float faces = fabs(dot(s->ng, wo)) * fabs(dot(s->ns, wi));

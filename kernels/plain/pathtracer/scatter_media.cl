@@ -4,7 +4,7 @@
 #include "plain/pathtracer/next_event.cl"
 #include "plain/pathtracer/roulette.cl"
 
-// What arrives at the distance `at` of light that comes from the stretch's end, and is scattered there.
+// Light from the stretch's end that is scattered at the distance `at`.
 static inline SampledSpectrum scattered_at(const PathState* path, const Stretch* s, float at) {
   return path->throughput * spectrum_over(s->decay, s->begin + at) * s->scattering;
 }

@@ -1,4 +1,4 @@
-// What a path carries: red, green and blue in x, y and z, or in scenes where a medium disperses four
+// A path's values: red, green and blue in x, y and z, or in scenes where a medium disperses four
 // wavelengths in x, y, z and w, of which the first, the hero, decides where the path goes (Wilkie and others
 // 2014, "Hero Wavelength Spectral Sampling"). The others lie evenly between, by the density of
 // shared/spectra.h, and go along until the wavelengths part: from there on the hero stands for them. Colours
@@ -55,7 +55,7 @@ static inline float spectrum_greatest(SampledSpectrum a) {
   if (HAS_DISPERSION) return real_max(real_max(a.x, a.y), real_max(a.z, a.w));
   return real_max(a.x, real_max(a.y, a.z));
 }
-// What it is worth for the choice of paths.
+// The worth by which paths are chosen: the mean of wavelengths, the greatest of colours.
 static inline float spectrum_worth(SampledSpectrum a) {
   if (HAS_DISPERSION) return (1.0f / (float)WAVELENGTHS) * ((a.x + a.y) + (a.z + a.w));
   return real_max(a.x, real_max(a.y, a.z));
@@ -65,7 +65,7 @@ static inline float spectrum_mean(SampledSpectrum a) {
   return (a.x + a.y + a.z) * (1.0f / 3.0f);
 }
 
-// What a wavelength has of a colour by its parts of red and blue.
+// A colour's value at a wavelength, by the wavelength's parts of red and blue.
 static inline float part_of_color(float red, float blue, float3 color) {
   return fma(red, color.x - color.y, fma(blue, color.z - color.y, color.y));
 }
@@ -126,7 +126,7 @@ static inline float3 with_wavelength(UNIFORM const Scene* scene, float hero, UNI
   return along(seen, light * span, weight);
 }
 
-// What a path has gathered, as linear RGB.
+// A path's radiance as linear RGB.
 ENTRY static float3 spectrum_seen(UNIFORM const Scene* scene, const SampledWavelengths* w,
                                   const SampledSpectrum* light) {
   float3 seen = (float3)(0.0f);

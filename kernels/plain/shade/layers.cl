@@ -131,8 +131,7 @@ static inline float3 left_where_there(const Bsdf* bsdf, float3 through, float3 l
   return left * (through - beside) + beside;
 }
 
-// What fuzz and coats leave of light that goes straight through the surface at the cosine c, where `through`
-// is what it would be without them.
+// Transmittance of the surface at the cosine c with its fuzz and coats; `through`: without.
 ENTRY static inline float3 passed_by_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float c,
                                             float3 through) {
   float3 passed = through;

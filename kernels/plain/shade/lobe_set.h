@@ -1,4 +1,4 @@
-// What the lobes of shared/lobes.h share.
+// Values that several lobes of shared/lobes.h read.
 #include "plain/shade/layers.cl"
 #include "plain/shade/microfacet.h"
 

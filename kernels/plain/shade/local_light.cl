@@ -1,5 +1,5 @@
-// What surfaces return of lamps without perfect reflection and transmission, for Whitted's integrator, which
-// sends rays for these.
+// Light of lamps that surfaces return other than by perfect reflection and transmission, for which Whitted's
+// integrator sends rays.
 #include "plain/shade/facets.cl"
 #include "plain/shade/lobes/"
 

@@ -10,7 +10,7 @@ ENTRY static inline UNIFORM bool is_rectangle(UNIFORM __global const Light* ligh
   return light->kind == LIGHT_RECTANGLE;
 }
 
-// What a point sees of a rectangle (Urena, Fajardo and King 2013, "An Area-Preserving Parametrization for
+// A rectangle seen from a point (Urena, Fajardo and King 2013, "An Area-Preserving Parametrization for
 // Spherical Rectangles"): its sides in axes along its edges, `z` behind the point along -z.
 typedef struct SphericalRectangle {
   float x0, y0, x1, y1, z;
