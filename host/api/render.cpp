@@ -207,8 +207,7 @@ void Film::save(const std::filesystem::path& file) const {
           file, core::encode_image(image, file, aovs, {.texts = impl_->texts, .shot = impl_->shot}));
     core::Image colors =
         impl_->transparent && sundog::is_png(file) ? core::Image(image) : without_coverage(image);
-    if (sundog::is_for_screens(file)) sundog::prepare_for_screen(colors, impl_->tone_map, true);
-    core::write_image(colors, file);
+    core::write_image(sundog::shown_in(file, std::move(colors), impl_->tone_map), file);
   });
 }
 

@@ -87,6 +87,12 @@ bool is_for_screens(const fs::path& path) {
   return is_png(path) || extension == ".jpg" || extension == ".jpeg";
 }
 
+Image shown_in(const fs::path& path, Image image, const ToneMap& map, bool dither) {
+  if (!is_for_screens(path)) return image;
+  prepare_for_screen(image, map, dither);
+  return image;
+}
+
 bool keeps_texts(const fs::path& path) {
   const std::string extension = lower_extension(path);
   return extension == ".png" || extension == ".exr";

@@ -9,6 +9,7 @@
 
 #include "base/image.h"
 #include "base/pixels/shot.h"
+#include "base/tone_map.h"
 
 namespace sundog {
 
@@ -54,6 +55,9 @@ bool is_png(const std::filesystem::path& path);
 
 /// Whether a file of this name shows colours as a screen does, sRGB from 0 to 1: .png, .jpg, .jpeg.
 bool is_for_screens(const std::filesystem::path& path);
+
+/// The image as a file of this name shows it: for screens by the tone map and, if wanted, dithered to 8 bits.
+Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map, bool dither = true);
 
 /// The greatest value of a half float. An EXR of halves cuts colours off there.
 constexpr float greatest_half = 65504;

@@ -9,14 +9,11 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "compile/fields/sdf_deep.h"
-#include "compile/lights/light_groups.h"
-#include "compile/lights/light_tree.h"
-#include "compile/lights/mesh_lights.h"
-#include "compile/lights/photons.h"
+#include "compile/lights/all_lights.h"
 #include "compile/placing/instances.h"
 #include "compile/surfaces/lobe_energy.h"
 #include "compile/view/camera.h"
+#include "compile/view/field_view.h"
 #include "compile/view/local_origin.h"
 #include "scene/integrators.h"
 
@@ -119,6 +116,13 @@ void take_tables(const Step& step, CompiledScene& out) {
   if constexpr (requires { step.features; }) add_features(step.features, out.features);
 }
 
+void take(const CompiledView& view, CompiledScene& out) {
+  out.info = view.info;
+  out.features = view.features;
+  out.filter = view.filter;
+  out.guides = view.guides;
+}
+
 void take(const Lights& lights, CompiledScene& out) {
   take_tables(lights, out);
   out.info.ambient = lights.ambient;
@@ -143,36 +147,10 @@ void take(const Instances& instances, CompiledScene& out) {
   out.figures.box = instances.box;
 }
 
-/// The view, and a scene's settings.
-CompiledScene begin(const SceneDescription& scene, const dvec3& origin) {
-  CompiledScene out;
-  CompiledView view = compile_view(scene, origin);
-  out.info = view.info;
-  out.origin = origin;
-  out.integrator = scene.render.integrator;
-  out.tracer = scene.render.tracer;
-  out.sampling = scene.render.sampling;
-  out.filter = std::move(view.filter);
-  out.guides = std::move(view.guides);
-  out.features = view.features;
-  return out;
-}
-
-/// Adds the tables that need all parts: lights of meshes, the tree over lights, photons.
-void finish(const SceneDescription& scene, const Lights& lights, const Instances& instances,
-            CompiledScene& out) {
-  const MeshLights with_meshes = add_mesh_lights(scene, out.origin, {lights.lights, out.instances});
-  take_tables(with_meshes, out);
-  out.features.area_lights |= with_meshes.any;
-  set_light_groups(scene, out);
-  take_tables(make_light_tree(scene.render, out.lights, lights.light_rays), out);
-  out.features.light_tree = !out.light_nodes.empty();
+/// Sets what all tables decide together.
+void finish(CompiledScene& out) {
   if (out.features.rough || out.features.layers)
     out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
-  const Photons photons = plan_photons(scene, instances.boxes, out);
-  take_tables(photons, out);
-  out.photons_by = photons.plan;
-  out.features.caustics = !out.photon_targets.empty();
   set_counts(out);
   set_figures(out);
 }
@@ -206,7 +184,12 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   check_integrator(scene);
   const std::vector<FieldView> views = views_of(scene);
   const dvec3 origin = any_deep(views) ? scene.camera.position : local_origin(scene);
-  CompiledScene out = begin(scene, origin);
+  CompiledScene out;
+  out.origin = origin;
+  out.integrator = scene.render.integrator;
+  out.tracer = scene.render.tracer;
+  out.sampling = scene.render.sampling;
+  take(compile_view(scene, origin), out);
 
   auto& [halo, lights, surfaces, meshes, mapping, instances, touching, fields] = *parts_;
   work_.surfaces += memo(surfaces, surface_inputs(scene), compile_surfaces);
@@ -225,6 +208,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
     ++work_.bvhs;
   }
   take(instances.value, out);
+  out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
+                                                instances.value.instances.rows(), instances.value.boxes);
   const bool media = out.features.media;
   if (media)
     work_.touching += memo(touching, touching_inputs(scene, origin, instances.known()), compile_touching);
@@ -238,12 +223,11 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   take_tables(fields.value, out);
   out.field_source = fields.value.source;
   if (any_deep(views)) out.instances = fields.value.deep_instances;
-  out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
-                                                instances.value.instances.rows(), instances.value.boxes);
   memo(halo, HaloInputs{&scene.environment}, compile_halo);
   work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
   take(lights.value, out);
-  finish(scene, lights.value, instances.value, out);
+  complete_lights(scene, lights.value, instances.value, out);
+  finish(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

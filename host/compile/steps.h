@@ -210,9 +210,6 @@ struct Fields {
   SceneFeatures features;
 };
 Fields compile_field_tables(const FieldInputs& in);
-/// The camera's views of fields, one for each object, empty for other objects.
-std::vector<FieldView> views_of(const SceneDescription& scene);
-bool any_deep(const std::vector<FieldView>& views);
 /// `placed`: the instances, of which those of fields begin at `first`.
 FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
                          const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,

@@ -1,5 +1,5 @@
-// Renders one frame in a temporary session (render/session/render_session.h). Callers that render several
-// keep a session.
+// Renders one frame by threads of its own. Callers that render several keep a session
+// (render/session/render_session.h), and with it devices and kernels.
 #pragma once
 #include <memory>
 #include <vector>

@@ -152,7 +152,7 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
       store_sample((u32)MASK_LANE(work.place, lane) - 1u, limited, work.sign[lane], film, weights, counts);
     }
     HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
-    paths.at.sample -= over;
+    paths.at.sample -= over;  // the mask is -1 in lanes whose path is over: on to their next sample
   }
   __global u32* own = counters_of(counters, first);
   add_counts(own, counts);

@@ -85,12 +85,6 @@ void warn_of_halves(const fs::path& path, const Image& image, const FileOptions&
                       path.string(), cut, greatest_half)}});
 }
 
-Image shown_in(const fs::path& path, Image image, const ToneMap& map, bool dither) {
-  if (!is_for_screens(path)) return image;
-  prepare_for_screen(image, map, dither);
-  return image;
-}
-
 void save_image(const Picture& picture, const fs::path& path) {
   save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
   warn_of_halves(named(picture, path), picture.image, picture.file);

@@ -28,9 +28,6 @@ inline int image_channels(const std::filesystem::path& path, bool transparent) {
   return drops_alpha(path) && !(transparent && is_png(path)) ? 3 : 4;
 }
 
-/// The image as a file of this name shows it: for screens by the tone map and, if wanted, dithered to 8 bits.
-Image shown_in(const std::filesystem::path& path, Image image, const ToneMap& map, bool dither = true);
-
 /// Warns of colours that an EXR of halves cuts off.
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
 

@@ -60,16 +60,6 @@ std::vector<SdfDescription> placed_fields(const SceneDescription& scene,
 
 }  // namespace
 
-std::vector<FieldView> views_of(const SceneDescription& scene) {
-  std::vector<FieldView> views(scene.objects.size());
-  for (std::size_t i = 0; i < views.size(); ++i)
-    if (std::holds_alternative<FieldShape>(scene.objects[i].shape))
-      views[i] = view_of_field(scene, scene.objects[i]);
-  return views;
-}
-
-bool any_deep(const std::vector<FieldView>& views) { return std::ranges::any_of(views, is_deep); }
-
 FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
                          const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,
                          u32 first) {

@@ -5,21 +5,10 @@
 #include <vector>
 
 #include "compile/fields/sdf.h"
+#include "compile/view/field_view.h"
 #include "scene/description.h"
 
 namespace sundog {
-
-/// The camera's view of a field, in the field's units.
-struct FieldView {
-  dvec3 place{0};        // the camera's position
-  double footprint = 0;  // pixel footprint at the nearest point of the field, as estimated
-};
-
-/// `object` must be a field.
-FieldView view_of_field(const SceneDescription& scene, const Object& object);
-
-/// Whether floats are too coarse for the view, so the field must be marched in doubles.
-bool is_deep(const FieldView& view);
 
 /// Adapts to the footprint of a near view what the scene leaves open: the minimum threshold and, in deep
 /// views, the number of iterations.

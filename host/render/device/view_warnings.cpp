@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compile/fields/sdf_deep.h"
+#include "compile/view/field_view.h"
 #include "compile/placing/coarse_starts.h"
 
 namespace sundog {

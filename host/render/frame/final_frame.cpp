@@ -16,7 +16,7 @@ void begin_passes(Frame& frame) {
   if (!file.empty() && is_there(file)) {
     read_checkpoint(file, frame.film, frame.pass, frame.made, frame.key);
     if (frame.pass.is_none() && frame.film.grows) return begin_pass(frame, std::nullopt);
-    if (frame.pass.is_none()) {  // it may be of another part of the frame
+    if (frame.pass.is_none()) {  // complete, perhaps of another part: keep its pixels, make those missing
       frame.made = std::exchange(frame.film, Film(frame.film.width, frame.film.height, frame.film));
       frame.pass = *next_pass(frame.film, frame.plan);
     }

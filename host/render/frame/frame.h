@@ -127,8 +127,4 @@ void retire_hanging(Frame& frame);
 /// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
-/// Waits for the frame's end: finished, stopped (options.stop), or out of workers. With `wait`, every worker
-/// has left it on return; else those in a driver are abandoned, but for moments of grace.
-void watch_frame(Frame& frame, bool wait);
-
 }  // namespace sundog

@@ -1,4 +1,5 @@
 #include "render/session/frame_loop.h"
+#include "render/session/frame_watch.h"
 
 namespace sundog {
 namespace {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "render/film/group_names.h"
+#include "render/session/frame_watch.h"
 #include "render/session/live_session.h"
 #include "scene/integrators.h"
 #include "scene/light_groups.h"

@@ -15,7 +15,7 @@ struct SessionFrame {
   std::shared_ptr<const SceneDescription> scene;
   std::shared_ptr<const CompiledScene> flat;  // null: the workers have the scene
   std::shared_ptr<Frame> frame;
-  bool final = false;   // it is rendered to its end for a caller who waits, and shown by nobody
+  bool final = false;   // a caller waits for its end; it is never a draft, and no snapshot shows it
   bool closes = false;  // so is the session: workers are closed behind it
   Stopwatch clock;      // since start()
   Stopwatch begun;      // since it can be drawn

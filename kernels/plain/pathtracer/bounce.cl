@@ -33,9 +33,10 @@ static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
   const float3 scattering = bsdf_scatter(scene, &at->bsdf, lobes, -ray->d, light.wi, &scattered);
   scattered = guided_pdf(scene, lobes, at->s.p, light.wi, scattered);
   const float weight = weight_of_chosen(scene, light.pdf, seen ? scattered : 0.0f);
-  const float over = light.delta ? 1.0f / light.pdf : 1.0f / (M_PI_F * light.pdf);
+  // The radiance of a delta light is its irradiance / pi.
+  const float inverse_pdf = light.delta ? 1.0f / light.pdf : 1.0f / (M_PI_F * light.pdf);
   SampledSpectrum possible = spectrum_of(&path->wavelengths, scattering);
-  possible = possible * spectrum_of(&path->wavelengths, light.radiance) * (weight * over);
+  possible = possible * spectrum_of(&path->wavelengths, light.radiance) * (weight * inverse_pdf);
   const bool below = dot(at->s.side, light.wi) < 0.0f;
   if (HAS_RELIEF && !below) possible *= terminator(&at->s, light.wi);
   if (HAS_PARALLAX) {
@@ -79,10 +80,10 @@ static void note_sample(UNIFORM const Scene* scene, const SurfaceShading* at, co
   note_scattering(path, &shares);
 }
 
-// The surface scatters: the path's next ray, and whether the path continues. `free`: the surface is not
-// there.
+// The surface scatters: the path's next ray, and whether the path continues. `cut_out`: its texture leaves it
+// out here, so the ray goes on as if no surface were met, at no cost in depth.
 static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
-                    const LobeSet* lobes, bool free, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
+                    const LobeSet* lobes, bool cut_out, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
   const bool chooses = HAS_GUIDES || any(lobes->diffuse != lobes->all);  // matte surfaces have one lobe
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
@@ -97,7 +98,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     path->throughput *= 1.0f / square;
     path->spread *= square;
   }
-  // Shadow rays go through filters as the path does: what it was about to find, it still is.
+  // Shadow rays pass this surface too, so MIS still compares with light chosen at the vertex before it.
   const bool passes = below && sample.specular;
   if (!(passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0)) {
     path->pdf = sample.specular ? 0.0f : sample.pdf;
@@ -112,16 +113,16 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
   path->straight = path->straight && passes && (HAS_CLEAR_GLASS || lobes->split.eta == 1.0f);
-  bool going = free;
-  if (some && !free) going = survives(scene, path, dimension);
-  if (!free) ++path->depth;
+  bool going = cut_out;
+  if (some && !cut_out) going = survives(scene, path, dimension);
+  if (!cut_out) ++path->depth;
   if (!going) return false;
   if (below)
     count(counts, COUNT_REFRACTION);
   else
     count(counts, COUNT_REFLECTION);
   note_ray(counts);
-  leave_surface(scene, met, at, &sample, below, free, ray);
+  leave_surface(scene, met, at, &sample, below, cut_out, ray);
   return true;
 }
 
@@ -143,9 +144,9 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   const bool deep = path->depth > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
-  const bool free = nothing && may_cross(ray);
+  const bool cut_out = nothing && may_cross(ray);
   if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
-  if (deep && !free && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
+  if (deep && !cut_out && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
@@ -157,7 +158,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     if (HAS_CAUSTICS) lamp.photons = gather_photons(scene, path, ray, &at, &lobes);
   }
   bool going = false;
-  if (!deep || free) going = scatter(scene, met, &at, &lobes, free, path, ray, counts);
+  if (!deep || cut_out) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
   if (lamp.some) *light += arriving_of_lamp(scene, path, &lamp, counts);
   if (HAS_CAUSTICS) *light += lamp.photons;
@@ -180,7 +181,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   bool turned;  // the medium has scattered the path, which may continue
   if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
   path->throughput *= spectrum_kept(&path->wavelengths, met.absorbed);
-  if (crossing) {  // an interface that cannot be seen may stop shadow rays all the same
+  if (crossing) {  // light chosen at the last vertex cannot pass it if it stops shadow rays
     if ((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0) path->pdf = 0.0f;
     return true;
   }

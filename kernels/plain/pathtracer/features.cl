@@ -60,8 +60,8 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   }
   if (first) f->first = at.s.ns;
   f->tint = at_most_one(f->tint * sample.weight);
-  const bool free = cut_away(&at.bsdf, &lobes.split) && may_cross(ray);
-  if (!free) ++f->path.depth;
-  leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, free, ray);
+  const bool cut_out = cut_away(&at.bsdf, &lobes.split) && may_cross(ray);
+  if (!cut_out) ++f->path.depth;
+  leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, cut_out, ray);
   return true;
 }

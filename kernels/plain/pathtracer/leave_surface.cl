@@ -19,13 +19,13 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
   return child;
 }
 
-// The path continues in the direction that the surface sampled. `free`: the surface is not there.
+// The path continues in the direction that the surface sampled. `cut_out`: as if no surface were there.
 static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
-                                 const BsdfSample* sample, bool below, bool free, SceneRay* ray) {
+                                 const BsdfSample* sample, bool below, bool cut_out, SceneRay* ray) {
   float way;
   SceneRay child = leaving_ray(scene, ray, met, at, sample->wi, below, &way);
   child.t_max = INFINITY;
-  if (free) cross_further(ray, &child);
+  if (cut_out) cross_further(ray, &child);
   *ray = child;
 }
 

@@ -28,9 +28,8 @@ typedef struct PathState {
   SampledSpectrum throughput;
   SampledSpectrum radiance;  // gathered so far
   float3 from;               // the place that chose the ray's direction, with the density `pdf`
-  float pdf;                 // 0: no light that is chosen at surfaces counts twice on this ray
-  // The factor of the throughput that says nothing of the path's worth: radiance spread by refraction since
-  // the camera (squared index by squared index), and paths drawn to guides.
+  float pdf;                 // 0: from the camera or a perfect lobe; lights that the ray meets count in full
+  // For Russian roulette alone: undoes eta^2 of refractions since the camera, and the weights of guides.
   float spread;
   int depth;      // of the ray: the camera's has 1
   bool covered;   // the path has not left the scene straight on from the camera

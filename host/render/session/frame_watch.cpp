@@ -1,12 +1,8 @@
-// Watches a frame from the caller's thread until it is over: reports progress, shows the picture, keeps
-// checkpoints, ends it at its time limit or at the caller's wish, retires workers that hang.
-#include <fmt/format.h>
-
+// See frame_watch.h.
 #include <algorithm>
 
-#include "base/error.h"
 #include "render/film/checkpoint.h"
-#include "render/frame/frame.h"
+#include "render/session/frame_watch.h"
 
 namespace sundog {
 namespace {
@@ -16,7 +12,7 @@ using Phase = Frame::Phase;
 // A launch in flight may take this long after the frame's end before its thread is left behind; keeping the
 // compiled kernels for the next time may take longer, unless someone waits for the program to stop.
 constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
-constexpr double look_again = 0.02;
+constexpr double look_seconds = 0.02;
 
 // Progress is reported with each tile, and this often while tiles take longer.
 constexpr double progress_seconds = 0.1;
@@ -64,19 +60,9 @@ void keep_checkpoint(Frame& frame) {
   }
 }
 
-/// Whether the frame may end at its time limit. In several passes it first makes a whole one to show, and
-/// gets further than a checkpoint that it began with: else it would not if its kernels are compiled for
-/// longer. The caller holds its mutex.
-bool may_end(const Frame& frame) {
-  if (!in_passes(frame.plan.settings)) return true;
-  return frame.film.stage > 0 && std::ranges::any_of(frame.workers, [](const Frame::Worker& worker) {
-           return worker.report.pixels > 0;
-         });
-}
-
 /// Waits until the frame is over, and retires workers that hang.
 void watch(Frame& frame) {
-  while (!frame.queue.wait(look_again)) {
+  while (!frame.queue.wait(look_seconds)) {
     show_progress(frame);
     look_for_stop(frame);
     {
@@ -106,36 +92,6 @@ void wait_for_threads(Frame& frame, bool stopped) {
 }
 
 }  // namespace
-
-void report_progress(Frame& frame) {
-  if (!frame.options.on_progress) return;
-  frame.since_progress = Stopwatch();
-  frame.options.on_progress({frame.pixels_done, frame.pass_pixels, frame.clock.seconds()});
-}
-
-void look_at_clock(Frame& frame) {
-  if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
-  if (!may_end(frame)) return;
-  frame.limited = true;
-  frame.stop = true;
-  frame.queue.close();
-}
-
-void retire_hanging(Frame& frame) {
-  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
-    const double seconds = frame.workers[i].device->overdue();
-    if (seconds <= 0) continue;
-    const std::string why = fmt::format("{}: a launch has not come back for {:.0f} s: the driver hangs",
-                                        frame.workers[i].device->info().label(), seconds);
-    retire_worker(frame, i, why, std::make_exception_ptr(DeviceError(why)));
-  }
-}
-
-void look_for_stop(Frame& frame) {
-  if (!frame.options.stop || !frame.options.stop->load()) return;
-  frame.stop = true;
-  frame.queue.close();
-}
 
 void watch_frame(Frame& frame, bool wait) {
   watch(frame);
