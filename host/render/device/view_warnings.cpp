@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compile/view/field_view.h"
 #include "compile/placing/coarse_starts.h"
+#include "compile/view/field_view.h"
 
 namespace sundog {
 namespace {
