@@ -172,6 +172,12 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   record.program = cl::Program(context, source, false, &status);
   check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry()));
   status = record.program.build({device}, options.c_str());
+  if (status != CL_SUCCESS)
+    if (const std::string portable = portable_options(record.device, options); portable != options) {
+      status = record.program.build({device}, portable.c_str());
+      if (status == CL_SUCCESS)
+        report.note = fmt::format("{}: built without options of {}", record.entry(), record.device.vendor);
+    }
   report.log = build_log(record.program, device);
   keep_log(record, options, report.log, status);
   if (status == CL_SUCCESS) return;
