@@ -174,7 +174,7 @@ def by_amd(tools, target, options, source):
 
 def by_intel(tools, target, options, source):
     out = f"{source}.{target}"
-    used = " ".join(option for option in options if option.startswith(("-cl-std", "-D")))
+    used = " ".join(option for option in options if option.startswith(("-cl-std", "-cl-intel", "-D")))
     made = checked([tools.ocloc, "compile", "-file", source, "-device", TARGETS[target][1], "-options", used, "-internal_options",
                    "-cl-intel-allow-zebin", "-out_dir", out], env=tools.environment(), cwd=os.path.dirname(source))
     spilled = {name: int(count) for name, count in re.findall(r"kernel (\w+) +compiled SIMD\d+ allocated \d+ regs and spilled around (\d+)", made.stdout)}
@@ -184,9 +184,9 @@ def by_intel(tools, target, options, source):
         if "simd_size" not in part or name.startswith("Intel_"):
             continue
         width = int(first_match(r"simd_size: +(\d+)", part))
-        memory = re.findall(r"usage: +(private_space|spill_fill_space)\s+size: +(\d+)", part)
-        private = sum(int(size) for kind, size in memory if kind == "private_space")
-        yield name, (int(first_match(r"grf_count: +(\d+)", part)), private // width, spilled.get(name, 0), width, len(found[f".text.{name}"]), made.seconds)
+        memory = re.findall(r"usage: +private_space\s+size: +(\d+)(\s+is_simt_thread: +true)?", part)
+        private = sum(int(size) if of_lane else int(size) // width for size, of_lane in memory)
+        yield name, (int(first_match(r"grf_count: +(\d+)", part)), private, spilled.get(name, 0), width, len(found[f".text.{name}"]), made.seconds)
 
 
 COMPILERS = {"nvidia": by_nvidia, "amd": by_amd, "intel": by_intel}

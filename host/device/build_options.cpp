@@ -1,6 +1,8 @@
 // See build_options.h.
 #include "device/build_options.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <sstream>
 
@@ -28,13 +30,24 @@ void append_options(std::string& options, std::string_view more, const std::stri
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry) {
   const HostEnvironment& environment = value_of(device.environment);
   const DeviceRule& rule = rule_of(device);
-  const std::string of_entry(entry == "entry/trace_rays.cl" ? rule.of_tracer : "");
+  const std::string of_entry(rule.of_entry(entry));
   std::string options = own_options;
   append_options(options, rule.options, environment.build_options + " " + of_entry);
   append_options(options, of_entry, environment.build_options);
   for (const std::string& more : {environment.build_options, wish.options})
     if (!more.empty()) options += " " + more;
   return options;
+}
+
+std::string portable_options(const DeviceInfo& device, const std::string& options) {
+  const DeviceRule& rule = rule_of(device);
+  const std::string own = fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths);
+  std::istringstream words{options};
+  std::string kept;
+  for (std::string option; words >> option;)
+    if (!option.starts_with("-cl-") || own.find(option) == std::string::npos)
+      kept += (kept.empty() ? "" : " ") + option;
+  return kept;
 }
 
 void bypass_driver_caches() {

@@ -17,6 +17,9 @@ struct BuildWish {
 /// such as -cl-nv-maxrregcount=64), which take the place of the device's by the same name, and `wish`'s.
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry);
 
+/// `options` without those of its maker that the device's rule gives, which an older driver may refuse.
+std::string portable_options(const DeviceInfo& device, const std::string& options);
+
 /// Disables drivers' own caches, which lose the log. Call before the first OpenCL call.
 /// HostEnvironment::build_log implies it.
 void bypass_driver_caches();

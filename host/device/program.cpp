@@ -172,8 +172,19 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
   record.program = cl::Program(context, source, false, &status);
   check_cl(status, record.device, fmt::format("{}: clCreateProgramWithSource", record.entry()));
   status = record.program.build({device}, options.c_str());
+  std::string used = options;
+  if (const std::string portable = portable_options(record.device, options);
+      status != CL_SUCCESS && portable != options) {
+    status = record.program.build({device}, portable.c_str());
+    used = portable;
+    if (status == CL_SUCCESS) {
+      record.cache_file.clear();  // the cached program would be asked for with the options
+      report.note = fmt::format("{}: the driver refuses options of its maker; built without, and not cached",
+                                record.entry());
+    }
+  }
   report.log = build_log(record.program, device);
-  keep_log(record, options, report.log, status);
+  keep_log(record, used, report.log, status);
   if (status == CL_SUCCESS) return;
   if (options_are_bad(record, context, device))
     throw BuildError(fmt::format("SUNDOG_BUILD_OPTIONS '{}': {} builds nothing with them: {} ({})",

@@ -114,8 +114,8 @@ __kernel void trace_rays(SCENE_PARAMETERS, __global const Ray* restrict rays, __
 }
 
 // Reads ray_count rays; writes 1 where anything is hit in (t_min, t_max], else 0.
-__kernel void occluded_rays(SCENE_PARAMETERS, __global const Ray* restrict rays,
-                            __global u32* restrict occluded, u32 ray_count, u32 coherent) {
+__kernel FOR_SUBGROUP void occluded_rays(SCENE_PARAMETERS, __global const Ray* restrict rays,
+                                         __global u32* restrict occluded, u32 ray_count, u32 coherent) {
   const Scene scene = SCENE_OF_PARAMETERS;
   occluded_rays_item(&scene, rays, occluded, ray_count, coherent, get_global_id(0));
 }

@@ -16,7 +16,8 @@
 #define LOBE_FEATURES(FEATURE)                                                                          \
   FEATURE(bool, HAS_SECONDARY, secondary_rays, same)    /* some material reflects or transmits */       \
   FEATURE(bool, HAS_ROUGH, rough, same)                 /* some material reflects or transmits roughly */\
-  FEATURE(bool, HAS_LAYERS, layers, rounds)             /* some material has layers: shared/layers.h */
+  FEATURE(bool, HAS_LAYERS, layers, rounds)             /* some material has layers: shared/layers.h */ \
+  FEATURE(bool, HAS_HIGHLIGHTS, highlights, same)       /* some material has a highlight */
 // clang-format on
 
 #define PERFECT_LOBES(LOBE)   \
@@ -30,7 +31,7 @@
 // Those that Whitted's integrator has lamps light.
 #define LOCAL_LOBES(LOBE) \
   COLORED_LOBES(LOBE)     \
-  LOBE(HAS_SURFACES, highlight)
+  LOBE(HAS_HIGHLIGHTS, highlight)
 
 // Those whose albedo is the colour of a surface, for AOVs.
 #define COLORED_LOBES(LOBE) \

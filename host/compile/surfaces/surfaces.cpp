@@ -21,6 +21,8 @@ bool scatters(const Medium& medium) {
   return s.x != 0 || s.y != 0 || s.z != 0;
 }
 
+bool has_highlight(const Material& material) { return (material.flags & MATERIAL_SHINES) != 0; }
+
 /// By the test of highlight() in kernels/plain/shade/lobes/highlight.cl.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
@@ -54,6 +56,7 @@ Surfaces compile_surfaces(const SurfaceInputs& in) {
   features.media = absorbs(surfaces.media[0]);
   features.absorption = std::ranges::any_of(surfaces.media, absorbs);
   features.scattering = in.paths && std::ranges::any_of(surfaces.media, scatters);
+  features.highlights = features.metal_rough || std::ranges::any_of(surfaces.materials, has_highlight);
   features.fractional_exponents = std::ranges::any_of(surfaces.materials, has_fractional_exponent);
   return surfaces;
 }

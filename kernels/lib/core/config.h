@@ -41,12 +41,19 @@
 #define NEVER_INLINE static __attribute__((noinline))
 #endif
 
-// Waves of a SIMD that the registers of render_whitted leave room for; only where the compiler needs no
-// spills for that (host/device/device_rules.cpp).
+// Waves of a SIMD that the registers of both integrators leave room for, on GPUs where few scenes need spills
+// for that (host/device/device_rules.cpp).
 #if defined(DEVICE_WAVES) && (defined(__GFX11__) || defined(__GFX12__))
 #define FOR_WAVES __attribute__((amdgpu_waves_per_eu(DEVICE_WAVES)))
 #else
 #define FOR_WAVES
+#endif
+
+// Rays that a thread of Intel's GPUs takes at once, for kernels that need no spills for that.
+#if defined(DEVICE_SUBGROUP) && defined(cl_intel_required_subgroup_size)
+#define FOR_SUBGROUP __attribute__((intel_reqd_sub_group_size(DEVICE_SUBGROUP)))
+#else
+#define FOR_SUBGROUP
 #endif
 
 // HAVING: a member or statements for a feature alone. EITHER: one value with it, another without. Features

@@ -10,6 +10,7 @@
 #if HAS_SHAFTS
 // The lanes of `lanes` whose surfaces have highlights.
 static inline MASK with_highlights(const Scene* scene, const Bsdfs* bsdf, MASK lanes) {
+  if (!HAS_HIGHLIGHTS) return NO_LANES;
   HAVING(HAS_MAPS, return lanes & MASK_OF(greatest3(bsdf->specular) > 0.0f);)
   MASK shine = NO_LANES;
   u32 index;

@@ -87,18 +87,6 @@ static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const Sl
   return top;
 }
 
-static inline void note_triangle(const Scene* scene, u32 place, float t, float u, float v, u32 instance,
-                                 Stretch* stretch) {
-  Hit hit;
-  hit.t = t;
-  hit.u = u;
-  hit.v = v;
-  hit.prim = place;
-  hit.instance = instance;
-  finish_triangle(scene->instances, scene->blocks, &hit);
-  note_hit(stretch, &hit);
-}
-
 #if WIDE_VECTORS
 static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
                               Stretch* stretch) {
@@ -110,17 +98,27 @@ static inline void note_block(const Scene* scene, u32 index, const ShearRay* she
   vstore8(test.v, 0, v);
   for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    note_triangle(scene, index * 8u + i, t[i], u[i], v[i], instance, stretch);
+    Hit hit;
+    hit.t = t[i];
+    hit.u = u[i];
+    hit.v = v[i];
+    hit.prim = index * 8u + i;
+    hit.instance = instance;
+    finish_triangle(scene->instances, scene->blocks, &hit);
+    note_hit(stretch, &hit);
   }
 }
 #else
 static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
                               Stretch* stretch) {
-  __global const TriangleBlock* block = scene->blocks + index;
-  for (u32 i = 0; i < 8u && block->prim[i] != NO_PRIM; ++i) {
-    float t, u, v;
-    if (hits_triangle(block->v0_x + i, shear, stretch->from, stretch->to, &t, &u, &v))
-      note_triangle(scene, index * 8u + i, t, u, v, instance, stretch);
+  for (u32 i = 0; i < 8u && scene->blocks[index].prim[i] != NO_PRIM; ++i) {
+    Hit hit;
+    hit.t = stretch->to;
+    hit.instance = NO_INSTANCE;
+    meet_triangle(scene->blocks, index * 8u + i, shear, stretch->from, instance, &hit);
+    if (hit.instance == NO_INSTANCE) continue;
+    finish_triangle(scene->instances, scene->blocks, &hit);
+    note_hit(stretch, &hit);
   }
 }
 #endif

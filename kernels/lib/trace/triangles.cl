@@ -166,9 +166,10 @@ ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 in
 #else
 EDGE_FUNCTION(edge_function, float)
 
-// Tests the triangle of a block whose first corner's x is at `corner`, in (t_min, t_max].
-ALWAYS_INLINE bool hits_triangle(__global const float* corner, const ShearRay* ray, float t_min, float t_max,
-                                 float* t, float* u, float* v) {
+// Offers the triangle at `place`, if the ray hits it in (t_min, hit->t].
+ALWAYS_INLINE void meet_triangle(__global const TriangleBlock* blocks, u32 place, const ShearRay* ray,
+                                 float t_min, u32 instance, Hit* hit) {
+  __global const float* corner = blocks[place >> 3].v0_x + (place & 7u);
   __global const float *vx = corner + ray->x, *vy = corner + ray->y, *vz = corner + ray->z;
   const float z0 = ray->oz - vz[0], z1 = ray->oz - vz[24], z2 = ray->oz - vz[48];
   const float x0 = fma(-ray->sx, z0, ray->ox - vx[0]), x1 = fma(-ray->sx, z1, ray->ox - vx[24]),
@@ -177,27 +178,22 @@ ALWAYS_INLINE bool hits_triangle(__global const float* corner, const ShearRay* r
               y2 = fma(-ray->sy, z2, ray->oy - vy[48]);
   const float e0 = edge_function(x2, y2, x1, y1), e1 = edge_function(x0, y0, x2, y2),
               e2 = edge_function(x1, y1, x0, y0);
-  if (!((e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) || (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f))) return false;
+  if (!((e0 >= 0.0f && e1 >= 0.0f && e2 >= 0.0f) || (e0 <= 0.0f && e1 <= 0.0f && e2 <= 0.0f))) return;
   const float det = e0 + e1 + e2, size = fabs(det);
   const float scaled_t = fma(e0, z0, fma(e1, z1, e2 * z2)) * ray->sz;
   const float signed_t = det < 0.0f ? -scaled_t : scaled_t;
   if (!(signed_t > (t_min * (1.0f - RANGE_SLACK)) * size &&
-        signed_t <= (t_max * (1.0f + RANGE_SLACK)) * size))
-    return false;
-  const float scale = 1.0f / det;
-  *t = scaled_t * scale;
-  *u = e1 * scale;
-  *v = e2 * scale;
-  return *t > t_min && *t <= t_max && *t < INFINITY;
+        signed_t <= (hit->t * (1.0f + RANGE_SLACK)) * size))
+    return;
+  const float scale = 1.0f / det, t = scaled_t * scale;
+  if (t > t_min && t <= hit->t && t < INFINITY)
+    offer_triangle(blocks, place, t, e1 * scale, e2 * scale, instance, hit);
 }
 
 ALWAYS_INLINE void closest_in_block(__global const TriangleBlock* blocks, u32 index, const ShearRay* ray,
                                     float t_min, u32 instance, Hit* hit) {
 #pragma unroll 1
-  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i) {
-    float t, u, v;
-    if (hits_triangle(blocks[index].v0_x + i, ray, t_min, hit->t, &t, &u, &v))
-      offer_triangle(blocks, index * 8u + i, t, u, v, instance, hit);
-  }
+  for (u32 i = 0; i < 8u && blocks[index].prim[i] != NO_PRIM; ++i)
+    meet_triangle(blocks, index * 8u + i, ray, t_min, instance, hit);
 }
 #endif

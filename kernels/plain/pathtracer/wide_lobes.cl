@@ -5,7 +5,8 @@
 #define LEAST_WIDE_ALPHA 0.15f  // of facets; of a highlight cos^e about as wide, sqrt(2 / (e + 2))
 
 static inline bool has_narrow_highlight(const LobeSet* lobes) {
-  return lobes->exponent > 2.0f / (LEAST_WIDE_ALPHA * LEAST_WIDE_ALPHA) - 2.0f;
+  if (HAS_HIGHLIGHTS) return lobes->exponent > 2.0f / (LEAST_WIDE_ALPHA * LEAST_WIDE_ALPHA) - 2.0f;
+  return false;
 }
 
 // Takes the narrow lobes away. The shares stay those of all.
@@ -18,7 +19,7 @@ static inline void keep_wide_lobes(Bsdf* bsdf, LobeSet* lobes) {
     if (HAS_THIN_WALLS) lobes->rough.frosted = false;
   }
   if (HAS_LAYERS) lobes->layers.least = LEAST_WIDE_ALPHA;
-  if (has_narrow_highlight(lobes)) {
+  if (HAS_HIGHLIGHTS && has_narrow_highlight(lobes)) {
     if (HAS_MAPS) bsdf->specular = (float3)(0.0f);
     if (!HAS_MAPS) bsdf->flags &= ~(int)MATERIAL_SHINES;
   }

@@ -8,8 +8,8 @@
 typedef struct LobeSet {
   float all;                                                                   // the sum of the shares
   PERFECT_LOBES(LOBE_SHARE) SCATTERING_LOBES(LOBE_SHARE) SpecularSplit split;  // as the layers leave it
-  float exponent;                                                              // of the highlight
-  bool blinn;
+  HAVING(HAS_HIGHLIGHTS) float exponent;                                       // of the highlight
+  HAVING(HAS_HIGHLIGHTS) bool blinn;
   HAVING(HAS_ROUGH) Microfacet rough;
   HAVING(HAS_LAYERS) LayerShare layers;
 } LobeSet;

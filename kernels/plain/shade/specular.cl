@@ -77,6 +77,7 @@ ENTRY static inline SpecularSplit bsdf_specular(UNIFORM const Scene* scene, cons
 }
 
 static inline bool has_highlight(const Bsdf* bsdf) {
+  if (!HAS_HIGHLIGHTS) return false;
   if (HAS_MAPS) return greatest(bsdf->specular) > 0.0f;
   return (bsdf->flags & (int)MATERIAL_SHINES) != 0;
 }

@@ -41,7 +41,7 @@ TEST_CASE("kernels writes a scene's programs as a GPU of a maker gets them, with
   const std::string text = sundog::read_file(out + "/render_path.cl");
   CHECK_THAT(text, ContainsSubstring("#define DEVICE_HAS_FMA 1\n") &&
                        ContainsSubstring("#define LANES 1\n") &&
-                       ContainsSubstring("__kernel void render_path("));
+                       ContainsSubstring("__kernel FOR_WAVES void render_path("));
   const CommandResult unknown = run_sundog(
       {"kernels", "--scene", SUNDOG_SOURCE_DIR "/scenes/cornell_path.json", "--gpu", "acme", "--out", out});
   CHECK(unknown.status == 2);

@@ -192,6 +192,14 @@ TEST_CASE("features follow the materials that are used") {
   CHECK(compile(scene).features.media);
   CHECK(compile(scene).features.absorption);
 
+  CHECK_FALSE(flat.features.highlights);
+  scene.materials[1].specular = {0, 0.1, 0};
+  CHECK(compile(scene).features.highlights);
+  scene.materials[1].specular = {0, 0, 0};
+  scene.materials[1].metal_rough.emplace();
+  CHECK(compile(scene).features.highlights);  // of its roughness
+  scene.materials[1].metal_rough.reset();
+
   CHECK_FALSE(flat.features.fractional_exponents);
   for (const double exponent : {20.5, 65536.0}) {
     scene.materials[1].exponent = exponent;

@@ -1,6 +1,8 @@
 // Phong's and Blinn's highlights (Phong 1975, Blinn 1977).
 #include "plain/shade/lobe_set.h"
 
+HAVING(HAS_HIGHLIGHTS);
+
 static inline float share_highlight(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, LobeSet* lobes) {
   float share = 0.0f;
   lobes->blinn = (bsdf->flags & (int)MATERIAL_BLINN) != 0;

@@ -1,0 +1,49 @@
+// Options of compilers go to the drivers that know them.
+#include "device/device_rules.h"
+
+#include "catch.h"
+#include "device/build_options.h"
+
+using namespace sundog;
+
+namespace {
+
+DeviceInfo gpu(const std::string& vendor, const std::string& platform) {
+  DeviceInfo device;
+  device.type = "gpu";
+  device.device_class = DeviceClass::gpu;
+  device.vendor = vendor;
+  device.platform_name = platform;
+  return device;
+}
+
+std::string options_of(const DeviceInfo& device, const std::string& entry) {
+  return all_build_options(device, {}, "entry/" + entry + ".cl");
+}
+
+}  // namespace
+
+TEST_CASE("paths get more registers by Intel's own driver, and nothing by others that they may refuse") {
+  const DeviceInfo own = gpu("Intel(R) Corporation", "Intel(R) OpenCL Graphics");
+  const std::string paths = options_of(own, "render_path");
+  CHECK_THAT(paths, ContainsSubstring("-cl-intel-256-GRF-per-thread"));
+  CHECK_THAT(options_of(own, "render_whitted"), !ContainsSubstring("-cl-intel-256-GRF-per-thread"));
+  CHECK_THAT(options_of(own, "trace_rays"), ContainsSubstring("-DDEVICE_SUBGROUP=16"));
+  for (const char* platform : {"rusticl", "Intel Gen OCL Driver", "Apple"}) {
+    const std::string others = options_of(gpu("Intel", platform), "render_path");
+    CHECK_THAT(others, ContainsSubstring("-DNODE_LOOP=2") && !ContainsSubstring("-cl-intel"));
+  }
+}
+
+TEST_CASE("without its maker's options a device is built for with all the others") {
+  const DeviceInfo intel = gpu("Intel(R) Corporation", "Intel(R) OpenCL HD Graphics");
+  const std::string portable = portable_options(intel, options_of(intel, "render_path") + " -DMORE=1");
+  CHECK_THAT(portable, !ContainsSubstring("-cl-intel") && ContainsSubstring("-cl-std=CL1.2 ") &&
+                           ContainsSubstring("-DDEVICE_INLINES_ALL") && ContainsSubstring("-DMORE=1"));
+  const DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
+  for (const char* entry : {"render_path", "trace_rays"})
+    CHECK_THAT(portable_options(nvidia, options_of(nvidia, entry)), !ContainsSubstring("-cl-nv"));
+  const DeviceInfo any = gpu("Acme", "Acme");
+  const std::string options = options_of(any, "render_path");
+  CHECK(portable_options(any, options) == options);
+}
