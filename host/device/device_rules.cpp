@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::array rules{
     // Inlined, frames keep their structs in registers. With 128 registers a multiprocessor holds 16 warps;
-    // most
-    // kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32 warps run
-    // instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
+    // most kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32
+    // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
     DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
                "-cl-nv-maxrregcount=64"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
