@@ -1,68 +1,74 @@
 // Structures that plain text declares: as they are, and in lanes with what takes lanes of two.
-#include <fmt/format.h>
-
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
 namespace {
 
-void with_feature(const Member& member, std::vector<std::string>& out, const std::string& text) {
-  if (!member.feature.empty()) out.push_back("#if " + member.feature);
-  out.push_back(text);
-  if (!member.feature.empty()) out.emplace_back("#endif");
-}
+/// A member, or each element of one that is an array.
+struct Part {
+  explicit Part(const Member& m) : member(m), type(m.type), name(m.name) {
+    if (!m.type.is_array()) return;
+    type = *m.type.of;
+    name += "[i]";
+    each = fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length);
+  }
+  const Member& member;
+  Type type;
+  std::string name, each;
+};
 
 }  // namespace
 
-std::vector<std::string> Writer::structure(const Structure& s, bool in_lanes) {
+/// Lines of `head`, a line for each member where its feature is there, and `end`.
+template <class Text>
+void Writer::structure_lines(const Structure& s, const std::string& head, const Text& text,
+                             const std::string& end) {
   place_ = s.place;
+  depth_ = 0;
+  line(head);
+  for (const Member& m : s.members) {
+    if (!m.feature.empty()) line("#if " + m.feature);
+    line("  " + text(Part(m)));
+    if (!m.feature.empty()) line("#endif");
+  }
+  line(end);
+}
+
+std::vector<Line> Writer::structure(const Structure& s, bool in_lanes) {
+  out_.clear();
   const std::string name = in_lanes ? s.lanes : s.name;
-  std::vector<std::string> out{fmt::format("typedef struct {} {{", name)};
-  const auto is_array = [](const Member& m) { return m.type.is(Type::Kind::array); };
-  for (const Member& m : s.members) {
-    const std::string type = type_text(is_array(m) ? *m.type.of : m.type, in_lanes && !m.uniform);
-    with_feature(
-        m, out,
-        fmt::format("  {} {}{};", type, m.name, is_array(m) ? fmt::format("[{}]", m.type.length) : ""));
-  }
-  out.push_back(fmt::format("}} {};", name));
-  if (!in_lanes) return out;
-  out.push_back(fmt::format("static inline {0} select_{1}({0} a, {0} b, MASK m) {{", name, s.name));
-  out.push_back(fmt::format("  {} r;", name));
-  for (const Member& m : s.members) {
-    const Type& type = is_array(m) ? *m.type.of : m.type;
-    const std::string at = m.name + (is_array(m) ? "[i]" : "");
-    const bool joins = is_by_hand(type) && type.is(Type::Kind::structure) && !type.structure->join.empty();
-    const std::string each = is_array(m) ? fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length) : "";
-    const std::string value = m.uniform ? "b." + at
-                              : joins   ? "a." + at
-                                        : selected(type, "a." + at, "b." + at, "m", s.place);
-    const std::string joined =
-        joins ? fmt::format(" {}{}(&r.{}, &b.{}, m);", each, type.structure->join, at, at) : "";
-    with_feature(m, out, fmt::format("  {}r.{} = {};{}", each, at, value, joined));
-  }
-  out.emplace_back("  return r;");
-  out.emplace_back("}");
-  return out;
+  const auto declared = [&](const Part& m) {
+    const std::string type = type_text(m.type, in_lanes && !m.member.uniform);
+    const int length = m.member.type.length;
+    return fmt::format("{} {}{};", type, m.member.name, length > 0 ? fmt::format("[{}]", length) : "");
+  };
+  structure_lines(s, fmt::format("typedef struct {} {{", name), declared, fmt::format("}} {};", name));
+  if (!in_lanes) return std::move(out_);
+  const auto joined = [&](const Part& m) {
+    const std::string a = "a." + m.name, b = "b." + m.name;
+    if (m.type.joins())
+      return fmt::format("{0}r.{1} = {2}; {0}{3}(&r.{1}, &{4}, m);", m.each, m.name, a,
+                         m.type.structure->join, b);
+    return fmt::format("{}r.{} = {};", m.each, m.name,
+                       m.member.uniform ? b : selected(m.type, a, b, "m", s.place));
+  };
+  line("static inline {0} select_{1}({0} a, {0} b, MASK m) {{", name, s.name);
+  structure_lines(s, fmt::format("  {} r;", name), joined, "  return r;");
+  line("}");
+  return std::move(out_);
 }
 
 /// One path's, the same in all lanes.
-std::vector<std::string> Writer::spread_structure(const Structure& s) {
-  std::vector<std::string> out{fmt::format("static inline {} all_{}({} a) {{", s.lanes, s.name, s.name),
-                               fmt::format("  {} r;", s.lanes)};
-  for (const Member& m : s.members) {
-    const bool is_array = m.type.is(Type::Kind::array);
-    const std::string at = m.name + (is_array ? "[i]" : ""), from = "a." + at;
-    Expression e;
-    e.type = is_array ? *m.type.of : m.type;
-    with_feature(m, out,
-                 fmt::format("  {}r.{} = {};",
-                             is_array ? fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length) : "", at,
-                             m.uniform ? from : spread(from, e)));
-  }
-  out.emplace_back("  return r;");
-  out.emplace_back("}");
-  return out;
+std::vector<Line> Writer::spread_structure(const Structure& s) {
+  out_.clear();
+  const auto spread_part = [&](const Part& m) {
+    const std::string from = "a." + m.name;
+    return fmt::format("{}r.{} = {};", m.each, m.name, m.member.uniform ? from : spread(from, m.type));
+  };
+  line("static inline {} all_{}({} a) {{", s.lanes, s.name, s.name);
+  structure_lines(s, fmt::format("  {} r;", s.lanes), spread_part, "  return r;");
+  line("}");
+  return std::move(out_);
 }
 
 }  // namespace sundog::spmd
