@@ -78,29 +78,6 @@ void Parser::skip_brackets() {
 
 void Parser::declaration() {
   if (take(";")) return;
-  if (is_plain_(*place().file)) return plain_declaration();
-  // A header that devices and host share: what is not understood there is not known here.
-  const std::size_t from = at_;
-  try {
-    plain_declaration();
-  } catch (const std::exception&) {
-    at_ = from;
-    skip_declaration();
-  }
-}
-
-void Parser::skip_declaration() {
-  while (word().kind != Token::Kind::end && !take(";")) {
-    const bool ends = at("{");
-    if (at("(") || at("{") || at("["))
-      skip_brackets();
-    else
-      ++at_;
-    if (ends && !at(";") && !(at_name() && word(1).is(";"))) return;
-  }
-}
-
-void Parser::plain_declaration() {
   if (at("HAVING") && word(4).is(";")) {
     const std::string* file = place().file;
     ++at_;
@@ -150,7 +127,6 @@ void Parser::vector_definition() {
 void Parser::enumeration() {
   want("enum");
   if (at_name()) ++at_;
-  if (take(":")) base_type();
   want("{");
   list_until("}", [&] {
     constants_[name("a constant")] = types_["int"];
@@ -197,32 +173,22 @@ void Parser::members(Structure& s) {
   }
 }
 
-bool Parser::begins_type() const {
-  return at("const") || at("__global") || at("__constant") || types_.contains(word().text);
-}
-
 Type Parser::base_type() {
-  Space space = Space::own;
-  bool constant = false, found = false;
-  Type type;
-  for (;; ++at_) {
-    if (at("const"))
+  bool constant = false, global = false;
+  for (;;) {
+    if (take("const"))
       constant = true;
-    else if (at("__global"))
-      space = Space::global;
-    else if (at("__constant"))
-      space = Space::constant;
-    else if (at("__local"))
-      space = Space::local;
-    else if (const auto known = types_.find(word().text); !found && known != types_.end()) {
-      type = known->second;
-      found = true;
-    } else
+    else if (take("__global"))
+      global = true;
+    else
       break;
   }
-  if (!found) fail(place(), "'{}' is no type", word().text);
-  type.space = space;
+  const auto known = types_.find(word().text);
+  if (known == types_.end()) fail(place(), "'{}' is no type", word().text);
+  ++at_;
+  Type type = known->second;
   type.constant = constant;
+  type.global = global;
   return type;
 }
 
@@ -267,7 +233,7 @@ void Parser::function() {
   f.place = place();
   f.name = name("a function");
   if (f.lanes.empty()) f.lanes = f.name;
-  const Scope scope(scopes_);
+  known_.clear();
   want("(");
   if (at("void") && word(1).is(")")) ++at_;
   list_until(")", [&] { parameter(f); });
@@ -299,7 +265,7 @@ void Parser::parameter(Function& f) {
   f.takes_mask |= kept.here;
   if (kept.here) return;
   f.taken.push_back(&kept);
-  scopes_.back()[kept.name] = &kept;
+  known_.push_back(&kept);
 }
 
 }  // namespace sundog::spmd

@@ -1,4 +1,6 @@
 // Statements.
+#include <set>
+
 #include "lanes/parser.h"
 
 namespace sundog::spmd {
@@ -43,20 +45,31 @@ const Variable* Parser::declare(const std::string& named, const Type& type, cons
   const std::size_t stem = named.find_last_not_of("0123456789");
   if (stem + 1 < named.size() && named[stem] == '_')
     fail(where, "'{}': names that end in _ and a number are the translator's", named);
-  for (const auto& scope : scopes_)
-    if (scope.contains(named)) fail(where, "'{}' hides another one", named);
-  return scopes_.back()[named] = &out_.variables.emplace_back(Variable{named, type, false, false, where});
+  if (std::ranges::find(known_, named, &Variable::name) != known_.end())
+    fail(where, "'{}' hides another one", named);
+  return known_.emplace_back(&out_.variables.emplace_back(Variable{named, type, false, false, where}));
+}
+
+bool Parser::begins_declaration() const {
+  static const std::set<std::string_view> others{"return", "goto", "do"};
+  const bool has_two_names = at_name() && word(1).kind == Token::Kind::name;
+  return (has_two_names && !others.contains(word().text)) || (begins_type() && !word(1).is("("));
 }
 
 StatementPtr Parser::statement() {
+  const std::size_t outside = known_.size();
+  StatementPtr s = unscoped_statement();
+  known_.resize(outside);
+  return s;
+}
+
+StatementPtr Parser::unscoped_statement() {
   if (at("{")) return block();
   if (at("if")) return branch();
   if (at("for") || at("while") || at("do")) return loop();
   if (at("EACH_ALIKE")) return each_alike();
   if (at("return")) return given();
   if (at("goto") || at("switch")) fail(place(), "'{}' has no lanes: use if", word().text);
-  const bool has_two_names = at_name() && word(1).kind == Token::Kind::name;
-  if (has_two_names || (begins_type() && !word(1).is("("))) return declared();
   StatementPtr s = made(Statement::Kind::block);
   if (take("break"))
     s->kind = Statement::Kind::leave_loop;
@@ -73,17 +86,11 @@ StatementPtr Parser::statement() {
 StatementPtr Parser::block() {
   StatementPtr s = made(Statement::Kind::block);
   want("{");
-  const Scope scope(scopes_);
   while (!take("}")) {
     if (word().kind == Token::Kind::end) fail(s->place, "a block has no end");
-    s->body.push_back(statement());
+    s->body.push_back(begins_declaration() ? declared() : statement());
   }
   return s;
-}
-
-StatementPtr Parser::scoped_statement() {
-  const Scope scope(scopes_);
-  return statement();
 }
 
 StatementPtr Parser::declared() {
@@ -107,8 +114,8 @@ StatementPtr Parser::branch() {
   StatementPtr s = made(Statement::Kind::branch);
   want("if");
   ExpressionPtr asked = truth(in_brackets());
-  s->body.push_back(scoped_statement());
-  if (take("else")) s->body.push_back(scoped_statement());
+  s->body.push_back(statement());
+  if (take("else")) s->body.push_back(statement());
   // Features are the preprocessor's: `if (HAS_X && c) s` is `#if HAS_X`, `if (c) s`.
   if (s->body.size() == 1 || !feature_text(*asked).empty()) s->feature = take_features(asked);
   if (asked) s->expressions.push_back(std::move(asked));
@@ -122,7 +129,6 @@ StatementPtr Parser::branch() {
 
 StatementPtr Parser::loop() {
   StatementPtr s = made(at("do") ? Statement::Kind::do_loop : Statement::Kind::loop);
-  const Scope scope(scopes_);
   StatementPtr first = made(Statement::Kind::block), body;
   ExpressionPtr asked = made(Expression::Kind::constant, type("bool"), place(), "true");
   if (take("do")) {
@@ -136,7 +142,7 @@ StatementPtr Parser::loop() {
   } else {
     want("for");
     want("(");
-    if (!take(";")) first = statement();
+    if (!take(";")) first = begins_declaration() ? declared() : statement();
     if (!at(";")) asked = truth(condition());
     want(";");
     const ExpressionPtr step = at(")") ? nullptr : expression();
@@ -162,7 +168,6 @@ StatementPtr Parser::each_alike() {
   want(",");
   s->expressions.push_back(converted(condition(), type));
   want(")");
-  const Scope scope(scopes_);
   s->variables.push_back(declare(named, type, where));
   s->body.push_back(statement());
   return s;

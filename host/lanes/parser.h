@@ -1,16 +1,7 @@
-// Parses plain kernels: OpenCL C 1.2 for one path, without goto, switch, recursion and pointers to pointers,
-// plus a few keywords. In: text. Out: a typed tree; unknown constructs are rejected.
-//   UNIFORM T x               one value for all lanes; for a parameter or a member
-//   EACH_ALIKE(T, x, value) s runs s for each distinct value of `value`, in the lanes that have it
-//   any(c)                    whether c holds in some lane
-//   if (HAS_X && ...)         features are taken out by the preprocessor; HAVING(HAS_X) T m; for members,
-//   HAVING(HAS_X) T f(...) for functions, HAVING(HAS_X); for those of a file from there on
-// In interfaces, to what is written by hand:
-//   T f(..., HERE, ...)       f takes the mask of the lanes that are there, in that place; calls leave it out
-//   CALLED(name) T f(...)     its name there; UNIFORM T f(...): it gives one value for all lanes
-//   typedef struct LANES(Rays, join_rays) {...} Ray;  its lane form, and what joins lanes of two
-//   LANE_VECTOR(Spectrum, Spectra, spectrum, 4)          a vector of x to w: spectrum_add, spectrum_scale,
-//   spectrum_select, ...; the lane form of other structures is made: of a PathState it is PathStates
+// Parses plain kernels: OpenCL C 1.2 for one path, with the words that kernels/README.md lists. In: text.
+// Out: a typed tree; unknown constructs are rejected. Interfaces may have, besides:
+//   UNIFORM T f(...)      a hand-written function that gives one value for all lanes
+//   LANE_VECTOR(Spectrum, Spectra, spectrum, 4)     a vector of x to w: spectrum_add, spectrum_scale, ...
 #pragma once
 #include "lanes/tree.h"
 
@@ -47,8 +38,6 @@ class Parser {
 
   // Declarations (parse_declarations.cpp).
   void declaration();
-  void plain_declaration();
-  void skip_declaration();
   void type_definition();
   void vector_definition();
   void enumeration();
@@ -56,7 +45,7 @@ class Parser {
   void members(Structure& s);
   void function();
   void parameter(Function& f);
-  bool begins_type() const;
+  bool begins_type() const { return at("const") || at("__global") || types_.contains(word().text); }
   Type base_type();
   /// Parses `type *const restrict`, then `name[3]` in declarators.
   Type pointed(Type type);
@@ -70,7 +59,8 @@ class Parser {
   StatementPtr loop();
   StatementPtr each_alike();
   StatementPtr given();
-  StatementPtr scoped_statement();
+  StatementPtr unscoped_statement();
+  bool begins_declaration() const;
   StatementPtr made(Statement::Kind kind) const;
   const Variable* declare(const std::string& named, const Type& type, const Place& where);
 
@@ -94,8 +84,6 @@ class Parser {
   }
   ExpressionPtr converted(ExpressionPtr e, const Type& type) const;
   ExpressionPtr truth(ExpressionPtr e) const;
-
-  // Operands (parse_operands.cpp).
   ExpressionPtr postfix(ExpressionPtr of);
   ExpressionPtr stepped(const Token& sign, ExpressionPtr of, bool postfix) const;
   ExpressionPtr part_of(ExpressionPtr of, bool arrow);
@@ -111,22 +99,12 @@ class Parser {
   const Type& type(const std::string& named) const { return types_.at(named); }
   const Type& scalar(Type::Kind kind) const;
 
-  /// Names that are known until the end of a block.
-  using Scopes = std::vector<std::map<std::string, const Variable*>>;
-  struct Scope {
-    explicit Scope(Scopes& all_) : all(all_) { all.emplace_back(); }
-    ~Scope() { all.pop_back(); }
-    Scope(const Scope&) = delete;
-    Scope& operator=(const Scope&) = delete;
-    Scopes& all;
-  };
-
   const Tokens& tokens_;
   const IsPlain& is_plain_;
   std::size_t at_ = 0;
   Program out_;
   std::map<std::string, Type> types_, constants_;
-  Scopes scopes_;
+  std::vector<const Variable*> known_;  // the names at this place, none of which hides another
   std::map<const std::string*, std::string> features_;  // of files: HAVING(HAS_X);
   const Function* function_ = nullptr;                  // the function being parsed
 };

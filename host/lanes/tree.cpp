@@ -11,7 +11,7 @@ Type pointer_to(const Type& type) {
   Type pointer;
   pointer.kind = Type::Kind::pointer;
   pointer.of = std::make_shared<const Type>(type);
-  pointer.space = type.space;
+  pointer.global = type.global;
   pointer.constant = type.constant;
   return pointer;
 }

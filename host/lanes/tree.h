@@ -19,8 +19,6 @@ struct VectorForm {
   std::string function(const std::string& operation) const;
 };
 
-enum class Space { own, global, constant, local };
-
 struct Type {
   enum class Kind { nothing, boolean, integer, natural, real, vector, structure, pointer, array };
   Kind kind = Kind::nothing;
@@ -28,10 +26,9 @@ struct Type {
   const VectorForm* form = nullptr;  // of a vector
   Kind part = Kind::real;            // of a vector
   const Structure* structure = nullptr;
-  std::shared_ptr<const Type> of;  // of a pointer or array
-  int length = 0;                  // of an array
-  Space space = Space::own;        // address space of a pointer's target
-  bool constant = false;
+  std::shared_ptr<const Type> of;         // of a pointer or array
+  int length = 0;                         // of an array
+  bool constant = false, global = false;  // global: of the device's memory, or a pointer to it
 
   bool is(Kind k) const { return kind == k; }
   bool is_nothing() const { return is(Kind::nothing); }
@@ -44,8 +41,8 @@ struct Type {
   bool is_structure() const { return is(Kind::structure); }
   bool is_array() const { return is(Kind::array); }
   bool is_pointer() const { return is(Kind::pointer); }
-  bool is_table() const { return is_pointer() && space != Space::own; }
-  bool is_own_pointer() const { return is_pointer() && space == Space::own; }
+  bool is_table() const { return is_pointer() && global; }
+  bool is_own_pointer() const { return is_pointer() && !global; }
   /// Whether its lane form is hand-written; for structures, `joins` the lanes of two.
   bool is_by_hand() const;
   bool joins() const;

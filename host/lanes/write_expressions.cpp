@@ -26,9 +26,8 @@ std::string number_of(const Expression& e, const Type& type) {
 std::string Writer::type_text(const Type& type, bool varying) {
   if (type.is_nothing()) return "void";
   if (type.is_pointer()) {
-    static const char* const spaces[] = {"", "__global ", "__constant ", "__local "};
-    return fmt::format("{}{}{}*", spaces[static_cast<int>(type.space)], type.constant ? "const " : "",
-                       type_text(*type.of, varying && type.space == Space::own));
+    return fmt::format("{}{}{}*", type.global ? "__global " : "", type.constant ? "const " : "",
+                       type_text(*type.of, varying && !type.global));
   }
   if (type.is_structure()) {
     const Structure& s = *type.structure;

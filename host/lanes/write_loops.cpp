@@ -45,13 +45,13 @@ void Writer::loop(const Statement& s) {
   if (out_.size() != begin)
     fail(s.expressions[1]->place, "the step of a loop is simple: put this into its body");
 
-  const bool asks_later = is_do && (!before.empty() || rounds), asks_within = asks_later || !before.empty();
   const auto ask = [&](int depth) {
     for (Line& l : before) l.depth += depth;
     out_.insert(out_.end(), before.begin(), before.end());
     line("{}if (!({})) break;", std::string(2 * static_cast<std::size_t>(depth), ' '), all_of(tests));
   };
-  if (asks_later) {
+  const bool asks_first = !is_do && before.empty();
+  if (is_do) {
     const std::string again = fresh("again");
     line("bool {} = false;", again);
     line("while (true) {");
@@ -59,26 +59,19 @@ void Writer::loop(const Statement& s) {
     ask(2);
     line("  }");
     line("  {} = true;", again);
-  } else if (asks_within) {
-    line("for (;; {}) {{", step);
-    ask(1);
   } else {
-    line("do {");
+    line("for (;; {}) {{", step);
+    if (!asks_first) ask(1);
   }
   const std::size_t head = out_.size() - 1;
   if (rounds) line("  MASK {} = {};", entry.going, entry.lanes);
   inside({Frame::Kind::round, &s, rounds}, entry.going, body);
-  if (!is_do && !asks_within) {
+  if (asks_first) {
     if (checked_.contains(entry.lanes) && !asks_lanes)
       std::erase(tests, fmt::format("any_lane({})", entry.lanes));
     out_[head].text = fmt::format("for (; {}; {}) {{", all_of(tests), step);
   }
-  if (is_do && !asks_later) {
-    std::ranges::reverse(tests);
-    line("}} while ({});", all_of(tests));
-  } else {
-    line("}");
-  }
+  line("}");
   all_loops_.pop_back();
   if (parts || rounds) loops_.pop_back();
   mask_ = outer;
