@@ -2,37 +2,27 @@
 #include "lanes/parser.h"
 
 namespace sundog::spmd {
-namespace {
-
-Type made_type(Type::Kind kind, const std::string& name) {
-  Type t;
-  t.kind = kind;
-  t.name = name;
-  return t;
-}
-
-}  // namespace
 
 Parser::Parser(const Source& source, const IsPlain& is_plain) : tokens_(source.tokens), is_plain_(is_plain) {
   using enum Type::Kind;
-  types_["void"] = made_type(nothing, "void");
-  types_["bool"] = made_type(boolean, "bool");
-  types_["u32"] = made_type(natural, "u32");
-  const std::pair<const char*, Type::Kind> numbers[] = {{"float", real}, {"int", integer}, {"uint", natural}};
-  for (const auto& [number, kind] : numbers) {
-    types_[number] = made_type(kind, number);
-    for (int n = 2; n <= 4; ++n) {
-      Type t = made_type(vector, fmt::format("{}{}", number, n));
-      const std::string lanes = kind == real ? fmt::format("REAL{}", n) : "";
-      t.form = &out_.forms.emplace_back(VectorForm{t.name, lanes, "", n});
-      t.part = kind;
-      types_[t.name] = t;
-    }
+  types_["void"] = {.kind = nothing, .name = "void"};
+  types_["bool"] = {.kind = boolean, .name = "bool"};
+  types_["u32"] = {.kind = natural, .name = "u32"};
+  const std::pair<std::string, Type::Kind> numbers[] = {{"float", real}, {"int", integer}, {"uint", natural}};
+  for (const auto& [name, kind] : numbers) {
+    types_[name] = {.kind = kind, .name = name};
+    for (int n = 2; n <= 4; ++n)
+      add_vector({name + std::to_string(n), kind == real ? fmt::format("REAL{}", n) : "", "", n}, kind);
   }
   types_["i32"] = types_["int"];
   for (const char* name :
        {"INFINITY", "MAXFLOAT", "FLT_MIN", "FLT_MAX", "FLT_EPSILON", "M_PI_F", "M_1_PI_F", "M_PI_2_F", "NAN"})
     constants_[name] = types_["float"];
+}
+
+void Parser::add_vector(const VectorForm& form, Type::Kind part) {
+  const VectorForm* kept = &out_.forms.emplace_back(form);
+  types_[form.name] = {.kind = Type::Kind::vector, .name = form.name, .form = kept, .part = part};
 }
 
 Program Parser::program() {
@@ -57,11 +47,15 @@ std::string Parser::name(std::string_view what) {
   if (!at_name()) fail(place(), "wanted the name of {}, found '{}'", what, word().text);
   return tokens_[at_++].text;
 }
-std::string Parser::name_in_brackets(std::string_view what) {
+
+/// `(name, 4, ...)`: those words, at least `least`.
+std::vector<std::string> Parser::words_in_brackets(std::size_t least) {
+  std::vector<std::string> all;
+  const Place where = place();
   want("(");
-  std::string found = name(what);
-  want(")");
-  return found;
+  list_until(")", [&] { all.push_back(tokens_[at_++].text); });
+  if (all.size() < least) fail(where, "wanted {} words in brackets", least);
+  return all;
 }
 
 /// From an opening bracket to behind the one that closes it.
@@ -81,9 +75,10 @@ void Parser::declaration() {
   if (at("HAVING") && word(4).is(";")) {
     const std::string* file = place().file;
     ++at_;
-    features_[file] = name_in_brackets("a feature");
+    features_[file] = words_in_brackets(1)[0];
   } else if (take("LANE_VECTOR")) {
-    vector_definition();
+    const std::vector<std::string> words = words_in_brackets(4);
+    add_vector({words[0], words[1], words[2], std::atoi(words[3].c_str())}, Type::Kind::real);
   } else if (at("enum")) {
     enumeration();
   } else if (take("CONSTANT")) {
@@ -109,21 +104,6 @@ void Parser::type_definition() {
   }
 }
 
-void Parser::vector_definition() {
-  VectorForm form;
-  want("(");
-  form.name = name("a vector");
-  want(",");
-  form.lanes = name("its lane form");
-  want(",");
-  form.prefix = name("its functions");
-  want(",");
-  form.parts = std::stoi(number()->digits);
-  want(")");
-  Type& t = types_[form.name] = made_type(Type::Kind::vector, form.name);
-  t.form = &out_.forms.emplace_back(form);
-}
-
 void Parser::enumeration() {
   want("enum");
   if (at_name()) ++at_;
@@ -142,25 +122,24 @@ void Parser::structure() {
   if (at_name() && !at("LANES")) ++at_;
   s.by_hand = take("LANES");
   if (s.by_hand) {
-    want("(");
-    s.lanes = name("a lane form");
-    if (take(",")) s.join = name("what joins lanes");
-    want(")");
+    const std::vector<std::string> words = words_in_brackets(1);
+    s.lanes = words[0];
+    if (words.size() > 1) s.join = words[1];
   }
   members(s);
   s.name = name("a type");
   s.shared = !is_plain_(*s.place.file);
   if (s.lanes.empty()) s.lanes = s.name + "s";
   if (types_.contains(s.name)) fail(s.place, "there is a type '{}' already", s.name);
-  Type& t = types_[s.name] = made_type(Type::Kind::structure, s.name);
-  t.structure = &out_.structures.emplace_back(std::move(s));
+  const Structure* kept = &out_.structures.emplace_back(s);
+  types_[s.name] = {.kind = Type::Kind::structure, .name = s.name, .structure = kept};
 }
 
 void Parser::members(Structure& s) {
   want("{");
   while (!take("}")) {
     Member member;
-    if (take("HAVING")) member.feature = name_in_brackets("a feature");
+    if (take("HAVING")) member.feature = words_in_brackets(1)[0];
     member.uniform = take("UNIFORM");
     const Type base = base_type();
     do {
@@ -208,7 +187,9 @@ Type Parser::lengthened(Type type) {
   const ExpressionPtr length = condition();
   want("]");
   if (length->kind != Expression::Kind::number) fail(where, "the length of an array is a number");
-  return array_of(lengthened(std::move(type)), std::stoi(length->digits, nullptr, 0));
+  return {.kind = Type::Kind::array,
+          .of = std::make_shared<const Type>(lengthened(std::move(type))),
+          .length = std::stoi(length->digits, nullptr, 0)};
 }
 
 void Parser::function() {
@@ -222,9 +203,9 @@ void Parser::function() {
     else if (take("UNIFORM"))
       f.uniform = true;
     else if (take("HAVING"))
-      f.feature += (f.feature.empty() ? "" : " && ") + name_in_brackets("a feature");
+      f.feature += (f.feature.empty() ? "" : " && ") + words_in_brackets(1)[0];
     else if (take("CALLED"))
-      f.lanes = name_in_brackets("a function");
+      f.lanes = words_in_brackets(1)[0];
     else if (!take("static") && !take("NEVER_INLINE"))
       break;
   }

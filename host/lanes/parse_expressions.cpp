@@ -28,8 +28,7 @@ const Type& Parser::scalar(Type::Kind kind) const {
 /// `e` as a value of `type`, by the conversions that C makes by itself.
 ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
   const Type& own = e->type;
-  if (own.kind == type.kind && own.form == type.form && own.structure == type.structure) return e;
-  if (own.is_array() && type.is_pointer()) return e;
+  if (own.fits(type)) return e;
   if (type.is_table() && e->kind == Kind::number && e->text == "0") {  // none
     e->type = type;
     return e;
@@ -291,16 +290,7 @@ ExpressionPtr Parser::call(const Token& called) {
     fail(called.place, "'{}' takes {} arguments, found {}", f.name, f.taken.size(), given.size());
   const ExpressionPtr e = made(Kind::call, f.result, called.place, f.name);
   e->function = &f;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const Type &type = f.taken[i]->type, &own = given[i]->type;
-    if (type.is_pointer() && (own.is_pointer() || own.is_array())) {
-      const Type &to = *type.of, &from = *own.of;
-      const bool same = to.kind == from.kind && to.structure == from.structure && to.form == from.form;
-      if (!same || (own.is_pointer() && type.global != own.global))
-        fail(given[i]->place, "'{}' wants {}, found {}", f.taken[i]->name, name_of(type), name_of(own));
-    }
-    e->of.push_back(converted(given[i], type));
-  }
+  for (std::size_t i = 0; i < given.size(); ++i) e->of.push_back(converted(given[i], f.taken[i]->type));
   return e;
 }
 

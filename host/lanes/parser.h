@@ -25,7 +25,7 @@ class Parser {
   bool take(std::string_view text);
   void want(std::string_view text);
   std::string name(std::string_view what);
-  std::string name_in_brackets(std::string_view what);
+  std::vector<std::string> words_in_brackets(std::size_t least);
   void skip_brackets();
   /// Calls `read` for each element up to `end`, commas between.
   template <class Read>
@@ -39,7 +39,7 @@ class Parser {
   // Declarations (parse_declarations.cpp).
   void declaration();
   void type_definition();
-  void vector_definition();
+  void add_vector(const VectorForm& form, Type::Kind part);
   void enumeration();
   void structure();
   void members(Structure& s);

@@ -191,17 +191,16 @@ class Preprocessor {
 
   /// `defined(X)` and `!defined(X)`, joined by && or ||, is what headers ask.
   bool condition(const Tokens& words, const Place& place) const {
-    bool all = true, any = false, joined_by_or = false;
+    bool result = true, joined_by_or = false;
     for (std::size_t i = 0;; ++i) {
       const bool opposite = i < words.size() && words[i].is("!");
       if (opposite) ++i;
       if (i + 3 >= words.size() || !words[i].is("defined") || !words[i + 1].is("(") || !words[i + 3].is(")"))
         fail(place, "wanted defined(NAME), or several joined by && or ||");
       const bool holds = macros_.contains(words[i + 2].text) != opposite;
-      all &= holds;
-      any |= holds;
+      result = joined_by_or ? result || holds : result && holds;
       i += 4;
-      if (i >= words.size()) return joined_by_or ? any : all;
+      if (i >= words.size()) return result;
       joined_by_or = words[i].is("||");
     }
   }

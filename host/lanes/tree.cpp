@@ -8,20 +8,16 @@ std::string VectorForm::function(const std::string& operation) const {
 }
 
 Type pointer_to(const Type& type) {
-  Type pointer;
-  pointer.kind = Type::Kind::pointer;
-  pointer.of = std::make_shared<const Type>(type);
-  pointer.global = type.global;
-  pointer.constant = type.constant;
-  return pointer;
+  return {.kind = Type::Kind::pointer,
+          .of = std::make_shared<const Type>(type),
+          .constant = type.constant,
+          .global = type.global};
 }
 
-Type array_of(Type type, int length) {
-  Type array;
-  array.kind = Type::Kind::array;
-  array.length = length;
-  array.of = std::make_shared<const Type>(std::move(type));
-  return array;
+bool Type::fits(const Type& wanted) const {
+  if (wanted.is_pointer() && (is_array() || is_pointer()))
+    return of->fits(*wanted.of) && (is_array() || global == wanted.global);
+  return kind == wanted.kind && form == wanted.form && structure == wanted.structure;
 }
 
 bool Type::is_by_hand() const {

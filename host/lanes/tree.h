@@ -22,11 +22,11 @@ struct VectorForm {
 struct Type {
   enum class Kind { nothing, boolean, integer, natural, real, vector, structure, pointer, array };
   Kind kind = Kind::nothing;
-  std::string name;                  // in the device's compiler, for one path
+  std::string name = {};             // in the device's compiler, for one path
   const VectorForm* form = nullptr;  // of a vector
   Kind part = Kind::real;            // of a vector
   const Structure* structure = nullptr;
-  std::shared_ptr<const Type> of;         // of a pointer or array
+  std::shared_ptr<const Type> of = {};    // of a pointer or array
   int length = 0;                         // of an array
   bool constant = false, global = false;  // global: of the device's memory, or a pointer to it
 
@@ -43,13 +43,14 @@ struct Type {
   bool is_pointer() const { return is(Kind::pointer); }
   bool is_table() const { return is_pointer() && global; }
   bool is_own_pointer() const { return is_pointer() && !global; }
+  /// Whether a value of it may stand, as it is, where one of `wanted` does.
+  bool fits(const Type& wanted) const;
   /// Whether its lane form is hand-written; for structures, `joins` the lanes of two.
   bool is_by_hand() const;
   bool joins() const;
 };
 
 Type pointer_to(const Type& type);
-Type array_of(Type type, int length);
 /// "a float3", "a pointer"; for messages.
 std::string name_of(const Type& type);
 

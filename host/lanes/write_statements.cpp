@@ -4,7 +4,7 @@
 namespace sundog::spmd {
 namespace {
 
-using Kind = Statement::Kind;
+using StatementKind = Statement::Kind;
 
 constexpr double cheap = 12;      // operations up to which a branch is computed rather than jumped over
 constexpr double long_rest = 24;  // operations left from which on it pays to ask whether any lane is left
@@ -18,7 +18,8 @@ Type settable(Type type) {
 }  // namespace
 
 Exits exits_of(const Statement& s) {
-  Exits out{s.is(Kind::leave_loop), s.is(Kind::next_round), s.is(Kind::give), s.is_loop()};
+  Exits out{s.is(StatementKind::leave_loop), s.is(StatementKind::next_round), s.is(StatementKind::give),
+            s.is_loop()};
   for (const StatementPtr& part : s.body) {
     const Exits inner = exits_of(*part);
     out.gives |= inner.gives;
@@ -40,7 +41,7 @@ double Writer::weight(const Expression& e) {
 }
 
 double Writer::weight(const Statement& s) {
-  double all = s.is(Kind::give) ? 1 : 0;
+  double all = s.is(StatementKind::give) ? 1 : 0;
   for (const ExpressionPtr& e : s.expressions)
     if (e) all += weight(*e);
   for (const StatementPtr& part : s.body) all += weight(*part);
@@ -78,7 +79,7 @@ std::vector<Line> Writer::function() {
     if (s_.divergent_return && i + 1 < body.size() && exits_of(*body[i]).gives && is_long(body, i + 1))
       line("if (!any_lane(m_)) return{};", gives ? " " + result : "");
   }
-  if (keeps && (body.empty() || !body.back()->is(Kind::give))) line("return {};", result);
+  if (keeps && (body.empty() || !body.back()->is(StatementKind::give))) line("return {};", result);
   depth_ = 0;
   line("}");
   return std::move(out_);
@@ -87,26 +88,26 @@ std::vector<Line> Writer::function() {
 void Writer::statement(const Statement& s) {
   place_ = s.place;
   switch (s.kind) {
-    case Kind::block:
+    case StatementKind::block:
       if (!s.body.empty()) in_braces([&] { block(s.body, false); });
       return;
-    case Kind::declare:
+    case StatementKind::declare:
       for (std::size_t i = 0; i < s.variables.size(); ++i)
         declaration(*s.variables[i], s.expressions[i].get());
       return;
-    case Kind::branch:
+    case StatementKind::branch:
       return branch(s);
-    case Kind::loop:
-    case Kind::do_loop:
+    case StatementKind::loop:
+    case StatementKind::do_loop:
       return loop(s);
-    case Kind::each_alike:
+    case StatementKind::each_alike:
       return each_alike(s);
-    case Kind::leave_loop:
-    case Kind::next_round:
+    case StatementKind::leave_loop:
+    case StatementKind::next_round:
       return leave(s);
-    case Kind::give:
+    case StatementKind::give:
       return give(s);
-    case Kind::compute:
+    case StatementKind::compute:
       return line(computed(*s.expressions[0]) + ";");
   }
 }
@@ -117,7 +118,7 @@ void Writer::block(const std::vector<StatementPtr>& all, bool in_loop) {
     const Statement& s = *all[i];
     statement(s);
     const bool leaves = in_loop && !loops_.empty() && loops_.back().node == all_loops_.back().node &&
-                        s.is(Kind::branch) && exits_of(s).any() && s.feature.empty() &&
+                        s.is(StatementKind::branch) && exits_of(s).any() && s.feature.empty() &&
                         varies(*s.expressions[0]);
     if (!leaves || !is_long(all, i + 1)) continue;
     const Loop& l = loops_.back();
@@ -218,7 +219,7 @@ void Writer::inside(const Frame& frame, std::string mask, const Statement& s) {
   frames_.push_back(frame);
   if (frame.kind == Frame::Kind::alike) s_.declare(frame.node->variables[0], frames_);
   ++depth_;
-  if (s.is(Kind::block))
+  if (s.is(StatementKind::block))
     block(s.body, frame.kind == Frame::Kind::round);
   else
     statement(s);
