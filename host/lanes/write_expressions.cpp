@@ -201,9 +201,7 @@ std::string Writer::parts_of(const Expression& e, std::string_view wanted) {
   if (wanted.empty()) wanted = letters.substr(0, static_cast<std::size_t>(e.type.form->parts));
   const bool gathers = is_gathered(e);
   const std::string base = gathers ? "" : simple(e);
-  return joined(wanted, [&](char c) {
-    return gathers ? gather(e, static_cast<int>(letters.find(c))) : base + "." + c;
-  });
+  return joined(wanted, [&](char c) { return gathers ? gather(e, letters.find(c)) : base + "." + c; });
 }
 
 std::string Writer::varying_unary(const Expression& e) {

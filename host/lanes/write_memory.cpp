@@ -35,12 +35,12 @@ std::string Writer::index_of(const Expression& e) {
 }
 
 /// table[index].member.x: words at a place of each lane; the given part of a vector.
-std::string Writer::gather(const Expression& e, int part) {
-  int offset = 4 * part, stride = 0;
+std::string Writer::gather(const Expression& e, std::size_t part) {
+  int offset = 0, stride = 0;
   std::string table, index;
   for (const Expression* at = &e; stride == 0; at = at->of[0].get()) {
     const Expression& base = *at->of[0];
-    if (at->kind == Kind::component) offset += 4 * static_cast<int>(std::string("xyzw").find(at->text));
+    if (at->kind == Kind::component) part = std::string_view("xyzw").find(at->text[part]);
     if (at->kind == Kind::member) offset += offset_of(*at->whole().structure, at->text);
     if (base.type.is_table()) {
       std::tie(table, index) = table_and_index(base);
@@ -56,6 +56,7 @@ std::string Writer::gather(const Expression& e, int part) {
       fail(at->place, "a table is read at a place that varies by an index of the table alone");
     }
   }
+  offset += 4 * static_cast<int>(part);
   std::string words = stride == 4 ? index : fmt::format("{} * {}", index, stride / 4);
   if (offset != 0) words = fmt::format("{} + {}", words, offset / 4);
   const Type::Kind kind = e.type.is_vector() ? e.type.part : e.type.kind;

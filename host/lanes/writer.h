@@ -81,7 +81,7 @@ class Writer {
   // Memory and calls (write_memory.cpp).
   bool is_gathered(const Expression& e);
   std::string index_of(const Expression& e);
-  std::string gather(const Expression& e, int part = 0);
+  std::string gather(const Expression& e, std::size_t part = 0);
   std::pair<std::string, std::string> table_and_index(const Expression& e);
   std::string element(const Expression& e);
   std::string scatter(const Expression& to, const std::string& value);
