@@ -19,21 +19,22 @@ void fail(const Place& place, std::string_view what) {
 namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
+bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 
-/// The text with comments made blank; lines and columns stay.
-std::string without_comments(std::string text) {
+/// The text with comments made blank, and '\v' for the end of a line that goes on with the next one.
+std::string whole_lines(std::string text) {
+  for (std::size_t at = text.find("\\\n"); at != std::string::npos; at = text.find("\\\n", at))
+    text.replace(at, 2, " \v");
   for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] != '/') continue;
-    if (text[i + 1] == '/') {
-      for (; i < text.size() && text[i] != '\n'; ++i) text[i] = ' ';
-    } else if (text[i + 1] == '*') {
-      const std::size_t end = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
-      for (; i < end; ++i)
-        if (text[i] != '\n' && !(text[i] == '\\' && text[i + 1] == '\n')) text[i] = ' ';
-      --i;  // another comment may follow at once
-    }
+    const bool is_block = text[i + 1] == '*';
+    if (text[i] != '/' || (!is_block && text[i + 1] != '/')) continue;
+    const std::size_t end = is_block ? std::min(text.find("*/", i + 2), text.size() - 2) + 2
+                                     : std::min(text.find('\n', i), text.size());
+    for (; i < end; ++i)
+      if (!is_space(text[i])) text[i] = ' ';
+    --i;  // another comment may follow at once
   }
   return text;
 }
@@ -64,18 +65,25 @@ Token first_token(std::string_view text) {
   return token(Token::Kind::sign, 1);
 }
 
-/// The tokens of a line of `text`, which begins at `place`.
-void read_tokens(std::string_view text, Place place, Tokens& out) {
+/// The tokens of a whole line, which begins at `place`; that moves to the next one.
+Tokens tokens_of(std::string_view text, Place& place) {
+  Tokens out;
+  std::size_t begin = 0;
   for (std::size_t at = 0; at < text.size();) {
-    if (std::isspace(static_cast<unsigned char>(text[at]))) {
+    if (text[at] == '\v') {
+      ++place.line;
+      begin = at + 1;
+    }
+    if (is_space(text[at])) {
       ++at;
       continue;
     }
-    place.column = static_cast<int>(at) + 1;
     out.push_back(first_token(text.substr(at)));
-    out.back().place = place;
+    out.back().place = {place.file, place.line, static_cast<int>(at - begin) + 1};
     at += out.back().text.size();
   }
+  ++place.line;
+  return out;
 }
 
 struct Macro {
@@ -96,7 +104,7 @@ class Preprocessor {
     if (!seen_.insert(path).second) return;
     std::string text;
     try {
-      text = without_comments(read_(path));
+      text = whole_lines(read_(path));
     } catch (const std::exception& error) {
       if (!from.file) throw;
       fail(from, error.what());
@@ -104,22 +112,12 @@ class Preprocessor {
     const std::string* name = &source.files.emplace_back(path);
     Place place{name, 1, 1};
     const std::size_t depth = open_.size();
-    Tokens words;
-    for (std::size_t at = 0; at < text.size();) {
-      words.clear();
-      bool continues = true;
-      const int first = place.line;
-      while (continues && at < text.size()) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        std::string_view line = std::string_view(text).substr(at, end - at);
-        continues = line.ends_with('\\');
-        if (continues) line.remove_suffix(1);
-        read_tokens(line, place, words);
-        at = end + 1;
-        ++place.line;
-      }
+    for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
+      end = std::min(text.find('\n', at), text.size());
+      const Place first = place;
+      const Tokens words = tokens_of(std::string_view(text).substr(at, end - at), place);
       if (!words.empty() && words[0].is("#"))
-        directive(words, Place{name, first, 1});
+        directive(words, first);
       else if (is_active())
         pending_.insert(pending_.end(), words.begin(), words.end());
     }

@@ -78,29 +78,32 @@ std::pair<std::string, std::string> Writer::table_and_index(const Expression& e)
   return {plain(*of.of[0]), index_of(*of.of[1])};
 }
 
+/// The type of an array's elements, as lanes.h names it, and the place of one in each lane.
+std::pair<std::string, std::string> Writer::place_in_lane(const Expression& e, const std::string& lane) {
+  if (!e.type.is_real() && !e.type.is(Type::Kind::integer))
+    fail(e.place, "an element that varies of an array of {}", name_of(e.type));
+  const std::string index = simple(*e.of[1]);
+  return {e.type.is_real() ? "REAL" : "MASK",
+          fmt::format("{}[MASK_LANE({}, {})]", place_of(*e.of[0]), index, lane)};
+}
+
 /// An element of an array of lanes, or of one, at a place that may differ from lane to lane.
 std::string Writer::element(const Expression& e) {
   if (!varies(*e.of[1])) return fmt::format("{}[{}]", place_of(*e.of[0]), plain(*e.of[1]));
-  if (!e.type.is_real() && !e.type.is(Type::Kind::integer))
-    fail(e.place, "an element that varies of an array of {}", name_of(e.type));
-  const std::string name = fresh("element"), lane = fresh("lane"), index = simple(*e.of[1]);
-  const char* part = e.type.is_real() ? "REAL_LANE" : "MASK_LANE";
-  const std::string place = fmt::format("{}[MASK_LANE({}, {})]", place_of(*e.of[0]), index, lane);
-  line("{0} {1} = ({0})(0);", type_text(e.type, true), name);
-  const std::string found = varies(*e.of[0]) ? fmt::format("{}({}, {})", part, place, lane) : place;
-  line("EACH_LANE({0}, {1}) {2}({3}, {0}) = {4};", lane, mask_, part, name, found);
+  const std::string name = fresh("element"), lane = fresh("lane");
+  const auto [type, place] = place_in_lane(e, lane);
+  line("{0} {1} = ({0})(0);", type, name);
+  const std::string found = varies(*e.of[0]) ? fmt::format("{}_LANE({}, {})", type, place, lane) : place;
+  line("EACH_LANE({0}, {1}) {2}_LANE({3}, {0}) = {4};", lane, mask_, type, name, found);
   return name;
 }
 
 /// `to = value`, where the place in an array differs from lane to lane.
 std::string Writer::scatter(const Expression& to, const std::string& value) {
-  if (!to.type.is_real() && !to.type.is(Type::Kind::integer))
-    fail(to.place, "an element that varies of an array of {}", name_of(to.type));
-  const std::string name = fresh("value"), lane = fresh("lane"), index = simple(*to.of[1]);
-  const char* part = to.type.is_real() ? "REAL_LANE" : "MASK_LANE";
-  line("const {} {} = {};", type_text(to.type, true), name, value);
-  line("EACH_LANE({3}, {5}) {0}({1}[MASK_LANE({2}, {3})], {3}) = {0}({4}, {3});", part, place_of(*to.of[0]),
-       index, lane, name, mask_);
+  const std::string name = fresh("value"), lane = fresh("lane");
+  const auto [type, place] = place_in_lane(to, lane);
+  line("const {} {} = {};", type, name, value);
+  line("EACH_LANE({0}, {1}) {2}_LANE({3}, {0}) = {2}_LANE({4}, {0});", lane, mask_, type, place, name);
   return "";
 }
 

@@ -83,6 +83,7 @@ class Writer {
   std::string index_of(const Expression& e);
   std::string gather(const Expression& e, std::size_t part = 0);
   std::pair<std::string, std::string> table_and_index(const Expression& e);
+  std::pair<std::string, std::string> place_in_lane(const Expression& e, const std::string& lane);
   std::string element(const Expression& e);
   std::string scatter(const Expression& to, const std::string& value);
   std::string call(const Expression& e);
