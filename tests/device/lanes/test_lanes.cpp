@@ -88,6 +88,9 @@ const std::vector<std::string> rare{
     R"(float a[4] = {x, y, 1.0f, 2.0f}; ++a[k & 3]; if (y > 0.0f) a[k & 3]--; return a[0] + 2.0f * a[1] + a[2] * a[3];)",
     R"(return chosen(x, n > 2) + halves(y, o) * (float)(-(-n));)",
     R"(int d = (k & 3) != 0 ? 100 / (k & 3) : 7; if (k % 5 != 0 && d / (k % 5) > 2) d = 1; return (float)d;)",
+    R"(float c = 0.0f; for (int i = 0; i < 5; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; } return c;)",
+    R"(float c = 0.0f, s = 0.0f; for (int j = 0; j < 2; ++j) for (int i = 0; i < 4; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; s += c; } return s;)",
+    R"(float c = 0.0f; for (int i = 0; i < 6; ++i) { if (y > 1.0f) continue; if (x < (float)i - 1.0f) return c; c += 1.0f; *o += c; } return -c;)",
     R"(float t = 0.0f; do { t += 1.0f; if (x > 0.5f) continue; t += 0.25f; } while (t < y + 2.0f); return t;)",
 };
 std::string rare_program() {
