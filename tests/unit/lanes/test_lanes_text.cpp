@@ -77,6 +77,15 @@ TEST_CASE("what two plain files make is made once a program, and lanes of struct
   CHECK_THAT(made, ContainsSubstring("#ifndef MADE_further\n#define MADE_further\n"));
 }
 
+TEST_CASE("a loop asks whether lanes are left, unless its first statement does") {
+  const std::string rest = "for (int i = 0; i < n; ++i) c += q[i]; }\n";
+  const std::string made =
+      in_lanes(function("float c = 0.0f;\nwhile (n > 0) { c += x; if (c > 9.0f) break; " + rest +
+                        "while (n > 1) { if (c > 9.0f) break; " + rest + "return c;"));
+  CHECK_THAT(made, ContainsSubstring("for (; (n > 0) && any_lane(in_1); ) {"));
+  CHECK_THAT(made, ContainsSubstring("for (; (n > 1); ) {"));
+}
+
 TEST_CASE("a row of a table is read at a place of each lane: members, parts, elements, by a pointer too") {
   const std::string made = in_lanes(
       "typedef struct Row { float a; u32 k; float3 v; int list[2]; } Row;\n"
