@@ -86,6 +86,13 @@ TEST_CASE("a loop asks whether lanes are left, unless its first statement does")
   CHECK_THAT(made, ContainsSubstring("for (; (n > 1); ) {"));
 }
 
+TEST_CASE("lanes that do not ask read no table and divide by one") {
+  const std::string made = in_lanes(function("bool b = k >= 0 && q[k] > x;\nreturn b ? (float)(n / k) : x;"));
+  CHECK_THAT(made,
+             ContainsSubstring("(is_1 & MASK_OF(gather_floats((__global const float*)(q), k, m_2) > x))"));
+  CHECK_THAT(made, ContainsSubstring("((MASK)((int)(n)) / select((MASK)(1), k, m_5))"));
+}
+
 TEST_CASE("a row of a table is read at a place of each lane: members, parts, elements, by a pointer too") {
   const std::string made = in_lanes(
       "typedef struct Row { float a; u32 k; float3 v; int list[2]; } Row;\n"
