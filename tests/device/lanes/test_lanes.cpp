@@ -95,11 +95,13 @@ const std::vector<std::string> rare{
     R"(if (x > -1.0f) { for (int i = 0; i < 4; ++i) if (y < (float)i - 1.0f) return y; *o += 1.0f; } return 2.0f;)",
     R"(if (x > 0.0f) { if (y > 0.0f) return 1.0f; *o += 1.0f; } return 2.0f;)",
     R"(float t = 1.0f; do { t += 1.0f; } while (t < x); return t;)",
+    R"(int j = 0; if (x > 0.0f) j++; if (y > 0.0f) --j; return (float)j + side(x);)",
     R"(float t = 0.0f; do { t += 1.0f; if (x > 0.5f) continue; t += 0.25f; } while (t < y + 2.0f); return t;)",
 };
 std::string rare_program() {
   std::string text = R"(
 static inline bool hit(float x, float* t) { *t = x * 2.0f; return x > 0.0f; }
+static inline float side(float x) { if (x > 0.0f) return 1.0f; return 2.0f; }
 static inline bool next(int* j) { *j += 1; return *j > 3; }
 static inline float chosen(float x, bool b) { if (x > 0.0f) b = false; return b ? 1.0f : 2.0f; }
 static inline float halves(float x, float* o) { if (x > 0.0f) { *o += 0.5f; return x; } return *o; }
