@@ -290,11 +290,11 @@ bool Specialisation::varies(const Expression& e, const Frames& frames) {
 bool Specialisation::parts_vary(const Expression& e, const Frames& frames) {
   const bool first = varies(*e.of[0], frames);
   bool v = first || e.type.is_by_hand();
-  Frames inner = frames;
-  if (first && (e.kind == Kind::choose || joins(e.text)))
-    inner.push_back({Frame::Kind::branch, nullptr, true});
+  const bool parted = first && (e.kind == Kind::choose || joins(e.text));
+  Frames inner = parted ? frames : Frames{};
+  if (parted) inner.push_back({Frame::Kind::branch, nullptr, true});
   for (std::size_t i = 1; i < e.of.size(); ++i) {
-    const bool part = varies(*e.of[i], inner);
+    const bool part = varies(*e.of[i], parted ? inner : frames);
     masked |= part && e.divides_whole();
     v |= part;
   }
