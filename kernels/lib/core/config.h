@@ -81,7 +81,7 @@
 #ifndef WIDE_VECTORS
 #define WIDE_VECTORS 1
 #endif
-// Of lobes that surfaces of every scene may have (shared/lobes.h).
+// Lobes that surfaces of every scene may have (shared/lobes.h).
 #define HAS_SURFACES 1
 
 // Whether rays are traced at all, not only marched through fields.

@@ -38,7 +38,7 @@ static inline void tangent_frame(REAL3 n, REAL3* s, REAL3* t) {
   *t = real3(b, sign + n.y * n.y * a, -n.y);
 }
 
-// Of one path.
+// For one path.
 static inline void axes_about(float3 n, float3* s, float3* t) {
   const float sign = copysign(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
   *s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);

@@ -149,7 +149,7 @@ static inline REAL3 select3(REAL3 a, REAL3 b, MASK m) {
 
 static inline REAL3 multiply3(REAL3 a, REAL3 b) { return real3(a.x * b.x, a.y * b.y, a.z * b.z); }
 static inline REAL3 divide3(REAL3 a, REAL3 b) { return real3(a.x / b.x, a.y / b.y, a.z / b.z); }
-// The same vector in all lanes; lane i of vectors, to read or write.
+// Copies a vector to all lanes; reads or writes lane i of vectors.
 static inline REAL3 all3(float3 a) { return real3((REAL)(a.x), (REAL)(a.y), (REAL)(a.z)); }
 static inline float3 get3(const REAL3* a, u32 i) {
   return (float3)(REAL_LANE(a->x, i), REAL_LANE(a->y, i), REAL_LANE(a->z, i));

@@ -50,7 +50,7 @@ static inline float light_probability(const Scene* scene, u32 leaf, float3 p) {
   return probability;
 }
 
-// The same for the points of `lanes`, a number a lane.
+// Chooses for the points of `lanes`, by a number a lane.
 NEVER_INLINE MASK choose_lights(const Scene* scene, REAL3 p, REAL u, MASK lanes, REAL* probability) {
   MASK index = NO_LANES;
   *probability = (REAL)(1.0f);

@@ -174,7 +174,7 @@ static inline REAL even_pdf(__global const Environment* e, REAL share, REAL heig
   return share * (float)e->columns / (2.0f * M_PI_F * height);
 }
 
-// What the environment sends along the directions of `lanes`, and the density with which
+// The environment's radiance along the directions of `lanes`, and the density with which
 // sample_environment() chooses them.
 static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, REAL* pdf) {
   __global const Environment* e = scene->environments;
@@ -232,7 +232,7 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   return sample;
 }
 
-// What lies behind everything: the environment where rays see it, with the density of choosing it, else the
+// The background: the environment where rays see it, with the density of choosing it, else the plain
 // background.
 static inline bool sees_environment(const Scene* scene) {
   return HAS_ENVIRONMENT && scene->info->sees_environment;

@@ -1,11 +1,11 @@
-// What fields do to light besides stopping it: soft shadows.
+// Fields dim light besides stopping it: soft shadows.
 #pragma once
 #include "lib/path/scene_ray.cl"
 #if HAS_SOFT_SHADOWS
 #include "lib/path/fields.cl"
 #include "lib/sdf/light.cl"
 
-// What the fields with soft shadows let pass along the rays.
+// The light that fields with soft shadows let pass along the rays.
 NEVER_INLINE REAL soft_shadows(const Scene* scene, const SceneRays* rays, MASK active, u32* counts) {
   REAL through = (REAL)(1.0f);
   FieldSearch search = start_search(rays, rays->t_max, active);

@@ -18,7 +18,7 @@ static inline REAL angle_over_sine(REAL x) {
   return select(f, fma((REAL)(M_PI_F), real_rsqrt(sine2), -f), MASK_OF(x < 0.0f));
 }
 
-// What the side of a polygon from the unit vector a to b adds to twice the integral of the cosine to n.
+// A polygon's side from the unit vector a to b adds this to twice the integral of the cosine to n.
 static inline REAL cosine_of_side(REAL3 a, REAL3 b, REAL3 n) {
   return angle_over_sine(dot3(a, b)) * dot3(cross3(a, b), n);
 }
@@ -69,7 +69,7 @@ static inline MASK cosine_of_polygon(const REAL3* corner, REAL3 n, REAL* integra
 // A light that takes up less than this part of its distance is integrated at four places.
 #define FAR_PART 0.05f
 
-// The same of a rectangle far away, of which nothing is below the horizon: by the product of Gauss and
+// The integral over a distant rectangle that lies above the horizon: by the product of Gauss and
 // Legendre's two places along each side.
 static inline MASK cosine_of_far_rectangle(__global const Light* light, const REAL3* corner, REAL3 n,
                                            REAL* integral) {
@@ -89,7 +89,7 @@ static inline MASK cosine_of_far_rectangle(__global const Light* light, const RE
          MASK_OF(dot(first, first) + dot(second, second) < FAR_PART * FAR_PART * dot3(corner[0], corner[0]));
 }
 
-// The same of a rectangle anywhere, for `lanes`. Returns those where it is known.
+// The integral over a rectangle anywhere, for `lanes`. Returns those where it is known.
 static inline MASK cosine_of_rectangle(__global const Light* light, const SeenLights* seen, REAL3 n,
                                        MASK lanes, REAL* integral) {
   const MASK known = lanes & cosine_of_polygon(seen->corner, n, integral), open = lanes & ~known;

@@ -6,7 +6,7 @@
 #include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
 
-// What surfaces and the rays that met them are, for all that is done there.
+// Surfaces and the rays that hit them, for shading.
 typedef struct Shading {
   SurfaceInteractions s;
   Bsdfs bsdf;

@@ -27,7 +27,7 @@ static inline REAL straight_transmittance(__global const Medium* restrict media,
   return 1.0f - fresnel_reflectance(cos_i, refracted_cosine(cos_i, eta), eta);
 }
 
-// What the surfaces of `lanes` let through, where `plain` is that without their textures.
+// The light that surfaces of `lanes` transmit; `plain` leaves out their textures.
 #if HAS_MAPS
 NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, const Hits* hits,
                                   const Faces* faces, MASK lanes, REAL3 plain) {
@@ -44,7 +44,7 @@ NEVER_INLINE REAL3 mapped_filters(const Scene* scene, const SceneRays* rays, con
 }
 #endif
 
-// What fuzz and coats leave of light that goes straight through surfaces of `lanes`, where `through` is what
+// Light straight through surfaces of `lanes` after their fuzz and coats, where `through` is what
 // it would be without them. Paths alone ask for it: with whitted layers take nothing from what is
 // transmitted.
 #define LAYERS_FILTER EITHER(HAS_LAYERS, EITHER(HAS_LAYER_FILTERS, SHADOWS_AS_PATHS, 0), 0)
@@ -157,7 +157,7 @@ static inline MASK pass_filters(const Scene* scene, SceneRays* rays, Hits* hits,
   return passing & MASK_OF(greatest3(*light) > 0.0f);
 }
 
-// Of `light`, what media leave on the ways of the lanes of `arriving` to the lights, where nothing stands.
+// The part of `light` that media leave on the clear ways of the lanes of `arriving` to the lights.
 static inline REAL3 unblocked_light(const Scene* scene, const SceneRays* rays, REAL3 light, MASK arriving) {
   if (!HAS_MEDIA) return light;
   const MASK here = current_media(scene->media, rays, arriving);
@@ -186,7 +186,7 @@ static inline MASK reach_filters(const Scene* scene, SceneRays* rays, WaitingRay
   return passing & ~too_many;
 }
 
-// What the shadow rays of `lanes` meet; where nothing lets light pass, only whether they meet anything.
+// Finds the hits of the shadow rays of `lanes`; where nothing transmits light, only whether there is one.
 static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {
   Hits hits;
   if (HAS_SHADOW_FILTERS) {

@@ -28,7 +28,7 @@ typedef struct FieldSearch {
   REAL t_min, t_best, footprint;
   MASK from;  // SceneRays.from
   MASK active;
-  // Of the nearest hit among the fields:
+  // The nearest hit among the fields:
   MASK winner;       // its instance, or -1
   MASK inside, cut;  // MarchRays.inside, MarchHits.cut
   REAL threshold;

@@ -84,7 +84,7 @@ static inline float3 direction_to_ball(float4 ball, float3 p, float a, float b) 
   return direction_beside(axis, down, sqrt(fmax(down * (2.0f - down), 0.0f)), b);
 }
 
-// The same for parallel light along d: the density per area across it, and a place before everything.
+// For parallel light along d: the density per area across it, and a start before everything.
 static inline float pdf_across(const Scene* scene, u32 targets, float3 p, float3 d) {
   float pdf = 0.0f;
   for (u32 i = 1; i < targets && !is_plane(scene->photon_targets + i); ++i) {

@@ -1,4 +1,4 @@
-// What plain text of the path tracer uses (plain/pathtracer/interface.h).
+// Functions that the plain path tracer calls (plain/pathtracer/interface.h).
 #pragma once
 #include "lib/light/light.cl"
 #include "lib/light/shading.cl"

@@ -1,4 +1,4 @@
-// What surfaces return of light: the Bsdfs of plain/shade, and what they use.
+// Scattering at surfaces: the Bsdfs of plain/shade, and what they use.
 #pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/optics.cl"

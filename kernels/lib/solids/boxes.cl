@@ -173,7 +173,7 @@ static inline void closest_in_round_box(float4 parameters, REAL3 o, REAL3 d, REA
 static inline SurfacePoints points_on_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return points_on_faces(p, parameters.xyz);
 }
-// Of the faces; edges count as flat.
+// The faces' curvature; edges count as flat.
 static inline REAL curvature_of_round_box(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   return (REAL)(0.0f);
 }

@@ -9,7 +9,7 @@
 
 #define LISTS_HITS (WALKS_IN_TURN && HAS_MESH && (HAS_SHADOW_FILTERS || HAS_MEDIA) && !HAS_SDF && BATCH > 1)
 
-// Of more hits, the nearest are kept.
+// A list keeps this many hits, the nearest.
 #define MOST_LISTED 8u
 
 // The triangles that a ray hit, unordered; `place` as in finish_triangle().

@@ -48,7 +48,7 @@ static inline REAL3 see_ambient(const Scene* scene, const SceneRays* rays, const
   return multiply3(paths->throughput, own);
 }
 
-// What surfaces of `lanes` shine by themselves, on their outsides.
+// The light that surfaces of `lanes` emit, on their outsides.
 static inline REAL3 see_emission(const Scene* scene, const WaitingRays* paths, const SurfaceInteractions* s,
                                  const Bsdfs* bsdf, MASK lanes) {
   REAL3 light = all3((float3)(0.0f));

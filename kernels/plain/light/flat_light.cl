@@ -1,4 +1,4 @@
-// What flat lights with an extent share. Their backs are black.
+// Code that flat lights with an extent share. Their backs are black.
 #include "plain/light/light_sample.cl"
 
 // The density, per steradian, of directions to points that are uniform on the light's area: at the distance

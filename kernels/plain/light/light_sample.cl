@@ -44,7 +44,7 @@ static inline Emission emit_along(float3 d, float3 radiance) {
   return emission;
 }
 
-// What a sample counts for, times pi BSDF cos: see bsdf_eval() for the units.
+// A sample's weight, times pi BSDF cos: see bsdf_eval() for the units.
 ENTRY static inline float light_weight(const LightSample* light) {
   if (!HAS_AREA_LIGHTS) return 1.0f;
   return light->delta ? 1.0f : 1.0f / (M_PI_F * light->pdf);

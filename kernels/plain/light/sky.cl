@@ -6,7 +6,7 @@ UNIFORM bool sees_environment(UNIFORM const Scene* scene);
 float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
 float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
 
-// What rays see that meet nothing: what lies behind everything, and the sky's lights before it.
+// Rays that hit nothing see the background, and the sky's lights before it.
 HAVING(HAS_SKY)
 static inline float3 lit_sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {
   float pdf;

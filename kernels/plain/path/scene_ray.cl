@@ -52,7 +52,7 @@ ENTRY static inline SceneRay begun_ray(const CameraRay* camera, UNIFORM int medi
   return ray;
 }
 
-// What it has gathered from fields that glow.
+// The light that it has gathered from glowing fields.
 ENTRY static inline float3 emitted(const SceneRay* ray) {
   float3 light = (float3)(0.0f);
   if (HAS_GLOW) light = ray->glow;

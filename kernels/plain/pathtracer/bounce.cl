@@ -20,7 +20,7 @@ typedef struct LampLight {
   HAVING(HAS_LIGHT_PARTS) bool direct;        // those are the surface's
 } LampLight;
 
-// What the lamp sends to the surface, times what that makes of it.
+// Chooses a lamp: its light at the surface, times the surface's response.
 static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
                         const Encounter* met, const SurfaceShading* at, const LobeSet* lobes, LampLight* lamp,
                         UNIFORM u32* counts) {

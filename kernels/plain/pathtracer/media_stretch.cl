@@ -4,7 +4,7 @@
 #include "plain/core.h"
 #include "plain/pathtracer/spectrum.cl"
 
-// What a scattered path remembers of the stretch that it was scattered on.
+// A scattered path remembers this of the stretch that it was scattered on.
 typedef struct Scattered {
   bool is;       // scattered last by a medium
   float3 o, d;   // the stretch's beginning and direction
@@ -16,7 +16,7 @@ typedef struct Scattered {
 
 #define TOWARDS_LIGHT 0.5f  // the greatest part of the distances that are chosen for a near light
 
-// Of light, over a distance that may be infinite.
+// The fraction of light left over a distance that may be infinite.
 static inline float kept_over(float decay, float distance) {
   return decay == 0.0f ? 1.0f : real_exp(-decay * distance);
 }
@@ -101,7 +101,7 @@ static inline SeenStretch see_stretch(float3 o, float3 d, float length, float de
   s.height = real_sqrt(real_max(dot(across, across) + light.w, 1e-12f * dot(to, to) + 1e-30f));
   s.begin = -s.nearest;
   const float end = length - s.nearest;
-  // Of a long stretch's end the angle is a right one.
+  // The angle at a long stretch's end is a right one.
   const bool far = end > 1e6f * (s.height + fabs(s.begin));
   s.angle = atan2(far ? s.height : length * s.height, far ? s.begin : fma(s.begin, end, s.height * s.height));
   const float way = real_clamp(s.nearest, 0.0f, length);

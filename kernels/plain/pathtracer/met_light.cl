@@ -39,7 +39,7 @@ static inline float3 weighed_emission(UNIFORM const Scene* scene, const PathStat
   return left * weight_of_met(scene, path, chosen_pdf(scene, path, d, at->s.p, lamp));
 }
 
-// What the surface shines by itself, on its outside.
+// The light that the surface emits, on its outside.
 HAVING(HAS_EMISSION)
 static inline float3 met_surface(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
                                  const SurfaceHit* hit, const SurfaceShading* at) {
@@ -51,7 +51,7 @@ static inline float3 met_surface(UNIFORM const Scene* scene, const PathState* pa
   return light;
 }
 
-// What a ray sees that meets nothing: sky_along() with the weight of each part.
+// A ray that hits nothing sees sky_along(), with the weight of each part.
 HAVING(HAS_SKY)
 static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* path, float3 d) {
   const float chance = 1.0f / (float)max(scene->info->light_count, 1u);

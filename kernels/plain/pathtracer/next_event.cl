@@ -44,7 +44,7 @@ static inline LightSample choose_one(UNIFORM const Scene* scene, float3 p, const
   float chance;
   *chosen = choose_index(scene, p, u->z, &chance);
   LightSample light = sample_chosen(scene, p, u->x, u->y, *chosen, seen);
-  // Of a delta light the chance counts for the light, not for a direction.
+  // A delta light's chance counts for the light, not for a direction.
   light.pdf *= chance;
   return light;
 }

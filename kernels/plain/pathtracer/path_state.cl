@@ -1,4 +1,4 @@
-// What a path carries from surface to surface.
+// A path's state from surface to surface.
 #include "plain/pathtracer/interface.h"
 #include "plain/pathtracer/media_stretch.cl"
 #include "plain/pathtracer/spectrum.cl"
@@ -17,7 +17,7 @@ typedef struct LightParts {
   LIGHT_PARTS(SPECTRUM_OF_PART)
 } LightParts;
 
-// What kinds of lobes have of light that was scattered: all if a `medium` has scattered it, else what is
+// Shares of scattered light by kind of lobe: all if a `medium` has scattered it, else what is
 // diffuse, what is transmitted, and the rest, glossy.
 typedef struct LobeShares {
   SampledSpectrum diffuse, transmitted;
@@ -137,7 +137,7 @@ static inline float pdf_on_stretch(const PathState* path, float pdf) {
   if (HAS_SCATTERING) return path->scattered.is ? pdf * path->scattered.chance : pdf;
   return pdf;
 }
-// The same of the light `lamp`.
+// The same density for the light `lamp`.
 static inline float pdf_on_stretch_to(const PathState* path, UNIFORM __global const Light* lamp, float pdf) {
   if (HAS_SCATTERING) {
     const Scattered* s = &path->scattered;

@@ -55,7 +55,7 @@ static inline float spectrum_greatest(SampledSpectrum a) {
   if (HAS_DISPERSION) return real_max(real_max(a.x, a.y), real_max(a.z, a.w));
   return real_max(a.x, real_max(a.y, a.z));
 }
-// What it is worth for the choice of paths.
+// Its worth for the choice of paths.
 static inline float spectrum_worth(SampledSpectrum a) {
   if (HAS_DISPERSION) return (1.0f / (float)WAVELENGTHS) * ((a.x + a.y) + (a.z + a.w));
   return real_max(a.x, real_max(a.y, a.z));
@@ -65,7 +65,7 @@ static inline float spectrum_mean(SampledSpectrum a) {
   return (a.x + a.y + a.z) * (1.0f / 3.0f);
 }
 
-// What a wavelength has of a colour by its parts of red and blue.
+// A wavelength's part of a colour, by its parts of red and blue.
 static inline float part_of_color(float red, float blue, float3 color) {
   return fma(red, color.x - color.y, fma(blue, color.z - color.y, color.y));
 }
@@ -126,7 +126,7 @@ static inline float3 with_wavelength(UNIFORM const Scene* scene, float hero, UNI
   return along(seen, light * span, weight);
 }
 
-// What a path has gathered, as linear RGB.
+// A path's radiance as linear RGB.
 ENTRY static float3 spectrum_seen(UNIFORM const Scene* scene, const SampledWavelengths* w,
                                   const SampledSpectrum* light) {
   float3 seen = (float3)(0.0f);

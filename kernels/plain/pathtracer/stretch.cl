@@ -1,7 +1,7 @@
 // The stretch of a ray to its next interface, where that lies in a medium that scatters.
 #include "plain/pathtracer/path_state.cl"
 
-// What a ray is before it goes to its next interface.
+// A ray before it goes to its next interface.
 typedef struct BegunRay {
   float t_min;
   HAVING(HAS_SCATTERING) float since;

@@ -1,4 +1,4 @@
-// What plain text uses of surfaces that are written in lanes.
+// Surfaces written in lanes, as plain text uses them.
 #include "plain/core.h"
 #include "shared/layers.h"
 #include "shared/lobe_energy.h"

@@ -1,4 +1,4 @@
-// What the lobes of shared/lobes.h share.
+// Data that the lobes of shared/lobes.h share.
 #include "plain/shade/layers.cl"
 #include "plain/shade/microfacet.h"
 

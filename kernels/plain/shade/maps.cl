@@ -160,7 +160,7 @@ ENTRY static inline void widen_highlight(float even, float* exponent, float3* sp
   }
 }
 
-// What the surface lets through of a shadow ray, where `own` is that without its textures.
+// The part of a shadow ray that the surface transmits; `own` leaves out its textures.
 ENTRY static inline float3 mapped_filter(UNIFORM const Scene* scene, const SurfaceInteraction* s, bool hidden,
                                          float3 own) {
   TexturePoint at;
