@@ -93,8 +93,9 @@ std::string explained(const std::string& path, const ReadFile& read) {
   for (const Specialisation* s : made.specialisations.done()) {
     out += fmt::format("{} ({} operations{})\n", s->name, s->cost, s->masked ? ", takes a mask" : "");
     std::vector<std::pair<const Variable*, std::string>> all(s->why.begin(), s->why.end());
-    std::ranges::sort(all, {},
-                      [](const auto& row) { return std::pair(row.first->place.line, row.first->name); });
+    std::ranges::sort(all, {}, [](const auto& row) {
+      return std::tuple(row.first->place.line, row.first->name, row.second);
+    });
     for (const auto& [v, why] : all) out += fmt::format("  {} varies: {}\n", v->name, why);
   }
   return out;
