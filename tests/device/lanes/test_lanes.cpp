@@ -90,7 +90,7 @@ const std::vector<std::string> rare{
     R"(int d = (k & 3) != 0 ? 100 / (k & 3) : 7; if (k % 5 != 0 && d / (k % 5) > 2) d = 1; return (float)d;)",
     R"(float c = 0.0f; for (int i = 0; i < 5; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; } return c;)",
     R"(float c = 0.0f, s = 0.0f; for (int j = 0; j < 2; ++j) for (int i = 0; i < 4; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; s += c; } return s;)",
-    R"(float c = 0.0f; for (int i = 0; i < 6; ++i) { if (y > 1.0f) continue; if (x < (float)i - 1.0f) return c; c += 1.0f; *o += c; } return -c;)",
+    R"(float c = 0.0f; for (int i = 0; i < 6; ++i) { if (y > 1.0f) continue; if (x < 0.0f && i == 1) return c; c += 1.0f; *o += c; } return -c;)",
     R"(if (x > 0.0f) { EACH_ALIKE(int, j, k & 3) { if (j > 1) return q[j]; } *o += 1.0f; } return 0.0f;)",
     R"(if (x > -1.0f) { for (int i = 0; i < 4; ++i) if (y < (float)i - 1.0f) return y; *o += 1.0f; } return 2.0f;)",
     R"(if (x > 0.0f) { if (y > 0.0f) return 1.0f; *o += 1.0f; } return 2.0f;)",
