@@ -1,11 +1,7 @@
 // See lanes.h.
 #include "lanes/lanes.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "lanes/parse.h"
+#include "lanes/parser.h"
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
@@ -19,7 +15,7 @@ struct Made {
 
   Made(const std::string& path, const ReadFile& read) {
     source = preprocess(path, read, [](const std::string& file) { return !is_plain(file); });
-    program = parse(source, is_plain);
+    program = Parser(source, is_plain).program();
     for (const Function& f : program.functions) {
       if (!f.is_entry) continue;
       std::vector<bool> vary;
@@ -32,7 +28,7 @@ struct Made {
 /// Collects lines, with #line directives if wanted.
 class Text {
  public:
-  explicit Text(bool lines) : lines_(lines) {}
+  Text(bool lines, std::string begin) : text(std::move(begin)), lines_(lines) {}
   void add(const Line& line) {
     const Place& p = line.place;
     if (lines_ && p.file && (p.file != file_ || p.line != number_)) {
@@ -43,16 +39,14 @@ class Text {
     text += std::string(2 * static_cast<std::size_t>(line.depth), ' ') + line.text + "\n";
     ++number_;
   }
-  void add(std::string line) { add({0, std::move(line), {}}); }
   /// Lines that a program may have from several plain files.
   void add_once(const std::string& name, const std::string& feature, const std::vector<Line>& all) {
-    const std::string guard = "MADE_" + name;
-    add("#ifndef " + guard);
-    add("#define " + guard);
-    if (!feature.empty()) add("#if " + feature);
+    add({0, "#ifndef MADE_" + name, {}});
+    add({0, "#define MADE_" + name, {}});
+    if (!feature.empty()) add({0, "#if " + feature, {}});
     for (const Line& line : all) add(line);
-    if (!feature.empty()) add("#endif");
-    add("#endif");
+    if (!feature.empty()) add({0, "#endif", {}});
+    add({0, "#endif", {}});
   }
   std::string text;
 
@@ -68,47 +62,40 @@ bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
 std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) {
   Made made(path, read);
+  Text out(lines, fmt::format("// Made of {} in lanes.\n", path));
+  // Writing may ask for structures alone: what is called is known.
+  const std::vector<Specialisation*> all = made.specialisations.done();
+  if (all.empty()) return out.text;
   std::vector<std::vector<Line>> functions;
   Writer::Structures used;
-  // Writing may ask for structures alone: what is called is known.
-  for (Specialisation* s : std::vector(made.specialisations.done())) {
+  for (Specialisation* s : all) {
     Writer writer(made.specialisations, *s);
     functions.push_back(writer.function());
     used.insert(writer.structures().begin(), writer.structures().end());
   }
-  Text out(lines);
-  out.text = fmt::format("// Made of {} in lanes.\n", path);
-  if (!made.specialisations.done().empty()) {
-    Writer writer(made.specialisations, *made.specialisations.done().front());
-    for (const auto& [s, lanes] : Writer::Structures(used)) writer.structure(*s, lanes);  // those of members
-    used.insert(writer.structures().begin(), writer.structures().end());
-    for (const Structure& s : made.program.structures) {
-      const bool plain = used.contains({&s, false}), lanes = used.contains({&s, true});
-      const auto append = [&](const std::string& name, const std::vector<std::string>& text) {
-        std::vector<Line> all;
-        for (const std::string& line : text) all.push_back({0, line, s.place});
-        out.add_once(name, "", all);
-      };
-      if (plain) append(s.name, writer.structure(s, false));
-      if (lanes) append(s.lanes, writer.structure(s, true));
-      if (plain && lanes) append("all_" + s.name, writer.spread_structure(s));
-    }
+  Writer writer(made.specialisations, *all.front());
+  for (const auto& [s, in_lanes] : used) writer.structure(*s, in_lanes);  // finds those of members
+  used.insert(writer.structures().begin(), writer.structures().end());
+  for (const Structure& s : made.program.structures) {
+    const bool plain = used.contains({&s, false}), in_lanes = used.contains({&s, true});
+    if (plain) out.add_once(s.name, "", writer.structure(s, false));
+    if (in_lanes) out.add_once(s.lanes, "", writer.structure(s, true));
+    if (plain && in_lanes) out.add_once("all_" + s.name, "", writer.spread_structure(s));
   }
-  for (std::size_t i = 0; i < functions.size(); ++i) {
-    const Specialisation& s = *made.specialisations.done()[i];
-    out.add_once(s.name, s.function.feature, functions[i]);
-  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out.add_once(all[i]->name, all[i]->function.feature, functions[i]);
   return out.text;
 }
 
 std::string explained(const std::string& path, const ReadFile& read) {
-  Made made(path, read);
+  const Made made(path, read);
   std::string out;
   for (const Specialisation* s : made.specialisations.done()) {
     out += fmt::format("{} ({} operations{})\n", s->name, s->cost, s->masked ? ", takes a mask" : "");
     std::vector<std::pair<const Variable*, std::string>> all(s->why.begin(), s->why.end());
-    std::ranges::sort(all, {},
-                      [](const auto& row) { return std::pair(row.first->place.line, row.first->name); });
+    std::ranges::sort(all, {}, [](const auto& row) {
+      return std::tuple(row.first->place.line, row.first->name, row.second);
+    });
     for (const auto& [v, why] : all) out += fmt::format("  {} varies: {}\n", v->name, why);
   }
   return out;

@@ -1,53 +1,34 @@
 // Parses declarations outside functions: structures, constants, function heads.
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "lanes/parser.h"
 
 namespace sundog::spmd {
-namespace {
 
-Type scalar(Type::Kind kind, const char* name) {
-  Type t;
-  t.kind = kind;
-  t.name = name;
-  return t;
-}
-
-}  // namespace
-
-Parser::Parser(const Source& source, const std::function<bool(const std::string&)>& is_plain)
-    : tokens_(source.tokens), is_plain_(is_plain) {
-  using Kind = Type::Kind;
-  types_ = {{"void", scalar(Kind::nothing, "void")}, {"bool", scalar(Kind::boolean, "bool")},
-            {"int", scalar(Kind::integer, "int")},   {"uint", scalar(Kind::natural, "uint")},
-            {"u32", scalar(Kind::natural, "u32")},   {"i32", scalar(Kind::integer, "int")},
-            {"float", scalar(Kind::real, "float")}};
-  for (const char* name : {"char", "uchar", "short", "ushort", "long", "ulong", "size_t", "double", "half"})
-    types_[name] = scalar(Kind::other, name);
-  const std::pair<const char*, Kind> parts[] = {
-      {"float", Kind::real}, {"int", Kind::integer}, {"uint", Kind::natural}};
-  for (const auto& [part, kind] : parts)
-    for (int n = 2; n <= 4; ++n) {
-      const std::string name = fmt::format("{}{}", part, n);
-      const std::string lanes = kind == Kind::real ? fmt::format("REAL{}", n) : "";
-      const VectorForm& form = out_.forms.emplace_back(VectorForm{name, lanes, "", n});
-      Type t = scalar(Kind::vector, "");
-      t.name = name;
-      t.form = &form;
-      t.part = kind;
-      types_[name] = t;
-    }
+Parser::Parser(const Source& source, const IsPlain& is_plain) : tokens_(source.tokens), is_plain_(is_plain) {
+  using enum Type::Kind;
+  types_["void"] = {.kind = nothing, .name = "void"};
+  types_["bool"] = {.kind = boolean, .name = "bool"};
+  types_["u32"] = {.kind = natural, .name = "u32"};
+  const std::pair<std::string, Type::Kind> numbers[] = {{"float", real}, {"int", integer}, {"uint", natural}};
+  for (const auto& [name, kind] : numbers) {
+    types_[name] = {.kind = kind, .name = name};
+    for (int n = 2; n <= 4; ++n)
+      add_vector({name + std::to_string(n), kind == real ? fmt::format("REAL{}", n) : "", "", n}, kind);
+  }
+  types_["i32"] = types_["int"];
   for (const char* name :
        {"INFINITY", "MAXFLOAT", "FLT_MIN", "FLT_MAX", "FLT_EPSILON", "M_PI_F", "M_1_PI_F", "M_PI_2_F", "NAN"})
     constants_[name] = types_["float"];
 }
 
+void Parser::add_vector(const VectorForm& form, Type::Kind part) {
+  const VectorForm* kept = &out_.forms.emplace_back(form);
+  types_[form.name] = {.kind = Type::Kind::vector, .name = form.name, .form = kept, .part = part};
+}
+
 Program Parser::program() {
   while (word().kind != Token::Kind::end) declaration();
   for (const Function& f : out_.functions)
-    if (f.is_entry && !f.body) fail(f.place, fmt::format("ENTRY of '{}', which has no text", f.name));
+    if (f.is_entry && !f.body) fail(f.place, "ENTRY of '{}', which has no text", f.name);
   return std::move(out_);
 }
 
@@ -60,12 +41,21 @@ bool Parser::take(std::string_view text) {
   return true;
 }
 void Parser::want(std::string_view text) {
-  if (!take(text)) fail(place(), fmt::format("wanted '{}', found '{}'", text, word().text));
+  if (!take(text)) fail(place(), "wanted '{}', found '{}'", text, word().text);
 }
 std::string Parser::name(std::string_view what) {
-  if (word().kind != Token::Kind::name)
-    fail(place(), fmt::format("wanted the name of {}, found '{}'", what, word().text));
+  if (!at_name()) fail(place(), "wanted the name of {}, found '{}'", what, word().text);
   return tokens_[at_++].text;
+}
+
+/// `(name, 4, ...)`: those words, at least `least`.
+std::vector<std::string> Parser::words_in_brackets(std::size_t least) {
+  std::vector<std::string> all;
+  const Place where = place();
+  want("(");
+  list_until(")", [&] { all.push_back(tokens_[at_++].text); });
+  if (all.size() < least) fail(where, "wanted {} words in brackets", least);
+  return all;
 }
 
 /// From an opening bracket to behind the one that closes it.
@@ -82,210 +72,109 @@ void Parser::skip_brackets() {
 
 void Parser::declaration() {
   if (take(";")) return;
-  if (is_plain_(*place().file)) return plain_declaration();
-  // A header that devices and host share: what is not understood there is not known here.
-  const std::size_t from = at_;
-  try {
-    plain_declaration();
-  } catch (const std::exception&) {
-    at_ = from;
-    skip_declaration();
-  }
-}
-
-void Parser::skip_declaration() {
-  while (word().kind != Token::Kind::end && !take(";")) {
-    const bool ends = at("{");
-    if (at("(") || at("{") || at("["))
-      skip_brackets();
-    else
-      ++at_;
-    if (ends && !at(";") && word().kind != Token::Kind::name) return;
-    if (ends && word().kind == Token::Kind::name && !word(1).is(";")) return;
-  }
-}
-
-void Parser::plain_declaration() {
-  if (at("typedef")) return type_definition();
-  if (at("LANE_VECTOR")) return vector_definition();
   if (at("HAVING") && word(4).is(";")) {
-    features_[place().file] = word(2).text;
-    at_ += 5;
-    return;
-  }
-  if (at("enum")) {
+    const std::string* file = place().file;
+    ++at_;
+    features_[file] = words_in_brackets(1)[0];
+  } else if (take("LANE_VECTOR")) {
+    const std::vector<std::string> words = words_in_brackets(4);
+    add_vector({words[0], words[1], words[2], std::atoi(words[3].c_str())}, Type::Kind::real);
+  } else if (at("enum")) {
     enumeration();
-    return want(";");
-  }
-  if (take("CONSTANT")) {
+  } else if (take("CONSTANT")) {
     const Type type = base_type();
     constants_[name("a constant")] = type;
-    return want(";");
+  } else if (take("typedef")) {
+    type_definition();
+  } else {
+    return function();
   }
-  if (at("struct") && word(2).is("{")) {
-    Structure s;
-    const std::string named = word(1).text;
-    structure(s);
-    made_structure(named, std::move(s));
-    return want(";");
-  }
-  function();
+  want(";");
 }
 
 void Parser::type_definition() {
-  want("typedef");
   if (at("enum")) {
     enumeration();
-    if (word().kind == Token::Kind::name) types_[name("a type")] = types_["uint"];
-    return want(";");
+    types_[name("a type")] = types_["uint"];
+  } else if (at("struct")) {
+    structure();
+  } else {
+    const Type type = pointed(base_type());
+    types_.try_emplace(name("a type"), type);
   }
-  if (at("struct") && (word(1).is("{") || word(2).is("{") || word(1).is("LANES") || word(2).is("LANES"))) {
-    Structure s;
-    structure(s);
-    made_structure(name("a type"), std::move(s));
-    return want(";");
-  }
-  const Type type = pointed(base_type());
-  const std::string named = name("a type");
-  types_.try_emplace(named, type);
-  want(";");
-}
-
-void Parser::vector_definition() {
-  want("LANE_VECTOR");
-  want("(");
-  VectorForm form;
-  form.name = name("a vector");
-  want(",");
-  form.lanes = name("its lane form");
-  want(",");
-  form.prefix = name("its functions");
-  want(",");
-  form.parts = std::stoi(number()->digits);
-  want(")");
-  want(";");
-  Type t;
-  t.kind = Type::Kind::vector;
-  t.name = form.name;
-  t.form = &out_.forms.emplace_back(form);
-  types_[form.name] = t;
 }
 
 void Parser::enumeration() {
   want("enum");
-  if (word().kind == Token::Kind::name) ++at_;
-  if (take(":")) base_type();
-  if (!at("{")) return;
+  if (at_name()) ++at_;
   want("{");
-  while (!take("}")) {
+  list_until("}", [&] {
     constants_[name("a constant")] = types_["int"];
     while (!at(",") && !at("}")) ++at_;
-    take(",");
-  }
+  });
 }
 
-const Structure* Parser::made_structure(std::string named, Structure&& s) {
-  s.name = named;
-  s.shared = !is_plain_(*s.place.file);
-  if (s.lanes.empty()) s.lanes = named + "s";
-  if (types_.contains(named)) fail(s.place, fmt::format("there is a type '{}' already", named));
-  const Structure* kept = &out_.structures.emplace_back(std::move(s));
-  Type t;
-  t.kind = Type::Kind::structure;
-  t.name = named;
-  t.structure = kept;
-  types_[named] = t;
-  return kept;
-}
-
-/// `struct [name] [LANES(name, join)] { members }`
-void Parser::structure(Structure& s) {
+/// `struct [name] [LANES(name, join)] { members } name`
+void Parser::structure() {
+  Structure s;
   s.place = place();
   want("struct");
-  if (word().kind == Token::Kind::name && !at("LANES")) ++at_;
-  if (take("LANES")) {
-    want("(");
-    s.by_hand = true;
-    s.lanes = name("a lane form");
-    if (take(",")) s.join = name("what joins lanes");
-    want(")");
+  if (at_name() && !at("LANES")) ++at_;
+  s.by_hand = take("LANES");
+  if (s.by_hand) {
+    const std::vector<std::string> words = words_in_brackets(1);
+    s.lanes = words[0];
+    if (words.size() > 1) s.join = words[1];
   }
   members(s);
+  s.name = name("a type");
+  s.shared = !is_plain_(*s.place.file);
+  if (s.lanes.empty()) s.lanes = s.name + "s";
+  if (types_.contains(s.name)) fail(s.place, "there is a type '{}' already", s.name);
+  const Structure* kept = &out_.structures.emplace_back(s);
+  types_[s.name] = {.kind = Type::Kind::structure, .name = s.name, .structure = kept};
 }
 
 void Parser::members(Structure& s) {
   want("{");
   while (!take("}")) {
-    Member common;
-    if (take("HAVING")) {
-      want("(");
-      common.feature = name("a feature");
-      want(")");
-    }
-    common.uniform = take("UNIFORM");
+    Member member;
+    if (take("HAVING")) member.feature = words_in_brackets(1)[0];
+    member.uniform = take("UNIFORM");
     const Type base = base_type();
     do {
-      Member member = common;
       member.type = pointed(base);
       member.name = name("a member");
       member.type = lengthened(member.type);
-      s.members.push_back(std::move(member));
+      s.members.push_back(member);
     } while (take(","));
     want(";");
   }
 }
 
-bool Parser::begins_type(std::size_t ahead) const {
-  const Token& t = word(ahead);
-  static const std::set<std::string, std::less<>> qualifiers{
-      "const",    "struct", "__global", "__constant", "__private",
-      "unsigned", "global", "constant", "restrict",   "volatile"};
-  return t.kind == Token::Kind::name && (qualifiers.contains(t.text) || types_.contains(t.text));
-}
-
 Type Parser::base_type() {
-  Space space = Space::own;
-  bool constant = false, is_unsigned = false, found = false;
-  Type type;
-  for (;; ++at_) {
-    if (at("const"))
+  bool constant = false, global = false;
+  for (;;) {
+    if (take("const"))
       constant = true;
-    else if (at("__global") || at("global"))
-      space = Space::global;
-    else if (at("__constant") || at("constant"))
-      space = Space::constant;
-    else if (at("__local") || at("local"))
-      space = Space::local;
-    else if (at("unsigned"))
-      is_unsigned = true;
-    else if (at("struct") || at("__private") || at("restrict") || at("volatile"))
-      continue;
-    else if (const auto known = types_.find(word().text); !found && known != types_.end()) {
-      type = known->second;
-      found = true;
-    } else
+    else if (take("__global"))
+      global = true;
+    else
       break;
   }
-  if (is_unsigned && !found) {
-    type = types_["uint"];
-    found = true;
-  }
-  if (!found) fail(place(), fmt::format("'{}' is no type", word().text));
-  if (is_unsigned && type.is(Type::Kind::integer)) type = types_["uint"];
-  type.space = space;
+  const auto known = types_.find(word().text);
+  if (known == types_.end()) fail(place(), "'{}' is no type", word().text);
+  ++at_;
+  Type type = known->second;
   type.constant = constant;
+  type.global = global;
   return type;
 }
 
 Type Parser::pointed(Type type) {
   while (take("*")) {
-    if (type.is(Type::Kind::pointer)) fail(place(), "a pointer to a pointer");
-    Type pointer;
-    pointer.kind = Type::Kind::pointer;
-    pointer.space = type.space;
-    pointer.constant = type.constant;
-    pointer.of = std::make_shared<const Type>(type);
-    type = pointer;
+    if (type.is_pointer()) fail(place(), "a pointer to a pointer");
+    type = pointer_to(type);
     while (take("const") || take("restrict")) {
     }
   }
@@ -295,34 +184,29 @@ Type Parser::pointed(Type type) {
 Type Parser::lengthened(Type type) {
   if (!take("[")) return type;
   const Place where = place();
-  ExpressionPtr length = condition();
+  const ExpressionPtr length = condition();
   want("]");
   if (length->kind != Expression::Kind::number) fail(where, "the length of an array is a number");
-  Type array;
-  array.kind = Type::Kind::array;
-  array.length = std::stoi(length->digits, nullptr, 0);
-  array.of = std::make_shared<const Type>(lengthened(std::move(type)));
-  return array;
+  return {.kind = Type::Kind::array,
+          .of = std::make_shared<const Type>(lengthened(std::move(type))),
+          .length = std::stoi(length->digits, nullptr, 0)};
 }
 
 void Parser::function() {
   Function f;
   f.feature = features_[place().file];
-  for (;; ++at_) {
-    if (at("inline"))
+  for (;;) {
+    if (take("inline"))
       f.is_inline = true;
-    else if (at("ENTRY"))
+    else if (take("ENTRY"))
       f.is_entry = true;
-    else if (at("UNIFORM"))
+    else if (take("UNIFORM"))
       f.uniform = true;
-    else if (at("HAVING")) {
-      at_ += 2;
-      if (!f.feature.empty()) f.feature += " && ";
-      f.feature += name("a feature");
-    } else if (at("CALLED")) {
-      at_ += 2;
-      f.lanes = name("a function");
-    } else if (!at("static") && !at("NEVER_INLINE"))
+    else if (take("HAVING"))
+      f.feature += (f.feature.empty() ? "" : " && ") + words_in_brackets(1)[0];
+    else if (take("CALLED"))
+      f.lanes = words_in_brackets(1)[0];
+    else if (!take("static") && !take("NEVER_INLINE"))
       break;
   }
   f.result = pointed(base_type());
@@ -330,56 +214,39 @@ void Parser::function() {
   f.place = place();
   f.name = name("a function");
   if (f.lanes.empty()) f.lanes = f.name;
-  scopes_.emplace_back();
-  parameters(f);
+  known_.clear();
+  want("(");
+  if (at("void") && word(1).is(")")) ++at_;
+  list_until(")", [&] { parameter(f); });
   const bool plain = is_plain_(*f.place.file);
   f.uniform |= !plain;
   Function& kept = out_.functions.emplace_back(std::move(f));
   const Function*& known = out_.function_of[kept.name];  // a prototype may stand before the text
-  if (known && (known->body || !at("{"))) fail(kept.place, fmt::format("'{}' is there already", kept.name));
+  if (known && (known->body || !at("{"))) fail(kept.place, "'{}' is there already", kept.name);
   known = &kept;
-  if (!at("{")) {
-    want(";");
-  } else if (!plain) {
-    skip_brackets();
-  } else {
-    function_ = &kept;
-    kept.body = block();
-    function_ = nullptr;
-  }
-  scopes_.pop_back();
+  if (!at("{")) return want(";");
+  if (!plain) return skip_brackets();
+  function_ = &kept;
+  kept.body = block();
 }
 
-void Parser::parameters(Function& f) {
-  want("(");
-  if (at("void") && word(1).is(")")) ++at_;
-  while (!take(")")) {
-    Variable v;
-    v.place = place();
-    if (take("HERE")) {
-      v.here = true;
-      f.takes_mask = true;
-    } else {
-      v.uniform = take("UNIFORM");
-      v.type = lengthened(pointed(base_type()));
-      v.name = name("a parameter");
-      v.type = lengthened(v.type);
-      if (v.type.is(Type::Kind::array)) {  // is handed over as a pointer
-        Type pointer;
-        pointer.kind = Type::Kind::pointer;
-        pointer.of = v.type.of;
-        v.type = pointer;
-      }
-    }
-    const Variable& kept = out_.variables.emplace_back(std::move(v));
-    if (!kept.here) scopes_.back()[kept.name] = &kept;
-    f.parameters.push_back(&kept);
-    if (!at(")")) want(",");
+void Parser::parameter(Function& f) {
+  Variable v;
+  v.place = place();
+  v.here = take("HERE");
+  if (!v.here) {
+    v.uniform = take("UNIFORM");
+    const Type type = pointed(base_type());
+    v.name = name("a parameter");
+    v.type = lengthened(type);
+    if (v.type.is_array()) v.type = pointer_to(*v.type.of);  // as C hands it over
   }
-}
-
-Program parse(const Source& source, const std::function<bool(const std::string&)>& is_plain) {
-  return Parser(source, is_plain).program();
+  const Variable& kept = out_.variables.emplace_back(std::move(v));
+  f.parameters.push_back(&kept);
+  f.takes_mask |= kept.here;
+  if (kept.here) return;
+  f.taken.push_back(&kept);
+  known_.push_back(&kept);
 }
 
 }  // namespace sundog::spmd

@@ -1,5 +1,5 @@
 // Statements.
-#include <fmt/format.h>
+#include <set>
 
 #include "lanes/parser.h"
 
@@ -11,28 +11,25 @@ std::string feature_text(const Expression& e) {
   using Kind = Expression::Kind;
   if (e.kind == Kind::constant && e.text.starts_with("HAS_")) return e.text;
   if (e.kind == Kind::cast && e.implicit) return feature_text(*e.of[0]);
-  if (e.kind == Kind::unary && e.text == "!") {
+  if (e.is_unary("!")) {
     const std::string of = feature_text(*e.of[0]);
     return of.empty() ? of : "!" + of;
   }
-  if (e.kind != Kind::binary || (e.text != "&&" && e.text != "||")) return "";
+  if (e.kind != Kind::binary || !joins(e.text)) return "";
   const std::string a = feature_text(*e.of[0]), b = feature_text(*e.of[1]);
   return a.empty() || b.empty() ? "" : fmt::format("({} {} {})", a, e.text, b);
 }
 
-/// Takes the features out that a chain of && begins with.
+/// Takes the features out that a chain of && begins with; nothing may be left.
 std::string take_features(ExpressionPtr& e) {
-  if (std::string all = feature_text(*e); !all.empty()) {
+  std::string all = feature_text(*e);
+  if (!all.empty()) {
     e = nullptr;
-    return all;
+  } else if (e->is_binary("&&")) {
+    all = take_features(e->of[0]);
+    if (!e->of[0]) e = e->of[1];
   }
-  if (e->kind != Expression::Kind::binary || e->text != "&&") return "";
-  std::string first = take_features(e->of[0]);
-  if (!e->of[0]) {
-    ExpressionPtr rest = std::move(e->of[1]);
-    e = std::move(rest);
-  }
-  return first;
+  return all;
 }
 
 }  // namespace
@@ -44,39 +41,44 @@ StatementPtr Parser::made(Statement::Kind kind) const {
   return s;
 }
 
-const Variable* Parser::declare(std::string named, Type type, const Place& where) {
-  Variable v;
-  v.name = std::move(named);
-  v.type = std::move(type);
-  v.place = where;
-  const std::size_t stem = v.name.find_last_not_of("0123456789");
-  if (stem + 1 < v.name.size() && v.name[stem] == '_')
-    fail(where, fmt::format("'{}': names that end in _ and a number are the translator's", v.name));
-  for (const auto& scope : scopes_)
-    if (scope.contains(v.name)) fail(where, fmt::format("'{}' hides another one", v.name));
-  const Variable& kept = out_.variables.emplace_back(std::move(v));
-  scopes_.back()[kept.name] = &kept;
-  return &kept;
+const Variable* Parser::declare(const std::string& named, const Type& type, const Place& where) {
+  const std::size_t stem = named.find_last_not_of("0123456789");
+  if (stem + 1 < named.size() && named[stem] == '_')
+    fail(where, "'{}': names that end in _ and a number are the translator's", named);
+  if (std::ranges::find(known_, named, &Variable::name) != known_.end())
+    fail(where, "'{}' hides another one", named);
+  return known_.emplace_back(&out_.variables.emplace_back(Variable{named, type, false, false, where}));
+}
+
+bool Parser::begins_declaration() const {
+  static const std::set<std::string_view> others{"return", "goto", "do"};
+  const bool has_two_names = at_name() && word(1).kind == Token::Kind::name;
+  return (has_two_names && !others.contains(word().text)) || (begins_type() && !word(1).is("("));
 }
 
 StatementPtr Parser::statement() {
+  const std::size_t outside = known_.size();
+  StatementPtr s = unscoped_statement();
+  known_.resize(outside);
+  return s;
+}
+
+StatementPtr Parser::unscoped_statement() {
   if (at("{")) return block();
   if (at("if")) return branch();
-  if (at("for") || at("while")) return loop();
-  if (at("do")) return do_loop();
+  if (at("for") || at("while") || at("do")) return loop();
   if (at("EACH_ALIKE")) return each_alike();
   if (at("return")) return given();
-  for (const char* word : {"goto", "switch"})
-    if (at(word)) fail(place(), fmt::format("'{}' has no lanes: use if", word));
-  if (begins_type() && !word(1).is("(")) return declared();
-  StatementPtr s = made(at("break")      ? Statement::Kind::leave_loop
-                        : at("continue") ? Statement::Kind::next_round
-                        : at(";")        ? Statement::Kind::block
-                                         : Statement::Kind::compute);
-  if (s->kind == Statement::Kind::compute)
+  if (at("goto") || at("switch")) fail(place(), "'{}' has no lanes: use if", word().text);
+  StatementPtr s = made(Statement::Kind::block);
+  if (take("break"))
+    s->kind = Statement::Kind::leave_loop;
+  else if (take("continue"))
+    s->kind = Statement::Kind::next_round;
+  else if (!at(";")) {
+    s->kind = Statement::Kind::compute;
     s->expressions.push_back(expression());
-  else if (!at(";"))
-    ++at_;
+  }
   want(";");
   return s;
 }
@@ -84,12 +86,10 @@ StatementPtr Parser::statement() {
 StatementPtr Parser::block() {
   StatementPtr s = made(Statement::Kind::block);
   want("{");
-  scopes_.emplace_back();
   while (!take("}")) {
     if (word().kind == Token::Kind::end) fail(s->place, "a block has no end");
-    s->body.push_back(statement());
+    s->body.push_back(begins_declaration() ? declared() : statement());
   }
-  scopes_.pop_back();
   return s;
 }
 
@@ -99,14 +99,12 @@ StatementPtr Parser::declared() {
   do {
     const Place where = place();
     Type type = pointed(base);
-    std::string named = name("a variable");
+    const std::string named = name("a variable");
     type = lengthened(std::move(type));
     if (type.is_own_pointer() && !type.constant)
       fail(where, "a pointer to what may be set is a parameter alone");
-    ExpressionPtr value;
-    if (take("=")) value = initial(type);
-    s->variables.push_back(declare(std::move(named), std::move(type), where));
-    s->expressions.push_back(std::move(value));
+    s->expressions.push_back(take("=") ? initial(type) : nullptr);
+    s->variables.push_back(declare(named, type, where));
   } while (take(","));
   want(";");
   return s;
@@ -115,66 +113,45 @@ StatementPtr Parser::declared() {
 StatementPtr Parser::branch() {
   StatementPtr s = made(Statement::Kind::branch);
   want("if");
-  want("(");
-  ExpressionPtr asked = truth(condition());
-  want(")");
-  scopes_.emplace_back();
-  StatementPtr then = statement(), otherwise;
-  scopes_.pop_back();
-  if (take("else")) {
-    scopes_.emplace_back();
-    otherwise = statement();
-    scopes_.pop_back();
-  }
+  ExpressionPtr asked = truth(in_brackets());
+  s->body.push_back(statement());
+  if (take("else")) s->body.push_back(statement());
   // Features are the preprocessor's: `if (HAS_X && c) s` is `#if HAS_X`, `if (c) s`.
-  if (!otherwise || !feature_text(*asked).empty()) s->feature = take_features(asked);
-  if (!s->feature.empty() && asked) {
-    StatementPtr inner = made(Statement::Kind::branch);
-    inner->place = s->place;
-    inner->expressions.push_back(std::move(asked));
-    inner->body.push_back(std::move(then));
-    then = std::move(inner);
-  }
-  if (s->feature.empty()) s->expressions.push_back(std::move(asked));
-  s->body.push_back(std::move(then));
-  if (otherwise) s->body.push_back(std::move(otherwise));
-  return s;
+  if (s->body.size() == 1 || !feature_text(*asked).empty()) s->feature = take_features(asked);
+  if (asked) s->expressions.push_back(std::move(asked));
+  if (s->feature.empty() || s->expressions.empty()) return s;
+  StatementPtr outer = made(Statement::Kind::branch);
+  outer->place = s->place;
+  std::swap(outer->feature, s->feature);
+  outer->body.push_back(std::move(s));
+  return outer;
 }
 
 StatementPtr Parser::loop() {
-  StatementPtr s = made(Statement::Kind::loop);
-  const bool counts = at("for");
-  ++at_;
-  want("(");
-  scopes_.emplace_back();
-  StatementPtr first;
-  ExpressionPtr asked, step;
-  if (counts && !take(";")) first = statement();
-  if (!at(counts ? ";" : ")")) asked = truth(condition());
-  if (counts) {
+  StatementPtr s = made(at("do") ? Statement::Kind::do_loop : Statement::Kind::loop);
+  StatementPtr first = made(Statement::Kind::block), body;
+  ExpressionPtr asked = made(Expression::Kind::constant, type("bool"), place(), "true");
+  if (take("do")) {
+    body = statement();
+    want("while");
+    asked = truth(in_brackets());
     want(";");
-    if (!at(")")) step = expression();
+  } else if (take("while")) {
+    asked = truth(in_brackets());
+    body = statement();
+  } else {
+    want("for");
+    want("(");
+    if (!take(";")) first = begins_declaration() ? declared() : statement();
+    if (!at(";")) asked = truth(condition());
+    want(";");
+    const ExpressionPtr step = at(")") ? nullptr : expression();
+    want(")");
+    body = statement();
+    if (step) s->expressions.push_back(step);
   }
-  want(")");
-  s->expressions.push_back(std::move(asked));
-  s->expressions.push_back(std::move(step));
+  s->expressions.insert(s->expressions.begin(), std::move(asked));
   s->body.push_back(std::move(first));
-  s->body.push_back(statement());
-  scopes_.pop_back();
-  return s;
-}
-
-StatementPtr Parser::do_loop() {
-  StatementPtr s = made(Statement::Kind::do_loop);
-  want("do");
-  StatementPtr body = statement();
-  want("while");
-  want("(");
-  s->expressions.push_back(truth(condition()));
-  s->expressions.push_back(nullptr);
-  want(")");
-  want(";");
-  s->body.push_back(nullptr);
   s->body.push_back(std::move(body));
   return s;
 }
@@ -187,14 +164,12 @@ StatementPtr Parser::each_alike() {
   if (!type.is_whole()) fail(place(), "EACH_ALIKE takes whole numbers");
   want(",");
   const Place where = place();
-  std::string named = name("a variable");
+  const std::string named = name("a variable");
   want(",");
   s->expressions.push_back(converted(condition(), type));
   want(")");
-  scopes_.emplace_back();
-  s->variables.push_back(declare(std::move(named), type, where));
+  s->variables.push_back(declare(named, type, where));
   s->body.push_back(statement());
-  scopes_.pop_back();
   return s;
 }
 
@@ -202,8 +177,7 @@ StatementPtr Parser::given() {
   StatementPtr s = made(Statement::Kind::give);
   want("return");
   const Type& wanted = function_->result;
-  if (wanted.is(Type::Kind::nothing) != at(";"))
-    fail(place(), fmt::format("'{}' gives {}", function_->name, name_of(wanted)));
+  if (wanted.is_nothing() != at(";")) fail(place(), "'{}' gives {}", function_->name, name_of(wanted));
   if (!at(";")) s->expressions.push_back(converted(condition(), wanted));
   want(";");
   return s;

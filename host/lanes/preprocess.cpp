@@ -1,10 +1,9 @@
 // See preprocess.h.
 #include "lanes/preprocess.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -19,70 +18,72 @@ void fail(const Place& place, std::string_view what) {
 
 namespace {
 
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
+bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 
-/// The text with comments made blank; lines and columns stay.
-std::string without_comments(std::string text) {
+/// The text with comments made blank, and '\v' for the end of a line that goes on with the next one.
+std::string whole_lines(std::string text) {
+  for (std::size_t at = text.find("\\\n"); at != std::string::npos; at = text.find("\\\n", at))
+    text.replace(at, 2, " \v");
   for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] != '/') continue;
-    if (text[i + 1] == '/') {
-      for (; i < text.size() && text[i] != '\n'; ++i) text[i] = ' ';
-    } else if (text[i + 1] == '*') {
-      const std::size_t end = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
-      for (; i < end; ++i)
-        if (text[i] != '\n' && !(text[i] == '\\' && text[i + 1] == '\n')) text[i] = ' ';
-      --i;  // another comment may follow at once
-    }
+    const bool is_block = text[i + 1] == '*';
+    if (text[i] != '/' || (!is_block && text[i + 1] != '/')) continue;
+    const std::size_t end = is_block ? std::min(text.find("*/", i + 2), text.size() - 2) + 2
+                                     : std::min(text.find('\n', i), text.size());
+    for (; i < end; ++i)
+      if (!is_space(text[i])) text[i] = ' ';
+    --i;  // another comment may follow at once
   }
   return text;
 }
 
-std::size_t number_length(std::string_view text) {
+/// The token that `text` begins with; its place is not set.
+Token first_token(std::string_view text) {
+  const auto at = [&](std::size_t i) { return i < text.size() ? text[i] : ' '; };
+  const auto token = [&](Token::Kind kind, std::size_t n) {
+    return Token{kind, std::string(text.substr(0, n)), {}, ""};
+  };
   std::size_t n = 0;
-  while (n < text.size() && (continues_name(text[n]) || text[n] == '.' ||
-                             ((text[n] == '+' || text[n] == '-') && n > 0 &&
-                              std::string_view("eEpP").find(text[n - 1]) != std::string_view::npos &&
-                              (!text.starts_with("0x") || text[n - 1] == 'p'))))
-    ++n;
-  return n;
-}
-
-std::size_t sign_length(std::string_view text) {
+  if (begins_name(text[0])) {
+    while (continues_name(at(n))) ++n;
+    return token(Token::Kind::name, n);
+  }
+  if (is_digit(text[0]) || (text[0] == '.' && is_digit(at(1)))) {
+    const std::string_view exponents = text.starts_with("0x") ? "p" : "eEpP";
+    const auto signs_exponent = [&] {
+      return n > 0 && (at(n) == '+' || at(n) == '-') && exponents.find(text[n - 1]) != std::string_view::npos;
+    };
+    while (continues_name(at(n)) || at(n) == '.' || signs_exponent()) ++n;
+    return token(Token::Kind::number, n);
+  }
   for (const std::string_view sign :
        {"<<=", ">>=", "...", "->", "++", "--", "<<", ">>", "<=", ">=", "==", "!=",
         "&&",  "||",  "+=",  "-=", "*=", "/=", "%=", "&=", "|=", "^=", "##"})
-    if (text.starts_with(sign)) return sign.size();
-  return 1;
+    if (text.starts_with(sign)) return token(Token::Kind::sign, sign.size());
+  return token(Token::Kind::sign, 1);
 }
 
-/// The words of a line of `text`, which begins at `place`.
-void read_words(std::string_view text, Place place, Tokens& out) {
+/// The tokens of a whole line, which begins at `place`; that moves to the next one.
+Tokens tokens_of(std::string_view text, Place& place) {
+  Tokens out;
+  std::size_t begin = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const std::string_view rest = text.substr(at);
-    if (std::isspace(static_cast<unsigned char>(rest[0]))) {
+    if (text[at] == '\v') {
+      ++place.line;
+      begin = at + 1;
+    }
+    if (is_space(text[at])) {
       ++at;
       continue;
     }
-    Token token;
-    token.place = place;
-    token.place.column = static_cast<int>(at) + 1;
-    std::size_t length = 0;
-    if (begins_name(rest[0])) {
-      token.kind = Token::Kind::name;
-      while (length < rest.size() && continues_name(rest[length])) ++length;
-    } else if (std::isdigit(static_cast<unsigned char>(rest[0])) ||
-               (rest[0] == '.' && rest.size() > 1 && std::isdigit(static_cast<unsigned char>(rest[1])))) {
-      token.kind = Token::Kind::number;
-      length = number_length(rest);
-    } else {
-      token.kind = Token::Kind::sign;
-      length = sign_length(rest);
-    }
-    token.text = rest.substr(0, length);
-    out.push_back(std::move(token));
-    at += length;
+    out.push_back(first_token(text.substr(at)));
+    out.back().place = {place.file, place.line, static_cast<int>(at - begin) + 1};
+    at += out.back().text.size();
   }
+  ++place.line;
+  return out;
 }
 
 struct Macro {
@@ -103,7 +104,7 @@ class Preprocessor {
     if (!seen_.insert(path).second) return;
     std::string text;
     try {
-      text = without_comments(read_(path));
+      text = whole_lines(read_(path));
     } catch (const std::exception& error) {
       if (!from.file) throw;
       fail(from, error.what());
@@ -111,22 +112,12 @@ class Preprocessor {
     const std::string* name = &source.files.emplace_back(path);
     Place place{name, 1, 1};
     const std::size_t depth = open_.size();
-    Tokens words;
-    for (std::size_t at = 0; at < text.size();) {
-      words.clear();
-      bool continues = true;
-      const int first = place.line;
-      while (continues && at < text.size()) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        std::string_view line = std::string_view(text).substr(at, end - at);
-        continues = line.ends_with('\\');
-        if (continues) line.remove_suffix(1);
-        read_words(line, place, words);
-        at = end + 1;
-        ++place.line;
-      }
+    for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
+      end = std::min(text.find('\n', at), text.size());
+      const Place first = place;
+      const Tokens words = tokens_of(std::string_view(text).substr(at, end - at), place);
       if (!words.empty() && words[0].is("#"))
-        directive(words, Place{name, first, 1});
+        directive(words, first);
       else if (is_active())
         pending_.insert(pending_.end(), words.begin(), words.end());
     }
@@ -137,13 +128,7 @@ class Preprocessor {
   Source source;
 
  private:
-  struct Condition {
-    bool active, taken;
-  };
-
-  bool is_active() const {
-    return std::ranges::all_of(open_, [](const Condition& c) { return c.active; });
-  }
+  bool is_active() const { return std::ranges::find(open_, false) == open_.end(); }
 
   void flush() {
     expand(pending_, {}, source.tokens);
@@ -155,26 +140,18 @@ class Preprocessor {
     const std::string what = words.size() > 1 ? words[1].text : "";
     words.erase(words.begin(), words.begin() + std::min<std::ptrdiff_t>(2, std::ssize(words)));
     if (what.starts_with("if") && !keeps_names_(*place.file))
-      fail(place, "a plain file is read once, and asks for features by if (HAS_...): #" + what);
-    if (what == "if" || what == "ifdef" || what == "ifndef") {
-      const bool holds = is_active() && condition(what, words, place);
-      open_.push_back({holds, holds});
-    } else if (what == "elif" || what == "else") {
-      if (open_.empty()) fail(place, "#" + what + " without an #if");
-      Condition& c = open_.back();
-      c.active = false;
-      c.active = !c.taken && is_outside_active() && (what == "else" || condition("if", words, place));
-      c.taken |= c.active;
-    } else if (what == "endif") {
-      if (open_.empty()) fail(place, "#endif without an #if");
-      open_.pop_back();
-    } else if (is_active()) {
+      fail(place, "a plain file is read once, and asks for features by if (HAS_...): #{}", what);
+    if (what == "if") {
+      open_.push_back(is_active() && condition(words, place));
+    } else if (what == "else" || what == "endif") {
+      if (open_.empty()) fail(place, "#{} without an #if", what);
+      if (what == "else")
+        open_.back() = !open_.back();
+      else
+        open_.pop_back();
+    } else if (what.starts_with("if") || what.starts_with("el") || is_active()) {
       active_directive(what, words, place);
     }
-  }
-
-  bool is_outside_active() const {
-    return std::all_of(open_.begin(), open_.end() - 1, [](const Condition& c) { return c.active; });
   }
 
   void active_directive(const std::string& what, const Tokens& words, const Place& place) {
@@ -186,12 +163,10 @@ class Preprocessor {
       file(path, place);
     } else if (what == "define") {
       define(words, place);
-    } else if (what == "undef") {
-      if (!words.empty()) macros_.erase(words[0].text);
-    } else if (what == "error") {
-      fail(place, "#error");
-    } else if (what != "pragma" && what != "line" && !what.empty()) {
-      fail(place, "#" + what + " is not known");
+    } else if (what == "undef" && !words.empty()) {
+      macros_.erase(words[0].text);
+    } else if (what != "pragma") {
+      fail(place, "#{} is not known", what);
     }
   }
 
@@ -213,25 +188,21 @@ class Preprocessor {
   }
 
   /// `defined(X)` and `!defined(X)`, joined by && or ||, is what headers ask.
-  bool condition(const std::string& what, const Tokens& words, const Place& place) const {
-    if (words.empty()) fail(place, "#" + what + " wants a condition");
-    if (what != "if") return macros_.contains(words[0].text) == (what == "ifdef");
-    bool all = true, any = false, joined_by_or = false;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      const bool opposite = words[i].is("!");
+  bool condition(const Tokens& words, const Place& place) const {
+    bool result = true, joined_by_or = false;
+    for (std::size_t i = 0;; ++i) {
+      const bool opposite = i < words.size() && words[i].is("!");
       if (opposite) ++i;
       if (i + 3 >= words.size() || !words[i].is("defined") || !words[i + 1].is("(") || !words[i + 3].is(")"))
         fail(place, "wanted defined(NAME), or several joined by && or ||");
       const bool holds = macros_.contains(words[i + 2].text) != opposite;
-      all &= holds;
-      any |= holds;
+      result = joined_by_or ? result || holds : result && holds;
       i += 4;
-      if (i < words.size()) joined_by_or = words[i].is("||");
+      if (i >= words.size()) return result;
+      joined_by_or = words[i].is("||");
     }
-    return joined_by_or ? any : all;
   }
 
-  // ---- macros
   using Names = std::set<std::string>;
 
   void expand(const Tokens& in, const Names& hidden, Tokens& out) {
@@ -312,8 +283,8 @@ class Preprocessor {
   const std::function<bool(const std::string&)>& keeps_names_;
   std::map<std::string, Macro> macros_;
   std::set<std::string> seen_;
-  std::vector<Condition> open_;
-  Tokens pending_;  // not yet expanded: the arguments of a macro may stand on several lines
+  std::vector<bool> open_;  // whether the branch of each open #if is taken
+  Tokens pending_;          // not yet expanded: the arguments of a macro may stand on several lines
 };
 
 }  // namespace

@@ -1,13 +1,40 @@
-// A C preprocessor for plain kernels and the headers of kernels/shared: includes (each file once),
-// conditions, macros with and without arguments, ##. No strings.
+// A C preprocessor for plain kernels and the headers of kernels/shared: includes (each file once), #if of
+// defined(...), macros with and without arguments, ##. No strings.
 #pragma once
+#include <fmt/format.h>
+
 #include <deque>
 #include <functional>
-#include <map>
-
-#include "lanes/token.h"
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace sundog::spmd {
+
+/// Line and column start at 1. `file` lives as long as the Source.
+struct Place {
+  const std::string* file = nullptr;
+  int line = 0, column = 0;
+};
+
+/// Throws BuildError "file:line:column: what".
+[[noreturn]] void fail(const Place& place, std::string_view what);
+template <class First, class... Others>
+[[noreturn]] void fail(const Place& place, fmt::format_string<const First&, const Others&...> what,
+                       const First& first, const Others&... others) {
+  fail(place, fmt::format(what, first, others...));
+}
+
+struct Token {
+  enum class Kind { name, number, sign, end };
+  Kind kind = Kind::end;
+  std::string text;
+  Place place;
+  std::string macro;  // the header constant that this number replaces
+  bool is(std::string_view word) const { return text == word; }
+};
+
+using Tokens = std::vector<Token>;
 
 /// Returns a kernel file's text; throws if there is none.
 using ReadFile = std::function<std::string(const std::string& path)>;

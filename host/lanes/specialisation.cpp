@@ -1,120 +1,91 @@
 // See specialisation.h.
 #include "lanes/specialisation.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 namespace sundog::spmd {
+namespace {
+
 using Kind = Expression::Kind;
 
+bool any_of(const std::vector<bool>& all) { return std::ranges::find(all, true) != all.end(); }
+
+}  // namespace
+
+bool is_parted(const Frames& frames) { return std::ranges::any_of(frames, &Frame::divergent); }
+
 double cost_of(const Expression& e) {
-  static const std::map<std::string, double> costly{
-      {"pow", 40},  {"sin", 30}, {"cos", 30},   {"exp", 20},   {"log", 20},  {"atan2", 30}, {"acos", 30},
-      {"asin", 30}, {"sqrt", 6}, {"cospi", 30}, {"sinpi", 30}, {"fmod", 30}, {"cbrt", 40},  {"tan", 40}};
-  switch (e.kind) {
-    case Kind::number:
-    case Kind::constant:
-    case Kind::variable:
-    case Kind::member:
-    case Kind::component:
-      return 0;
-    case Kind::call: {
-      const auto found = costly.find(e.text);
-      return found == costly.end() ? 1 : found->second;
-    }
-    case Kind::binary:
-      if (e.text == "/" || e.text == "%") return e.type.is_whole() ? 30 : 6;
-      return 1;
-    case Kind::assign:
-    case Kind::choose:
-    case Kind::index:
-      return 2;
-    default:
-      return 1;
-  }
+  if (e.kind <= Kind::component) return 0;  // what is read as it stands
+  if (e.divides_whole()) return 30;
+  if (e.is_binary("/")) return 6;
+  if (e.kind == Kind::assign || e.kind == Kind::choose || e.kind == Kind::index) return 2;
+  const BuiltIn* called = e.kind == Kind::call ? built_in_of(e.text) : nullptr;
+  return called ? called->cost : 1;
 }
 
-Specialisation::Specialisation(Specialisations& all, const Function& f, std::vector<bool> varying)
-    : function(f), given(std::move(varying)), all_(all) {
-  name = f.name;
-  const auto parameters = taken(f);
-  bool differs = false;
+Specialisation::Specialisation(Specialisations& all, const Function& f, const std::vector<bool>& given)
+    : function(f), name(f.name), all_(all) {
   std::string letters;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Variable* p = parameters[i];
-    if (given[i]) varying_.insert(p);
-    declared_in_[p] = {};
-    const bool may_vary = !p->uniform && !p->type.is_table();
-    differs |= may_vary && !given[i];
-    if (may_vary) letters += given[i] ? 'v' : 'u';
+  for (std::size_t i = 0; i < f.taken.size(); ++i) {
+    const Variable* p = f.taken[i];
+    if (given[i]) varying.insert(p);
+    if (!p->uniform && !p->type.is_table()) letters += given[i] ? 'v' : 'u';
   }
-  if (differs) name += "_" + letters;
+  if (letters.find('u') != std::string::npos) name += "_" + letters;
   masked = f.is_entry && !f.uniform;
-  result_varies = f.is_entry && !f.uniform && !f.result.is(Type::Kind::nothing);
+  result_varies = masked && !f.result.is_nothing();
   int at = 0;
   number(*f.body, at);
   find_only_result();
 }
 
-void Specialisation::number(const Expression& e, int& at) {
-  ++at;
-  if (e.variable) uses_.last[e.variable] = at;
-  for (const auto& part : e.of) number(*part, at);
-}
-
 void Specialisation::number(const Statement& s, int& at) {
-  ++at;
-  for (const auto& e : s.expressions)
-    if (e) number(*e, at);
-  for (const auto& inner : s.body)
-    if (inner) number(*inner, at);
-  if (s.kind == Statement::Kind::loop || s.kind == Statement::Kind::do_loop) uses_.end[&s] = at;
+  for (const ExpressionPtr& e : s.expressions)
+    if (e)
+      any_within(*e, [&](const Expression& part) {
+        ++at;
+        if (part.variable) last_use_[part.variable] = at;
+        return false;
+      });
+  for (const StatementPtr& inner : s.body) number(*inner, at);
+  if (s.is_loop()) loop_end_[&s] = at;
 }
 
 void Specialisation::find_only_result() {
   std::set<const Variable*> all;
   const auto visit = [&](const auto& self, const Statement& s) -> void {
-    if (s.kind == Statement::Kind::give)
-      all.insert(s.expressions.empty() ? nullptr : s.expressions[0]->variable);
-    for (const auto& inner : s.body)
-      if (inner) self(self, *inner);
+    if (s.is(Statement::Kind::give)) all.insert(s.expressions.empty() ? nullptr : s.expressions[0]->variable);
+    for (const StatementPtr& inner : s.body) self(self, *inner);
   };
   visit(visit, *function.body);
   if (all.size() != 1) return;
-  for (const auto& part : function.body->body)  // in a block within, its name would not be known at the end
-    if (std::ranges::find(part->variables, *all.begin()) != part->variables.end() &&
-        part->kind == Statement::Kind::declare)
+  for (const StatementPtr& part :
+       function.body->body)  // in a block within, its name would not be known at the end
+    if (part->is(Statement::Kind::declare) &&
+        std::ranges::find(part->variables, *all.begin()) != part->variables.end())
       only_result = *all.begin();
 }
 
 void Specialisation::analyse() {
-  for (;;) {
-    const auto before =
-        std::tuple(varying_, result_varies, masked, divergent_break, divergent_continue, divergent_return);
+  Findings before;
+  do {
+    before = *this;
     cost = 0;
     Frames frames;
     statement(*function.body, frames);
     if (divergent_return && only_result)
       make_vary(only_result, only_result->place, "lanes return it one after the other");
-    if (before ==
-        std::tuple(varying_, result_varies, masked, divergent_break, divergent_continue, divergent_return))
-      break;
-  }
+  } while (before != *this);
   if (function.is_entry && function.uniform && result_varies)
-    fail(function.place, fmt::format("the result of {} is UNIFORM, but varies", function.name));
+    fail(function.place, "the result of {} is UNIFORM, but varies", function.name);
 }
 
 void Specialisation::make_vary(const Variable* v, const Place& place, const std::string& what) {
-  if (v->uniform) fail(place, fmt::format("'{}' is uniform, but {}", v->name, what));
-  if (varying_.insert(v).second) why[v] = fmt::format("line {}: {}", place.line, what);
+  if (v->uniform) fail(place, "'{}' is uniform, but {}", v->name, what);
+  if (varying.insert(v).second) why[v] = fmt::format("line {}: {}", place.line, what);
 }
 
 void Specialisation::declare(const Variable* v, const Frames& frames) {
-  auto& where = declared_in_[v];
-  where.clear();
-  for (const Frame& f : frames) where.emplace_back(f.node, f.part + 2 * static_cast<int>(f.kind));
-  if (is_by_hand(v->type)) varying_.insert(v);
+  declared_in_[v] = frames;
+  if (v->type.is_by_hand()) varying.insert(v);
 }
 
 bool Specialisation::is_dead_after(const Variable* v, const Statement* loop, const Frames& frames,
@@ -124,18 +95,14 @@ bool Specialisation::is_dead_after(const Variable* v, const Statement* loop, con
       if (frames[k].node != loop) return false;  // an outer loop comes back
       break;
     }
-  const auto last = uses_.last.find(v);
-  return last == uses_.last.end() || last->second <= uses_.end.at(loop);
+  const auto last = last_use_.find(v);
+  return last == last_use_.end() || last->second <= loop_end_.at(loop);
 }
 
-std::vector<const Frame*> Specialisation::between(const Variable* v, const Frames& frames) const {
-  const auto found = declared_in_.find(v);
+std::vector<const Frame*> Specialisation::between(const Variable* v, const Frames& frames) {
+  const Frames& outer = declared_in_[v];
   std::size_t k = 0;
-  if (found != declared_in_.end())
-    while (k < found->second.size() && k < frames.size() &&
-           found->second[k] ==
-               std::pair(frames[k].node, frames[k].part + 2 * static_cast<int>(frames[k].kind)))
-      ++k;
+  while (k < outer.size() && k < frames.size() && outer[k].is_same(frames[k])) ++k;
   std::vector<const Frame*> out;
   for (std::size_t i = k; i < frames.size(); ++i)
     if (frames[i].divergent &&
@@ -145,17 +112,20 @@ std::vector<const Frame*> Specialisation::between(const Variable* v, const Frame
 }
 
 void Specialisation::inside(const Statement& s, const Frame& frame, Frames& frames) {
+  masked |= frame.divergent;
   frames.push_back(frame);
+  if (frame.kind == Frame::Kind::alike) declare(frame.node->variables[0], frames);
   statement(s, frames);
   frames.pop_back();
 }
 
 void Specialisation::statement(const Statement& s, Frames& frames) {
+  using Kind = Statement::Kind;
   switch (s.kind) {
-    case Statement::Kind::block:
-      for (const auto& inner : s.body) statement(*inner, frames);
+    case Kind::block:
+      for (const StatementPtr& inner : s.body) statement(*inner, frames);
       return;
-    case Statement::Kind::declare:
+    case Kind::declare:
       for (std::size_t i = 0; i < s.variables.size(); ++i) {
         const Variable* v = s.variables[i];
         declare(v, frames);
@@ -163,68 +133,56 @@ void Specialisation::statement(const Statement& s, Frames& frames) {
           make_vary(v, v->place, "its first value varies");
       }
       return;
-    case Statement::Kind::branch: {
+    case Kind::branch: {
       const bool divergent = s.feature.empty() && varies(*s.expressions[0], frames);
-      masked |= divergent;
       for (std::size_t i = 0; i < s.body.size(); ++i)
-        inside(*s.body[i], {Frame::Kind::branch, &s, static_cast<int>(i), divergent, ""}, frames);
+        inside(*s.body[i], {Frame::Kind::branch, &s, divergent, i}, frames);
       return;
     }
-    case Statement::Kind::loop:
-    case Statement::Kind::do_loop:
+    case Kind::loop:
+    case Kind::do_loop:
       return loop(s, frames);
-    case Statement::Kind::each_alike: {
-      const bool divergent = varies(*s.expressions[0], frames);
-      masked |= divergent;
-      frames.push_back({Frame::Kind::alike, &s, 0, divergent, ""});
-      declare(s.variables[0], frames);
-      statement(*s.body[0], frames);
-      frames.pop_back();
+    case Kind::each_alike:
+      return inside(*s.body[0], {Frame::Kind::alike, &s, varies(*s.expressions[0], frames)}, frames);
+    case Kind::leave_loop:
+    case Kind::next_round: {
+      const auto [left, divergent] = left_loop(s, frames);
+      if (divergent) (s.is(Kind::leave_loop) ? divergent_break : divergent_continue).insert(left);
       return;
     }
-    case Statement::Kind::leave_loop:
-    case Statement::Kind::next_round:
-      return leave(s, frames);
-    case Statement::Kind::give: {
-      const bool divergent = std::ranges::any_of(frames, &Frame::divergent);
+    case Kind::give: {
+      const bool divergent = is_parted(frames);
       divergent_return |= divergent;
       masked |= divergent;
       if (s.expressions.empty()) return;
       const bool value_varies = varies(*s.expressions[0], frames);
-      result_varies |= value_varies || divergent || is_by_hand(function.result);
+      result_varies |= value_varies || divergent || function.result.is_by_hand();
       return;
     }
-    case Statement::Kind::compute:
+    case Kind::compute:
       varies(*s.expressions[0], frames);
   }
 }
 
 void Specialisation::loop(const Statement& s, Frames& frames) {
-  frames.push_back({Frame::Kind::loop, &s, 0, divergent_break.contains(&s), ""});
-  const auto ask = [&] {
-    if (s.expressions[0] && varies(*s.expressions[0], frames)) {
-      divergent_break.insert(&s);
-      frames.back().divergent = true;
-    }
-  };
-  if (s.body[0]) statement(*s.body[0], frames);
-  ask();
-  inside(*s.body[1], {Frame::Kind::round, &s, 0, divergent_continue.contains(&s), ""}, frames);
-  if (s.expressions[1]) varies(*s.expressions[1], frames);
+  frames.push_back({Frame::Kind::loop, &s, divergent_break.contains(&s)});
+  statement(*s.body[0], frames);
+  if (varies(*s.expressions[0], frames)) {
+    divergent_break.insert(&s);
+    frames.back().divergent = true;
+  }
+  inside(*s.body[1], {Frame::Kind::round, &s, divergent_continue.contains(&s)}, frames);
+  if (s.expressions.size() > 1) varies(*s.expressions[1], frames);
   masked |= divergent_break.contains(&s) || divergent_continue.contains(&s);
   frames.pop_back();
 }
 
-void Specialisation::leave(const Statement& s, const Frames& frames) {
+std::pair<const Statement*, bool> left_loop(const Statement& s, const Frames& frames) {
   bool divergent = false;
   for (auto f = frames.rbegin(); f != frames.rend(); ++f) {
     if (f->kind == Frame::Kind::alike) fail(s.place, "break or continue out of EACH_ALIKE");
-    divergent |= f->divergent && (f->kind == Frame::Kind::branch ||
-                                  (f->kind == Frame::Kind::round && s.kind == Statement::Kind::leave_loop));
-    if (f->kind != Frame::Kind::loop) continue;
-    if (divergent)
-      (s.kind == Statement::Kind::leave_loop ? divergent_break : divergent_continue).insert(f->node);
-    return;
+    if (f->kind == Frame::Kind::loop) return {f->node, divergent};
+    divergent |= f->divergent && (f->kind == Frame::Kind::branch || s.is(Statement::Kind::leave_loop));
   }
   fail(s.place, "there is no loop about it");
 }
@@ -237,6 +195,174 @@ Specialisation& Specialisations::of(const Function& f, const std::vector<bool>& 
     done_.push_back(made.get());
   }
   return *made;
+}
+
+// ---- which values vary: expressions, what is assigned, calls
+
+Specialisation::Root Specialisation::root_of(const Expression& e) const {
+  if (e.kind == Kind::variable) return {e.variable, false};
+  const bool points = e.is_unary("*") || e.is_unary("&"),
+             adds = e.kind == Kind::binary;  // a table and an index
+  if (!points && !adds && e.kind != Kind::member && e.kind != Kind::component && e.kind != Kind::index)
+    fail(e.place, "this is no place to write to, or to point to");
+  const auto [variable, through] = root_of(*e.of[0]);
+  const bool follows = e.is_unary("*") || (e.kind == Kind::index && e.of[0]->type.is_pointer());
+  return {variable, through || e.arrow || follows};
+}
+
+void Specialisation::assign(const Expression& to, bool value_varies, const Frames& frames) {
+  const auto [root, through] = root_of(to);
+  const Expression* place = &to;
+  while (place->kind == Kind::member || place->kind == Kind::component) place = place->of[0].get();
+  const bool scatters = place->kind == Kind::index && varies(*place->of[1], frames);
+  masked |= scatters;
+  const bool parted = divergent_return || is_parted(frames);
+  for (const Expression* at = &to; at->kind == Kind::member; at = at->of[0].get())
+    if (at->whole().structure->member(at->text)->uniform && (value_varies || parted))
+      fail(at->place, "'{}' is uniform, but is set a lane at a time", at->text);
+  const bool has_uniform =
+      to.type.is_structure() && std::ranges::any_of(to.type.structure->members, &Member::uniform);
+  if (has_uniform && (through || !between(root, frames).empty()))
+    fail(to.place, "a {} has uniform members, but is set a lane at a time", to.type.name);
+  if (!through) {
+    if (value_varies || scatters) make_vary(root, to.place, "what it is set to varies");
+    if (!between(root, frames).empty()) make_vary(root, to.place, "it is set where lanes part");
+    return;
+  }
+  if (root->type.is_table()) fail(to.place, "tables are only read");
+  const bool by_lanes = value_varies || scatters || parted;
+  if (root->uniform && by_lanes)
+    fail(to.place, "'{}' is uniform, but is written a lane at a time", root->name);
+  writes_uniform |= root->uniform;
+  masked |= !root->uniform;
+  if (by_lanes) make_vary(root, to.place, "what is written there varies");
+}
+
+bool Specialisation::varies(const Expression& e, const Frames& frames) {
+  cost += cost_of(e);
+  switch (e.kind) {
+    case Kind::variable:
+      return varies(e.variable);
+    case Kind::member: {
+      const Type& base = e.of[0]->type;
+      bool v = varies(*e.of[0], frames);
+      if (base.is_own_pointer()) v = pointee_varies(*e.of[0]);
+      if (e.whole().structure->member(e.text)->uniform) return false;
+      masked |= v && base.is_table();
+      return v;
+    }
+    case Kind::index: {
+      bool a = varies(*e.of[0], frames);
+      const bool b = varies(*e.of[1], frames);
+      masked |= b;
+      if (e.of[0]->type.is_own_pointer()) a = pointee_varies(*e.of[0]);
+      return a || b;
+    }
+    case Kind::unary: {
+      if (e.text == "*" && e.of[0]->type.is_own_pointer()) return pointee_varies(*e.of[0]);
+      const bool v = varies(*e.of[0], frames);
+      if (e.steps()) assign(*e.of[0], v, frames);
+      return v;
+    }
+    case Kind::assign: {
+      const bool v = varies(*e.of[1], frames);
+      assign(*e.of[0], v, frames);
+      return v;
+    }
+    case Kind::binary:
+    case Kind::choose:
+      return parts_vary(e, frames);
+    case Kind::call:
+      return call_varies(e, frames);
+    case Kind::any:
+      varies(*e.of[0], frames);
+      masked = true;
+      return false;
+    default: {
+      bool v = e.type.is_by_hand() && !e.of.empty();
+      for (const ExpressionPtr& part : e.of) v |= varies(*part, frames);
+      return v;
+    }
+  }
+}
+
+/// Whether the operands vary. Operands right of a varying &&, || or ? are inside a divergent branch.
+bool Specialisation::parts_vary(const Expression& e, const Frames& frames) {
+  const bool first = varies(*e.of[0], frames);
+  bool v = first || e.type.is_by_hand();
+  const bool parted = first && (e.kind == Kind::choose || joins(e.text));
+  Frames inner = parted ? frames : Frames{};
+  if (parted) inner.push_back({Frame::Kind::branch, nullptr, true});
+  for (std::size_t i = 1; i < e.of.size(); ++i) {
+    const bool part = varies(*e.of[i], parted ? inner : frames);
+    masked |= part && e.divides_whole();
+    v |= part;
+  }
+  return v;
+}
+
+std::vector<bool> Specialisation::arguments_of(const Expression& call, const Frames& frames) {
+  std::vector<bool> vary;
+  for (const ExpressionPtr& argument : call.of) vary.push_back(varies(*argument, frames));
+  const std::vector<const Variable*>& parameters = call.function->taken;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (is_own_pointer(parameters[i])) vary[i] = pointee_varies(*call.of[i]);
+  if (any_of(vary))  // what is written through pointers varies together with the rest
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      if (is_own_pointer(parameters[i])) vary[i] = true;
+  return vary;
+}
+
+void Specialisation::refuse_varying_uniforms(const Expression& call, const std::vector<bool>& vary) const {
+  const Function& f = *call.function;
+  for (std::size_t i = 0; i < f.taken.size(); ++i)
+    if (vary[i] && f.taken[i]->uniform && !f.taken[i]->type.is_own_pointer())
+      fail(call.of[i]->place, "{}: '{}' is uniform, but is given what varies", f.name, f.taken[i]->name);
+}
+
+bool Specialisation::hand_written_varies(const Expression& e, const std::vector<bool>& vary) {
+  const Function& f = *e.function;
+  cost += 15;
+  masked |= f.takes_mask;
+  refuse_varying_uniforms(e, vary);
+  for (std::size_t i = 0; i < f.taken.size(); ++i) {
+    if (!is_own_pointer(f.taken[i])) continue;
+    if (f.uniform && vary[i]) fail(e.of[i]->place, "{} takes what is uniform", f.name);
+    if (!f.uniform && !pointee_varies(*e.of[i]))
+      make_vary(root_of(*e.of[i]).variable, e.place, f.name + " takes it a lane each");
+  }
+  if (f.uniform && any_of(vary) && std::ranges::none_of(f.taken, &Variable::uniform) && !f.takes_mask)
+    fail(e.place, "{} takes what is uniform", f.name);
+  return !f.uniform && !f.result.is_nothing();
+}
+
+bool Specialisation::call_varies(const Expression& e, const Frames& frames) {
+  if (!e.function || !e.function->body) {
+    std::vector<bool> vary;
+    for (const ExpressionPtr& argument : e.of) vary.push_back(varies(*argument, frames));
+    return e.function ? hand_written_varies(e, vary) : any_of(vary);
+  }
+  const Function& f = *e.function;
+  const auto vary_if = [&](const auto& test, const char* what) {
+    for (std::size_t i = 0; i < f.taken.size(); ++i)
+      if (is_own_pointer(f.taken[i]) && test(i))
+        make_vary(root_of(*e.of[i]).variable, e.place, fmt::format("{} {}", f.name, what));
+  };
+  std::vector<bool> vary = arguments_of(e, frames);
+  refuse_varying_uniforms(e, vary);
+  const bool parted = is_parted(frames);
+  if (any_of(vary) || parted)
+    vary_if([&](std::size_t i) { return !f.taken[i]->type.constant; }, "writes to it");
+  vary = arguments_of(e, frames);
+  vary_if([&](std::size_t i) { return vary[i] && !pointee_varies(*e.of[i]); }, "takes it with what varies");
+  const Specialisation& called = all_.of(f, vary);
+  if (parted && called.writes_uniform)
+    fail(e.place, "{} writes what is uniform, but is called a lane at a time", f.name);
+  writes_uniform |= called.writes_uniform;
+  vary_if([&](std::size_t i) { return called.varies(f.taken[i]); }, "writes what varies to it");
+  cost += called.cost;
+  masked |= called.masked;
+  return called.result_varies;
 }
 
 }  // namespace sundog::spmd

@@ -11,25 +11,37 @@ struct Frame {
   enum class Kind { branch, loop, round, alike };
   Kind kind = Kind::branch;
   const Statement* node = nullptr;
-  int part = 0;  // of a branch: 0 then, 1 else
   bool divergent = false;
-  std::string only;  // of a branch that no lane leaves: the condition of its lanes
+  std::size_t part = 0;   // of a branch: 0 then, 1 else
+  std::string only = {};  // of a branch that no lane leaves: the condition of its lanes
+  bool is_same(const Frame& f) const { return kind == f.kind && node == f.node && part == f.part; }
 };
 using Frames = std::vector<Frame>;
+bool is_parted(const Frames& frames);
+/// The loop that a break or continue in `frames` is of, and whether only some lanes take it there.
+std::pair<const Statement*, bool> left_loop(const Statement& s, const Frames& frames);
 
 class Specialisations;
 
-class Specialisation {
+/// What the analysis finds.
+struct Findings {
+  bool result_varies = false, masked = false, divergent_return = false;
+  std::set<const Statement*> divergent_break, divergent_continue;
+  std::set<const Variable*> varying;
+  bool operator==(const Findings&) const = default;
+};
+
+class Specialisation : public Findings {
  public:
-  /// `varying`: one per parameter.
-  Specialisation(Specialisations& all, const Function& function, std::vector<bool> varying);
+  /// `given`: which parameters vary.
+  Specialisation(Specialisations& all, const Function& function, const std::vector<bool>& given);
 
   /// Iterates to a fixed point.
   void analyse();
 
   /// Whether `e` varies. Adds to `cost`; records assignments.
   bool varies(const Expression& e, const Frames& frames);
-  bool varies(const Variable* v) const { return varying_.contains(v); }
+  bool varies(const Variable* v) const { return varying.contains(v); }
   /// The variable that an lvalue is part of, and whether it is reached through a pointer.
   struct Root {
     const Variable* variable;
@@ -38,45 +50,37 @@ class Specialisation {
   Root root_of(const Expression& e) const;
   /// The divergent control flow between a variable's declaration and `frames`. Excludes loops whose leaving
   /// lanes never read the variable again.
-  std::vector<const Frame*> between(const Variable* v, const Frames& frames) const;
+  std::vector<const Frame*> between(const Variable* v, const Frames& frames);
   void declare(const Variable* v, const Frames& frames);
   /// Which arguments vary in a call.
   std::vector<bool> arguments_of(const Expression& call, const Frames& frames);
 
   const Function& function;
-  std::string name;         // of the generated function
-  std::vector<bool> given;  // which parameters vary
-  bool result_varies = false, masked = false, writes_uniform = false;
+  std::string name;  // of the generated function
+  bool writes_uniform = false;
   double cost = 0;
-  bool divergent_return = false;
-  std::set<const Statement*> divergent_break, divergent_continue;
   const Variable* only_result = nullptr;  // every return returns it
   std::map<const Variable*, std::string> why;
 
  private:
-  struct Uses {  // positions in reading order
-    std::map<const Variable*, int> last;
-    std::map<const Statement*, int> end;
-  };
   void statement(const Statement& s, Frames& frames);
   void inside(const Statement& s, const Frame& frame, Frames& frames);
   void loop(const Statement& s, Frames& frames);
-  void leave(const Statement& s, const Frames& frames);
   void assign(const Expression& to, bool value_varies, const Frames& frames);
   void make_vary(const Variable* v, const Place& place, const std::string& what);
   bool parts_vary(const Expression& e, const Frames& frames);
   bool call_varies(const Expression& e, const Frames& frames);
-  bool hand_written_varies(const Expression& e, const std::vector<bool>& vary, const Frames& frames);
-  bool pointee_varies(const Expression& e) const;
+  bool hand_written_varies(const Expression& e, const std::vector<bool>& vary);
+  void refuse_varying_uniforms(const Expression& call, const std::vector<bool>& vary) const;
+  bool pointee_varies(const Expression& e) const { return varies(root_of(e).variable); }
   bool is_dead_after(const Variable* v, const Statement* loop, const Frames& frames, std::size_t from) const;
   void number(const Statement& s, int& at);
-  void number(const Expression& e, int& at);
   void find_only_result();
 
   Specialisations& all_;
-  std::set<const Variable*> varying_;
-  std::map<const Variable*, std::vector<std::pair<const Statement*, int>>> declared_in_;
-  Uses uses_;
+  std::map<const Variable*, Frames> declared_in_;
+  std::map<const Variable*, int> last_use_;  // positions in reading order
+  std::map<const Statement*, int> loop_end_;
 };
 
 /// A program's specialisations, created on demand.
@@ -91,7 +95,7 @@ class Specialisations {
   std::vector<Specialisation*> done_;
 };
 
-/// The cost of an expression that is not a call of the program.
+/// The cost of an expression without its parts, and of a call that is not of the program.
 double cost_of(const Expression& e);
 
 }  // namespace sundog::spmd

@@ -1,20 +1,44 @@
 // See tree.h.
 #include "lanes/tree.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 namespace sundog::spmd {
 
 std::string VectorForm::function(const std::string& operation) const {
   return prefix.empty() ? fmt::format("{}{}", operation, parts) : prefix + "_" + operation;
 }
 
+Type pointer_to(const Type& type) {
+  return {.kind = Type::Kind::pointer,
+          .of = std::make_shared<const Type>(type),
+          .constant = type.constant,
+          .global = type.global};
+}
+
+bool Type::fits(const Type& wanted) const {
+  if (wanted.is_pointer() && (is_array() || is_pointer()))
+    return of->fits(*wanted.of) && (is_array() || global == wanted.global);
+  return kind == wanted.kind && form == wanted.form && structure == wanted.structure;
+}
+
+bool Type::is_by_hand() const {
+  if (is_array()) return of->is_by_hand();
+  return is_vector() ? !form->prefix.empty() : is_structure() && structure->by_hand;
+}
+
+bool Type::joins() const { return is_structure() && !structure->join.empty(); }
+
+std::string name_of(const Type& type) {
+  if (type.is_pointer()) return "a pointer to " + name_of(*type.of);
+  if (type.is_array()) return "an array of " + name_of(*type.of);
+  return type.is_nothing() ? "nothing" : type.name;
+}
+
 const Member* Structure::member(const std::string& wanted) const {
   const auto found = std::ranges::find(members, wanted, &Member::name);
   return found == members.end() ? nullptr : &*found;
 }
+
+bool is_own_pointer(const Variable* v) { return v->type.is_own_pointer() && !v->uniform; }
 
 namespace {
 
@@ -23,25 +47,14 @@ int up_to(int at, int alignment) { return (at + alignment - 1) / alignment * ali
 }  // namespace
 
 int size_of(const Type& type) {
-  switch (type.kind) {
-    case Type::Kind::vector:
-      return 4 * (type.form->parts == 3 ? 4 : type.form->parts);
-    case Type::Kind::array:
-      return type.length * size_of(*type.of);
-    case Type::Kind::structure: {
-      int at = 0;
-      for (const Member& member : type.structure->members)
-        at = up_to(at, alignment_of(member.type)) + size_of(member.type);
-      return up_to(at, alignment_of(type));
-    }
-    default:
-      return 4;
-  }
+  if (type.is_vector()) return 4 * (type.form->parts == 3 ? 4 : type.form->parts);
+  if (type.is_array()) return type.length * size_of(*type.of);
+  return type.is_structure() ? up_to(offset_of(*type.structure, "the end"), alignment_of(type)) : 4;
 }
 
 int alignment_of(const Type& type) {
-  if (type.is(Type::Kind::array)) return alignment_of(*type.of);
-  if (!type.is(Type::Kind::structure)) return size_of(type);
+  if (type.is_array()) return alignment_of(*type.of);
+  if (!type.is_structure()) return size_of(type);
   int most = 4;
   for (const Member& member : type.structure->members) most = std::max(most, alignment_of(member.type));
   return most;
@@ -57,38 +70,44 @@ int offset_of(const Structure& structure, const std::string& name) {
   return at;
 }
 
-bool is_own_pointer(const Variable* v) { return v->type.is_own_pointer() && !v->uniform; }
-
-bool is_by_hand(const Type& type) {
-  if (type.is(Type::Kind::array)) return is_by_hand(*type.of);
-  if (type.is(Type::Kind::vector)) return !type.form->prefix.empty();
-  return type.is(Type::Kind::structure) && type.structure->by_hand;
+bool compares(std::string_view sign) {
+  return sign == "<" || sign == ">" || sign == "<=" || sign == ">=" || sign == "==" || sign == "!=";
 }
+bool joins(std::string_view sign) { return sign == "&&" || sign == "||"; }
 
-std::vector<const Variable*> taken(const Function& f) {
-  std::vector<const Variable*> all;
-  for (const Variable* p : f.parameters)
-    if (!p->here) all.push_back(p);
+namespace {
+
+std::map<std::string, BuiltIn> built_ins() {
+  using enum Type::Kind;
+  std::map<std::string, BuiltIn> all{{"as_int", {1, nothing, integer, "AS_MASK"}},
+                                     {"as_uint", {1, nothing, natural, "AS_UINTS"}},
+                                     {"as_float", {1, nothing, real, "AS_REAL"}},
+                                     {"convert_float", {1, nothing, real, "TO_REAL"}},
+                                     {"convert_int_rtz", {1, real, integer, "TO_MASK"}},
+                                     {"convert_uint_rtz", {1, real, natural, "REAL_TO_UINTS"}},
+                                     {"min", {2, integer, integer}},
+                                     {"max", {2, integer, integer}}};
+  for (const char* name : {"fma", "mad", "mix", "clamp"}) all[name] = {3, real, real};
+  for (const char* name : {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "step"})
+    all[name] = {2, real, real};
+  for (const char* name : {"sqrt", "rsqrt", "fabs",  "floor", "ceil", "trunc", "round", "rint", "sin",
+                           "cos",  "tan",   "asin",  "acos",  "atan", "exp",   "exp2",  "log",  "log2",
+                           "cbrt", "sign",  "sinpi", "cospi", "cosh", "sinh",  "tanh"})
+    all[name] = {1, real, real};
+  for (const char* name : {"sin", "cos", "sinpi", "cospi", "asin", "acos", "atan2", "fmod"})
+    all[name].cost = 30;
+  for (const char* name : {"pow", "cbrt", "tan"}) all[name].cost = 40;
+  for (const char* name : {"exp", "log"}) all[name].cost = 20;
+  all["sqrt"].cost = 6;
   return all;
 }
 
-bool compares(const std::string& sign) {
-  return sign == "<" || sign == ">" || sign == "<=" || sign == ">=" || sign == "==" || sign == "!=";
-}
-bool joins(const std::string& sign) { return sign == "&&" || sign == "||"; }
+}  // namespace
 
-ExpressionPtr copy_of(const Expression& e) {
-  auto copy = std::make_unique<Expression>();
-  static_cast<Node&>(*copy) = e;
-  for (const ExpressionPtr& part : e.of) copy->of.push_back(copy_of(*part));
-  return copy;
-}
-
-std::string name_of(const Type& type) {
-  if (type.is(Type::Kind::pointer)) return "a pointer to " + name_of(*type.of);
-  if (type.is(Type::Kind::array)) return fmt::format("an array of {}", name_of(*type.of));
-  if (type.is(Type::Kind::nothing)) return "nothing";
-  return type.name;
+const BuiltIn* built_in_of(const std::string& name) {
+  static const std::map<std::string, BuiltIn> all = built_ins();
+  const auto found = all.find(name);
+  return found == all.end() ? nullptr : &found->second;
 }
 
 }  // namespace sundog::spmd

@@ -1,11 +1,10 @@
 // The typed syntax tree of a plain kernel.
 #pragma once
-#include <deque>
+#include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
 
-#include "lanes/token.h"
+#include "lanes/preprocess.h"
 
 namespace sundog::spmd {
 
@@ -20,26 +19,40 @@ struct VectorForm {
   std::string function(const std::string& operation) const;
 };
 
-enum class Space { own, global, constant, local };
-
 struct Type {
-  enum class Kind { nothing, boolean, integer, natural, real, other, vector, structure, pointer, array };
+  enum class Kind { nothing, boolean, integer, natural, real, vector, structure, pointer, array };
   Kind kind = Kind::nothing;
-  std::string name;                  // in the device's compiler, for one path
+  std::string name = {};             // in the device's compiler, for one path
   const VectorForm* form = nullptr;  // of a vector
   Kind part = Kind::real;            // of a vector
   const Structure* structure = nullptr;
-  std::shared_ptr<const Type> of;  // of a pointer or array
-  int length = 0;                  // of an array
-  Space space = Space::own;        // address space of a pointer's target
-  bool constant = false;
+  std::shared_ptr<const Type> of = {};    // of a pointer or array
+  int length = 0;                         // of an array
+  bool constant = false, global = false;  // global: of the device's memory, or a pointer to it
 
-  bool is_number() const { return kind >= Kind::boolean && kind <= Kind::other; }
-  bool is_whole() const { return kind == Kind::integer || kind == Kind::natural; }
   bool is(Kind k) const { return kind == k; }
-  bool is_table() const { return kind == Kind::pointer && space != Space::own; }
-  bool is_own_pointer() const { return kind == Kind::pointer && space == Space::own; }
+  bool is_nothing() const { return is(Kind::nothing); }
+  bool is_truth() const { return is(Kind::boolean); }
+  bool is_whole() const { return is(Kind::integer) || is(Kind::natural); }
+  bool is_natural() const { return is(Kind::natural); }
+  bool is_real() const { return is(Kind::real); }
+  bool is_number() const { return is_truth() || is_whole() || is_real(); }
+  bool is_vector() const { return is(Kind::vector); }
+  bool is_structure() const { return is(Kind::structure); }
+  bool is_array() const { return is(Kind::array); }
+  bool is_pointer() const { return is(Kind::pointer); }
+  bool is_table() const { return is_pointer() && global; }
+  bool is_own_pointer() const { return is_pointer() && !global; }
+  /// Whether a value of it may stand, as it is, where one of `wanted` does.
+  bool fits(const Type& wanted) const;
+  /// Whether its lane form is hand-written; for structures, `joins` the lanes of two.
+  bool is_by_hand() const;
+  bool joins() const;
 };
+
+Type pointer_to(const Type& type);
+/// "a float3", "a pointer"; for messages.
+std::string name_of(const Type& type);
 
 struct Member {
   std::string name;
@@ -66,8 +79,10 @@ struct Variable {
 };
 
 struct Function;
+struct Expression;
+using ExpressionPtr = std::shared_ptr<Expression>;
 
-struct Node {
+struct Expression {
   enum class Kind {
     number,     // text
     constant,   // text: a name known to the device's compiler
@@ -87,22 +102,41 @@ struct Node {
   };
   Kind kind = Kind::number;
   Type type;
-  std::string text, digits;  // digits: of a number whose text is a constant's name
+  Place place;
+  std::string text;
+  std::vector<ExpressionPtr> of;
+  std::string digits = {};  // of a number whose text is a constant's name
   bool arrow = false, postfix = false, implicit = false;
   const Variable* variable = nullptr;
   const Function* function = nullptr;
-  Place place;
-};
-struct Expression : Node {
-  std::vector<std::unique_ptr<Expression>> of;
-};
-using ExpressionPtr = std::unique_ptr<Expression>;
 
-ExpressionPtr copy_of(const Expression& e);
+  bool is_binary(std::string_view sign) const { return kind == Kind::binary && text == sign; }
+  bool is_unary(std::string_view sign) const { return kind == Kind::unary && text == sign; }
+  bool steps() const { return is_unary("++") || is_unary("--"); }
+  /// Whole numbers, which trap if the divisor is zero.
+  bool divides_whole() const { return (is_binary("/") || is_binary("%")) && type.is_whole(); }
+  /// The structure or vector that a member or component is of.
+  const Type& whole() const { return of[0]->type.is_pointer() ? *of[0]->type.of : of[0]->type; }
+};
+
+/// Whether `test` holds for e or something within.
+template <class Test>
+bool any_within(const Expression& e, const Test& test) {
+  return test(e) || std::ranges::any_of(e.of, [&](const auto& part) { return any_within(*part, test); });
+}
 
 /// Kinds of operators.
-bool compares(const std::string& sign);
-bool joins(const std::string& sign);  // && and ||
+bool compares(std::string_view sign);
+bool joins(std::string_view sign);  // && and ||
+
+/// OpenCL's functions of single numbers.
+struct BuiltIn {
+  std::size_t arguments = 1;
+  Type::Kind takes{}, gives{};  // `nothing`: takes any number
+  std::string lanes = {};       // its name for lanes, if that is another one
+  double cost = 1;
+};
+const BuiltIn* built_in_of(const std::string& name);
 
 struct Statement;
 using StatementPtr = std::unique_ptr<Statement>;
@@ -112,28 +146,31 @@ struct Statement {
     block,       // body...
     declare,     // variables with initialisers, which may be null
     branch,      // if (expressions[0]) body[0] else body[1]; feature: by the preprocessor
-    loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; each may be null
-    do_loop,     // do body[1] while (expressions[0])
+    loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; there may be no expressions[1]
+    do_loop,     // do body[1] while (expressions[0]); body[0] is empty
     each_alike,  // variables[0] takes each distinct value of expressions[0]: body[0]
     leave_loop,  // break
     next_round,  // continue
-    give,        // return expressions[0], which may be null
+    give,        // return expressions[0], if there is one
     compute,     // expressions[0]
   };
   Kind kind = Kind::block;
+  Place place;
   std::vector<const Variable*> variables;
   std::vector<ExpressionPtr> expressions;
   std::vector<StatementPtr> body;
   std::string feature;
-  Place place;
+
+  bool is(Kind k) const { return kind == k; }
+  bool is_loop() const { return is(Kind::loop) || is(Kind::do_loop); }
 };
 
 struct Function {
   std::string name, lanes;  // `lanes`: name of the hand-written one
   Type result;
-  std::vector<const Variable*> parameters;
-  std::string feature;  // the feature that it needs; empty: none
-  StatementPtr body;    // none: hand-written
+  std::vector<const Variable*> parameters, taken;  // taken: those that a call passes
+  std::string feature;                             // the feature that it needs; empty: none
+  StatementPtr body;                               // none: hand-written
   bool is_inline = false, is_entry = false, takes_mask = false, uniform = false;  // uniform: its result
   Place place;
 };
@@ -148,17 +185,10 @@ struct Program {
 
 /// A parameter used as a pointer to a lane's own value.
 bool is_own_pointer(const Variable* v);
-/// Whether its lane form is hand-written.
-bool is_by_hand(const Type& type);
-/// The parameters that a call passes.
-std::vector<const Variable*> taken(const Function& f);
 
 /// Size and alignment of a value in a table, in bytes, by OpenCL's rules.
 int size_of(const Type& type);
 int alignment_of(const Type& type);
 int offset_of(const Structure& structure, const std::string& name);
-
-/// "a float3", "a pointer"; for messages.
-std::string name_of(const Type& type);
 
 }  // namespace sundog::spmd

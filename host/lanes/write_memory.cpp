@@ -1,147 +1,208 @@
-// Tables read at places that vary, and calls.
-#include <fmt/format.h>
-
+// Tables and arrays at places that vary, structures, and calls.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
 
+namespace {
+
 using Kind = Expression::Kind;
+
+/// A member, or each element of one that is an array.
+struct Part {
+  explicit Part(const Member& m) : member(m), type(m.type), name(m.name) {
+    if (!m.type.is_array()) return;
+    type = *m.type.of;
+    name += "[i]";
+    each = fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length);
+  }
+  const Member& member;
+  Type type;
+  std::string name, each;
+};
+
+}  // namespace
 
 /// Whether e is read from a table at a place that varies.
 bool Writer::is_gathered(const Expression& e) {
-  switch (e.kind) {
-    case Kind::member:
-      return e.arrow ? e.of[0]->type.is_table() && varies(*e.of[0]) : is_gathered(*e.of[0]);
-    case Kind::component:
-      return is_gathered(*e.of[0]);
-    case Kind::index:
-      if (e.of[0]->type.is_table()) return varies(*e.of[1]) || varies(*e.of[0]);
-      return is_gathered(*e.of[0]);
-    default:
-      return false;
-  }
+  if (e.kind != Kind::member && e.kind != Kind::component && e.kind != Kind::index) return false;
+  if (e.of[0]->type.is_table()) return varies(*e.of[0]) || (e.kind == Kind::index && varies(*e.of[1]));
+  return !e.arrow && is_gathered(*e.of[0]);
 }
 
 std::string Writer::index_of(const Expression& e) {
   const std::string text = lanes(e);
-  return e.type.is(Type::Kind::natural) ? fmt::format("AS_MASK({})", text) : text;
+  return e.type.is_natural() ? fmt::format("AS_MASK({})", text) : text;
 }
 
-/// table[index].member.x: words at a place of each lane. `extra`: words behind it; `whole`: all parts.
-std::string Writer::gather(const Expression& e, int extra, bool whole) {
-  if (e.type.is(Type::Kind::vector) && whole) {
-    std::string all;
-    for (int i = 0; i < e.type.form->parts; ++i) all += (i ? ", " : "") + gather(e, i, false);
-    return fmt::format("real{}({})", e.type.form->parts, all);
-  }
-  const Type::Kind part = e.type.is(Type::Kind::vector) ? e.type.part : e.type.kind;
-  if (e.type.is(Type::Kind::vector) && !e.type.form->prefix.empty())
-    fail(e.place, fmt::format("a {} is in no table", e.type.name));
-  int offset = 4 * extra, stride = 0;
+/// table[index].member.x: words at a place of each lane; the given part of a vector.
+std::string Writer::gather(const Expression& e, std::size_t part) {
+  int offset = 0, stride = 0;
   std::string table, index;
-  for (const Expression* at = &e; stride == 0;) {
+  for (const Expression* at = &e; stride == 0; at = at->of[0].get()) {
     const Expression& base = *at->of[0];
-    if (at->kind == Kind::component) {
-      offset += 4 * static_cast<int>(std::string("xyzw").find(at->text));
-    } else if (at->kind == Kind::member) {
-      const Type& whole_type = at->arrow ? *base.type.of : base.type;
-      offset += offset_of(*whole_type.structure, at->text);
-      if (at->arrow) {
-        std::tie(table, index) = table_and_index(base);
-        stride = size_of(whole_type);
-      }
-    } else if (at->kind == Kind::index && base.type.is_table()) {
+    if (at->kind == Kind::component) part = std::string_view("xyzw").find(at->text[part]);
+    if (at->kind == Kind::member) offset += offset_of(*at->whole().structure, at->text);
+    if (base.type.is_table()) {
       std::tie(table, index) = table_and_index(base);
+      stride = size_of(*base.type.of);
+    }
+    if (at->kind != Kind::index) continue;
+    if (stride > 0) {
       const std::string more = index_of(*at->of[1]);
       index = index.empty() ? more : fmt::format("({} + {})", index, more);
-      stride = size_of(*base.type.of);
-    } else if (at->kind == Kind::index && at->of[1]->kind == Kind::number) {
+    } else if (at->of[1]->kind == Kind::number) {
       offset += std::stoi(at->of[1]->digits, nullptr, 0) * size_of(at->type);
     } else {
       fail(at->place, "a table is read at a place that varies by an index of the table alone");
     }
-    at = &base;
   }
+  offset += 4 * static_cast<int>(part);
   std::string words = stride == 4 ? index : fmt::format("{} * {}", index, stride / 4);
   if (offset != 0) words = fmt::format("{} + {}", words, offset / 4);
-  const std::string mask = s_.masked ? mask_ : "ALL_LANES";
-  switch (part) {
-    case Type::Kind::real:
-      return fmt::format("gather_floats((__global const float*)({}), {}, {})", table, words, mask);
-    case Type::Kind::integer:
-      return fmt::format("gather_words((__global const u32*)({}), {}, {})", table, words, mask);
-    case Type::Kind::natural:
-      return fmt::format("AS_UINTS(gather_words((__global const u32*)({}), {}, {}))", table, words, mask);
-    default:
-      fail(e.place, fmt::format("{} cannot be read at a place that varies", name_of(e.type)));
-  }
+  const Type::Kind kind = e.type.is_vector() ? e.type.part : e.type.kind;
+  if (kind < Type::Kind::integer || kind > Type::Kind::real || e.type.is_by_hand())
+    fail(e.place, "{} cannot be read at a place that varies", name_of(e.type));
+  if (kind == Type::Kind::real)
+    return fmt::format("gather_floats((__global const float*)({}), {}, {})", table, words, mask_);
+  const std::string all = fmt::format("gather_words((__global const u32*)({}), {}, {})", table, words, mask_);
+  return kind == Type::Kind::natural ? fmt::format("AS_UINTS({})", all) : all;
 }
 
 /// A pointer to a table: what is alike in all lanes, and an index of each lane, which may be empty.
 std::pair<std::string, std::string> Writer::table_and_index(const Expression& e) {
   if (!varies(e)) return {plain(e), ""};
-  if (e.kind == Kind::variable)
-    if (const auto kept = tables_.find(e.variable); kept != tables_.end()) return {kept->second, e.text};
-  if (e.kind == Kind::binary && e.text == "+" && !varies(*e.of[0]))
-    return {plain(*e.of[0]), index_of(*e.of[1])};
-  if (e.kind == Kind::unary && e.text == "&" && e.of[0]->kind == Kind::index && !varies(*e.of[0]->of[0]))
-    return {plain(*e.of[0]->of[0]), index_of(*e.of[0]->of[1])};
-  fail(e.place, "a pointer that varies is a table and an index");
+  if (const auto kept = tables_.find(e.variable); kept != tables_.end()) return {kept->second, e.text};
+  const Expression& of = e.is_unary("&") && e.of[0]->kind == Kind::index ? *e.of[0] : e;
+  if ((!of.is_binary("+") && of.kind != Kind::index) || varies(*of.of[0]))
+    fail(e.place, "a pointer that varies is a table and an index");
+  return {plain(*of.of[0]), index_of(*of.of[1])};
+}
+
+/// The type of an array's elements, as lanes.h names it, and the place of one in each lane.
+std::pair<std::string, std::string> Writer::place_in_lane(const Expression& e, const std::string& lane) {
+  if (!e.type.is_real() && !e.type.is(Type::Kind::integer))
+    fail(e.place, "an element that varies of an array of {}", name_of(e.type));
+  const std::string index = simple(*e.of[1]);
+  return {e.type.is_real() ? "REAL" : "MASK",
+          fmt::format("{}[MASK_LANE({}, {})]", place_of(*e.of[0]), index, lane)};
+}
+
+/// An element of an array of lanes, or of one, at a place that may differ from lane to lane.
+std::string Writer::element(const Expression& e) {
+  if (!varies(*e.of[1])) return fmt::format("{}[{}]", place_of(*e.of[0]), plain(*e.of[1]));
+  const std::string name = fresh("element"), lane = fresh("lane");
+  const auto [type, place] = place_in_lane(e, lane);
+  line("{0} {1} = ({0})(0);", type, name);
+  const std::string found = varies(*e.of[0]) ? fmt::format("{}_LANE({}, {})", type, place, lane) : place;
+  line("EACH_LANE({0}, {1}) {2}_LANE({3}, {0}) = {4};", lane, mask_, type, name, found);
+  return name;
+}
+
+/// `to = value`, where the place in an array differs from lane to lane.
+std::string Writer::scatter(const Expression& to, const std::string& value) {
+  const std::string name = fresh("value"), lane = fresh("lane");
+  const auto [type, place] = place_in_lane(to, lane);
+  line("const {} {} = {};", type, name, value);
+  line("EACH_LANE({0}, {1}) {2}_LANE({3}, {0}) = {2}_LANE({4}, {0});", lane, mask_, type, place, name);
+  return "";
 }
 
 std::string Writer::call(const Expression& e) {
-  if (!e.function) return built_in(e);
+  if (!e.function) {
+    const bool v = varies(e);
+    const BuiltIn& f = *built_in_of(e.text);
+    const std::string all =
+        joined(e.of, [&](const auto& given) { return v ? lanes(*given) : plain(*given); });
+    return fmt::format("{}({})", v && !f.lanes.empty() ? f.lanes : e.text, all);
+  }
   if (!e.function->body) return hand_written(e);
   const std::vector<bool> vary = s_.arguments_of(e, frames_);
   const Specialisation& called = all_.of(*e.function, vary);
-  std::string all;
-  for (std::size_t i = 0; i < e.of.size(); ++i) {
-    const Expression& given = *e.of[i];
-    const std::string text = given.type.is_own_pointer() || given.type.is(Type::Kind::array) ? pointed(given)
-                             : vary[i] || called.varies(e.function->parameters[i])           ? lanes(given)
-                                                                                             : plain(given);
-    all += (all.empty() ? "" : ", ") + text;
-  }
+  std::size_t i = 0;
+  std::string all = joined(e.of, [&](const ExpressionPtr& given) {
+    const bool v = vary[i] || called.varies(e.function->taken[i]);
+    ++i;
+    if (given->type.is_own_pointer() || given->type.is_array()) return pointed(*given);
+    return v ? lanes(*given) : plain(*given);
+  });
   if (called.masked) all += (all.empty() ? "" : ", ") + mask_;
   return fmt::format("{}({})", called.name, all);
 }
 
-std::string Writer::built_in(const Expression& e) {
-  static const std::map<std::string, std::string> names{
-      {"as_int", "AS_MASK"},        {"as_float", "AS_REAL"},        {"as_uint", "AS_UINTS"},
-      {"convert_float", "TO_REAL"}, {"convert_int_rtz", "TO_MASK"}, {"convert_uint_rtz", "REAL_TO_UINTS"}};
-  std::string all;
-  const bool v = varies(e);
-  for (const ExpressionPtr& given : e.of)
-    all += (all.empty() ? "" : ", ") + (v ? lanes(*given) : plain(*given));
-  const auto found = names.find(e.text);
-  return fmt::format("{}({})", v && found != names.end() ? found->second : e.text, all);
-}
-
 std::string Writer::hand_written(const Expression& e) {
   const Function& f = *e.function;
-  std::string all;
   std::size_t i = 0;
-  for (const Variable* parameter : f.parameters) {
-    if (!all.empty()) all += ", ";
-    all += parameter->here ? mask_ : argument(*e.of[i++], *parameter, f.takes_mask);
-  }
+  const std::string all = joined(f.parameters, [&](const Variable* parameter) {
+    if (parameter->here) return mask_;
+    const Expression& given = *e.of[i++];
+    if (given.type.is_own_pointer() || given.type.is_array()) return pointed(given);
+    if (parameter->uniform || given.type.is_pointer()) return plain(given);
+    // Masks of what is written by hand are among the lanes that are there.
+    const bool narrows = parameter->type.is_truth() && f.takes_mask;
+    return narrows ? fmt::format("{} & {}", mask_, lanes(given)) : lanes(given);
+  });
   return fmt::format("{}({})", f.lanes, all);
-}
-
-std::string Writer::argument(const Expression& e, const Variable& parameter, bool takes_mask) {
-  if (e.type.is_own_pointer() || e.type.is(Type::Kind::array)) return pointed(e);
-  if (parameter.uniform || e.type.is(Type::Kind::pointer)) return plain(e);
-  const std::string text = lanes(e);
-  // Masks of what is written by hand are among the lanes that are there.
-  return parameter.type.is(Type::Kind::boolean) && takes_mask ? fmt::format("{} & {}", mask_, text) : text;
 }
 
 std::string Writer::pointed(const Expression& e) {
   for (const Expression* at = &e; !at->of.empty(); at = at->of[0].get())
     if (at->kind == Kind::index && varies(*at->of[1])) fail(at->place, "a pointer to an element that varies");
-  if (e.kind == Kind::unary && e.text == "&") return "&" + place_of(*e.of[0]);
+  if (e.is_unary("&")) return "&" + place_of(*e.of[0]);
   return place_of(e);
+}
+
+// ---- structures: as they are, and in lanes with what takes lanes of two
+
+/// Lines of `head`, a line for each member where its feature is there, and `end`.
+template <class Text>
+void Writer::structure_lines(const Structure& s, const std::string& head, const Text& text,
+                             const std::string& end) {
+  place_ = s.place;
+  depth_ = 0;
+  line(head);
+  for (const Member& m : s.members) {
+    if (!m.feature.empty()) line("#if " + m.feature);
+    line("  " + text(Part(m)));
+    if (!m.feature.empty()) line("#endif");
+  }
+  line(end);
+}
+
+std::vector<Line> Writer::structure(const Structure& s, bool in_lanes) {
+  out_.clear();
+  const std::string name = in_lanes ? s.lanes : s.name;
+  const auto declared = [&](const Part& m) {
+    const std::string type = type_text(m.type, in_lanes && !m.member.uniform);
+    const int length = m.member.type.length;
+    return fmt::format("{} {}{};", type, m.member.name, length > 0 ? fmt::format("[{}]", length) : "");
+  };
+  structure_lines(s, fmt::format("typedef struct {} {{", name), declared, fmt::format("}} {};", name));
+  if (!in_lanes) return std::move(out_);
+  const auto joined = [&](const Part& m) {
+    const std::string a = "a." + m.name, b = "b." + m.name;
+    if (m.type.joins())
+      return fmt::format("{0}r.{1} = {2}; {0}{3}(&r.{1}, &{4}, m);", m.each, m.name, a,
+                         m.type.structure->join, b);
+    return fmt::format("{}r.{} = {};", m.each, m.name,
+                       m.member.uniform ? b : selected(m.type, a, b, "m", s.place));
+  };
+  line("static inline {0} select_{1}({0} a, {0} b, MASK m) {{", name, s.name);
+  structure_lines(s, fmt::format("  {} r;", name), joined, "  return r;");
+  line("}");
+  return std::move(out_);
+}
+
+/// One path's, the same in all lanes.
+std::vector<Line> Writer::spread_structure(const Structure& s) {
+  out_.clear();
+  const auto spread_part = [&](const Part& m) {
+    const std::string from = "a." + m.name;
+    return fmt::format("{}r.{} = {};", m.each, m.name, m.member.uniform ? from : spread(from, m.type));
+  };
+  line("static inline {} all_{}({} a) {{", s.lanes, s.name, s.name);
+  structure_lines(s, fmt::format("  {} r;", s.lanes), spread_part, "  return r;");
+  line("}");
+  return std::move(out_);
 }
 
 }  // namespace sundog::spmd

@@ -3,8 +3,6 @@
 //   m_, m_2, ...   active lanes of the function, of a branch
 //   in_3, go_4     lanes still in a loop; in its current round
 #pragma once
-#include <functional>
-
 #include "lanes/specialisation.h"
 
 namespace sundog::spmd {
@@ -24,12 +22,9 @@ class Writer {
   using Structures = std::set<std::pair<const Structure*, bool>>;
   const Structures& structures() const { return structures_; }
 
-  /// The text of a structure and its helpers for lanes.
-  std::vector<std::string> structure(const Structure& s, bool in_lanes);
-  std::vector<std::string> spread_structure(const Structure& s);
-  std::string type_text(const Type& type, bool varying);
-  std::string selected(const Type& type, const std::string& a, const std::string& b, const std::string& mask,
-                       const Place& place);
+  /// The text of a structure, and its functions for lanes.
+  std::vector<Line> structure(const Structure& s, bool in_lanes);
+  std::vector<Line> spread_structure(const Structure& s);
 
  private:
   struct Loop {
@@ -38,9 +33,27 @@ class Writer {
   };
   using Write = std::function<std::string()>;
 
-  void line(std::string text);
-  std::string fresh(const char* stem);
+  void line(std::string text) { out_.push_back({depth_, std::move(text), place_}); }
+  template <class First, class... Others>
+  void line(fmt::format_string<const First&, const Others&...> text, const First& first,
+            const Others&... others) {
+    line(fmt::format(text, first, others...));
+  }
+  void directive(std::string text) { out_.push_back({0, std::move(text), {}}); }
+  template <class Body>
+  void in_braces(const Body& body) {
+    line("{");
+    ++depth_;
+    body();
+    --depth_;
+    line("}");
+  }
+  std::string fresh(const char* stem) { return fmt::format("{}_{}", stem, ++count_); }
   bool varies(const Expression& e);
+  std::string type_text(const Type& type, bool varying);
+
+  template <class Text>
+  void structure_lines(const Structure& s, const std::string& head, const Text& text, const std::string& end);
 
   // Expressions (write_expressions.cpp).
   std::string value(const Expression& e);  // unchanged: for one lane or all
@@ -51,57 +64,53 @@ class Writer {
   std::string varying_unary(const Expression& e);
   std::string varying_binary(const Expression& e);
   std::string varying_vector_binary(const Expression& e);
-  std::string varying_choice(const Expression& e);
-  std::string varying_element(const Expression& e);
-  std::string parts_of(const Expression& e);
-  std::string mask_of(const Expression& e);  // a condition
+  std::string parts_of(const Expression& e, std::string_view wanted = "");
   std::string place_of(const Expression& e);
-  std::string spread(const std::string& text, const Expression& e);
+  std::string spread(const std::string& text, const Type& type);
   std::string simple(const Expression& e);  // may be repeated
+
+  // Conditions (write_conditions.cpp).
+  std::string mask_of(const Expression& e);
+  std::string joined_masks(const Expression& e);
+  std::string varying_choice(const Expression& e);
+  std::string selected(const Type& type, const std::string& a, const std::string& b, const std::string& mask,
+                       const Place& place);
   std::string under(const std::string& mask, const Write& write);
   bool is_guarded(const Expression& e);
-  bool writes(const Expression& e) const;
 
   // Memory and calls (write_memory.cpp).
   bool is_gathered(const Expression& e);
   std::string index_of(const Expression& e);
-  std::string gather(const Expression& e, int extra = 0, bool whole = true);
+  std::string gather(const Expression& e, std::size_t part = 0);
   std::pair<std::string, std::string> table_and_index(const Expression& e);
+  std::pair<std::string, std::string> place_in_lane(const Expression& e, const std::string& lane);
+  std::string element(const Expression& e);
+  std::string scatter(const Expression& to, const std::string& value);
   std::string call(const Expression& e);
-  std::string built_in(const Expression& e);
   std::string hand_written(const Expression& e);
-  std::string argument(const Expression& e, const Variable& parameter, bool takes_mask);
   std::string pointed(const Expression& e);
 
   // Statements (write_statements.cpp).
   void statement(const Statement& s);
-  void block(const std::vector<const Statement*>& all, bool in_loop);
-  void declaration(const Statement& s);
+  void block(const std::vector<StatementPtr>& all, bool in_loop);
   void declaration(const Variable& v, const Expression* first);
   std::string nothing(const Type& type);
   std::string computed(const Expression& e);
-  std::string assigned(const Expression& e);
-  std::string stepped(const Expression& e);
   std::string store(const Expression& to, const std::string& value);
-  std::string scatter(const Expression& to, const std::string& value);
   void branch(const Statement& s);
-  void feature_branch(const Statement& s);
-  void inside(Frame frame, const std::string& mask, const Statement& s);
+  void inside(const Frame& frame, std::string mask, const Statement& s);
   void drop_unused(std::size_t line_at, const std::string& name);
-  void leave(const Statement& s);
-  void give(const Statement& s);
-  void each_alike(const Statement& s);
-  bool is_long(const std::vector<const Statement*>& all, std::size_t from);
+  bool is_long(const std::vector<StatementPtr>& all, std::size_t from);
   bool comes_again() const;
-  const Loop* divergent_loop() const;
-  std::string alive() const;
+  std::string alive() const { return loops_.empty() ? "m_" : loops_.back().going; }
   double weight(const Statement& s);
   double weight(const Expression& e);
 
   // Loops (write_loops.cpp).
   void loop(const Statement& s);
-  void loop_head(const Statement& s, const std::vector<std::string>& tests, const std::string& step,
-                 std::vector<Line>& asked);
+  void leave(const Statement& s);
+  void give(const Statement& s);
+  void each_alike(const Statement& s);
 
   Specialisations& all_;
   Specialisation& s_;
@@ -118,16 +127,20 @@ class Writer {
   Place place_;
 };
 
-/// The statements of a block, or the single statement.
-std::vector<const Statement*> parts_of_block(const Statement& s);
+/// The texts of `all`, commas between.
+template <class All, class Text>
+std::string joined(const All& all, const Text& text) {
+  std::string out;
+  for (const auto& one : all) out += (out.empty() ? "" : ", ") + text(one);
+  return out;
+}
 
-/// The ways in which a statement leaves its surroundings.
+/// The ways in which a statement leaves its surroundings, and whether it has a loop.
 struct Exits {
-  bool leaves = false, next = false, gives = false;
+  bool leaves = false, next = false, gives = false, loops = false;
   bool any() const { return leaves || next || gives; }
 };
 Exits exits_of(const Statement& s);
-bool has_loop(const Statement& s);
 /// Whether `text` has `name`, which ends in a number.
 bool mentions(const std::string& text, const std::string& name);
 

@@ -88,11 +88,21 @@ const std::vector<std::string> rare{
     R"(float a[4] = {x, y, 1.0f, 2.0f}; ++a[k & 3]; if (y > 0.0f) a[k & 3]--; return a[0] + 2.0f * a[1] + a[2] * a[3];)",
     R"(return chosen(x, n > 2) + halves(y, o) * (float)(-(-n));)",
     R"(int d = (k & 3) != 0 ? 100 / (k & 3) : 7; if (k % 5 != 0 && d / (k % 5) > 2) d = 1; return (float)d;)",
+    R"(float c = 0.0f; for (int i = 0; i < 5; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; } return c;)",
+    R"(float c = 0.0f, s = 0.0f; for (int j = 0; j < 2; ++j) for (int i = 0; i < 4; ++i) { if (x < (float)i - 1.0f) break; c += 1.0f; s += c; } return s;)",
+    R"(float c = 0.0f; for (int i = 0; i < 6; ++i) { if (y > 1.0f) continue; if (x < 0.0f && i == 1) return c; c += 1.0f; *o += c; } return -c;)",
+    R"(if (x > 0.0f) { EACH_ALIKE(int, j, k & 3) { if (j > 1) return q[j]; } *o += 1.0f; } return 0.0f;)",
+    R"(if (x > -1.0f) { for (int i = 0; i < 4; ++i) if (y < (float)i - 1.0f) return y; *o += 1.0f; } return 2.0f;)",
+    R"(if (x > 0.0f) { if (y > 0.0f) return 1.0f; *o += 1.0f; } return 2.0f;)",
+    R"(float t = 1.0f; do { t += 1.0f; } while (t < x); return t;)",
+    R"(int j = 0; if (x > 0.0f) j++; if (y > 0.5f) --j; return (float)j + side(x);)",
+    R"(const bool b = !(x > 0.0f); return (float)b + (float)(y > 0.0f) * 4.0f + x - y * 2.0f - (b ? 1.0f : y);)",
     R"(float t = 0.0f; do { t += 1.0f; if (x > 0.5f) continue; t += 0.25f; } while (t < y + 2.0f); return t;)",
 };
 std::string rare_program() {
   std::string text = R"(
 static inline bool hit(float x, float* t) { *t = x * 2.0f; return x > 0.0f; }
+static inline float side(float x) { if (x > 0.0f) return 1.0f; return 2.0f; }
 static inline bool next(int* j) { *j += 1; return *j > 3; }
 static inline float chosen(float x, bool b) { if (x > 0.0f) b = false; return b ? 1.0f : 2.0f; }
 static inline float halves(float x, float* o) { if (x > 0.0f) { *o += 0.5f; return x; } return *o; }

@@ -31,7 +31,7 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
       {"ENTRY static UNIFORM float f(float x) { return x; }\n", "the result of f is UNIFORM, but varies"},
       {function("return;"), "2:7: 'f' gives float"},
       {function("float a = x = 1.0f; return a;"), "wanted ';', found '='"},
-      {function("double d = 1.0f; d += x; return x;"), "'+' of double and float: cast them first"},
+      {function("double d = 1.0f; d += x; return x;"), "2:1: 'double' is no type"},
       {function("int j = n; if (j++ > 2) return x; return 1.0f;"), "2:17: '++' within an expression"},
       {function("int j = n; if ((j = k) > 2) return x; return 1.0f;"), "2:19: wanted ')', found '='"},
       {function("bool b = true; b++; return x;"), "'++' of bool"},

@@ -77,6 +77,39 @@ TEST_CASE("what two plain files make is made once a program, and lanes of struct
   CHECK_THAT(made, ContainsSubstring("#ifndef MADE_further\n#define MADE_further\n"));
 }
 
+TEST_CASE("a loop asks whether lanes are left, unless its first statement does") {
+  const std::string rest = "for (int i = 0; i < n; ++i) c += q[i]; }\n";
+  const std::string made =
+      in_lanes(function("float c = 0.0f;\nwhile (n > 0) { c += x; if (c > 9.0f) break; " + rest +
+                        "while (n > 1) { if (c > 9.0f) break; " + rest + "return c;"));
+  CHECK_THAT(made, ContainsSubstring("for (; (n > 0) && any_lane(in_1); ) {"));
+  CHECK_THAT(made, ContainsSubstring("for (; (n > 1); ) {"));
+}
+
+TEST_CASE("lanes that do not ask read no table and divide by one") {
+  const std::string made = in_lanes(function("bool b = k >= 0 && q[k] > x;\nreturn b ? (float)(n / k) : x;"));
+  CHECK_THAT(made,
+             ContainsSubstring("(is_1 & MASK_OF(gather_floats((__global const float*)(q), k, m_2) > x))"));
+  CHECK_THAT(made, ContainsSubstring("((MASK)((int)(n)) / select((MASK)(1), k, m_5))"));
+}
+
+TEST_CASE("a row of a table is read at a place of each lane: members, parts, elements, by a pointer too") {
+  const std::string made = in_lanes(
+      "typedef struct Row { float a; u32 k; float3 v; int list[2]; } Row;\n"
+      "ENTRY static float f(int k, UNIFORM __global const Row* rows) {\n"
+      "  __global const Row* row = &rows[k];\n"
+      "  const float3 v = row->v;\n"
+      "  return rows[k].a + (float)rows[k].k + (float)row->list[1] + rows[k].v.zy.x + row[1].a * v.x;\n}\n");
+  CHECK_THAT(made, ContainsSubstring("__global const Row* table_1 = rows;\n  const MASK row = k;"));
+  CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12, m_)"));
+  CHECK_THAT(made, ContainsSubstring("AS_UINTS(gather_words((__global const u32*)(rows), k * 12 + 1, m_))"));
+  CHECK_THAT(made, ContainsSubstring("gather_words((__global const u32*)(table_1), row * 12 + 9, m_)"));
+  CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12 + 6, m_)"));
+  CHECK_THAT(made, ContainsSubstring("(row + (MASK)((int)(1))) * 12, m_)"));
+  CHECK_THAT(made, ContainsSubstring(
+                       "v = real3(gather_floats((__global const float*)(table_1), row * 12 + 4, m_), "));
+}
+
 TEST_CASE("lines are those of the plain file, and the explanation names them") {
   const std::string text = function("const float y = x * 2.0f;\nreturn y;");
   CHECK_THAT(in_lanes(text, true), ContainsSubstring("#line 1 \"plain/t.cl\"\nNEVER_INLINE REAL f("));
