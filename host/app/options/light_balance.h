@@ -1,4 +1,4 @@
-// What the light of a group is multiplied by, as `mix --light` and the viewer's page write it.
+// Factors of light groups, as `mix --light` and the viewer's page write them.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
