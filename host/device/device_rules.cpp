@@ -19,8 +19,8 @@ constexpr std::array rules{
     DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
                "-cl-nv-maxrregcount=64"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
-    // For ten waves (RDNA 3 and newer) render_whitted spills none; render_path spills about 70 registers, in
-    // scenes with rough glass or layers alone.
+    // Ten waves (RDNA 3 and newer) cost plain scenes no spills; with textures, layers or rough glass up to
+    // 240 registers, where 5 to 9 waves would fit.
     DeviceRule{"amd", "Advanced Micro Devices", true, false,
                "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10"},
     // Intel's own driver. Its compiler gives programs that spill 256 registers instead of 128, for half the
