@@ -23,7 +23,7 @@ bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 
-/// The text with comments made blank, and '\v' for the end of a line that goes on with the next one.
+/// The text with comments made blank, and '\v' for the end of a line that is joined to the next.
 std::string whole_lines(std::string text) {
   for (std::size_t at = text.find("\\\n"); at != std::string::npos; at = text.find("\\\n", at))
     text.replace(at, 2, " \v");

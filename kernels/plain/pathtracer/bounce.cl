@@ -81,7 +81,7 @@ static void note_sample(UNIFORM const Scene* scene, const SurfaceShading* at, co
 }
 
 // The surface scatters: the path's next ray, and whether the path continues. `cut_out`: its texture leaves it
-// out here, so the ray goes on as if no surface were met, at no cost in depth.
+// out here, so the ray continues as if no surface were met, at no cost in depth.
 static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                     const LobeSet* lobes, bool cut_out, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
