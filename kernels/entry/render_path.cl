@@ -23,22 +23,25 @@ typedef struct LaneWork {
   u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item
   MASK place;         // 1 + the lanes' pixels in the rectangle, or NO_PLACE
   float sign[BATCH];  // what the sample counts that the lane is at
+  PathStates paths;   // set where lanes begin, as `rays`; of others their samples alone are read
+  SceneRays rays;
+  u32 counts[ALL_COUNTS];
 } LaneWork;
 
-static inline LaneWork begin_work(u32 first, u32 end) {
-  LaneWork work;
-  work.untaken = first * BATCH;
-  work.end = end * BATCH;
-  work.place = (MASK)(NO_PLACE);
-  return work;
+static inline void begin_work(u32 first, u32 end, LaneWork* work) {
+  work->untaken = first * BATCH;
+  work->end = end * BATCH;
+  work->place = (MASK)(NO_PLACE);
+  work->paths.at.sample = NO_LANES;
+  for (u32 i = 0; i < ALL_COUNTS; ++i) work->counts[i] = 0;
 }
 
 // The lane is done with its pixel and takes the next that no lane has, if there is one.
 static inline void take_pixel(const Launch* launch, __global const u32* restrict pixels, u32 lane, u32 seed,
-                              LaneWork* work, LaneSamples* at, u32* counts,
-                              __global u32* restrict ray_counts) {
+                              LaneWork* work, __global u32* restrict ray_counts) {
+  LaneSamples* at = &work->paths.at;
   const int done = MASK_LANE(work->place, lane);
-  if (done != NO_PLACE) add_lane_rays(launch, (u32)done - 1u, lane, counts, ray_counts);
+  if (done != NO_PLACE) add_lane_rays(launch, (u32)done - 1u, lane, work->counts, ray_counts);
   MASK_LANE(work->place, lane) = NO_PLACE;
   while (work->untaken < work->end) {
     const u32 taken = work->untaken++;
@@ -58,25 +61,26 @@ static inline void take_pixel(const Launch* launch, __global const u32* restrict
 NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
                                   __global const u32* restrict pixels,
                                   __global const u32* restrict camera_media, MASK idle, LaneWork* work,
-                                  PathStates* paths, SceneRays* rays, u32* counts,
                                   __global u32* restrict ray_counts) {
+  PathStates* paths = &work->paths;
   const int last = (int)(launch->first_sample + launch->sample_count);
   const MASK done = idle & (MASK_OF(paths->at.sample == last) | MASK_OF(work->place == NO_PLACE));
   EACH_LANE(lane, done)
-  take_pixel(launch, pixels, lane, scene->info->seed, work, &paths->at, counts, ray_counts);
+  take_pixel(launch, pixels, lane, scene->info->seed, work, ray_counts);
   const BegunSamples begun = {paths->at, idle & MASK_OF(work->place != NO_PLACE)};
   if (!any_lane(begun.lanes)) return NO_LANES;
   const MediaStack around = (MediaStack)camera_media[1] << 32 | camera_media[0];
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
-  *rays = select_SceneRay(*rays, first, begun.lanes);
+  work->rays = select_SceneRay(work->rays, first, begun.lanes);
   *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);
   return begun.lanes;
 }
 
 // The surfaces that the paths of `lanes` have met cover their part of the pixels.
 #if HAS_MATTES
-static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work,
-                              const PathStates* paths, MASK lanes, __global float4* restrict film) {
+static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work, MASK lanes,
+                              __global float4* restrict film) {
+  const PathStates* paths = &work->paths;
   EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f)) {
     add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane) - 1u),
               MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
@@ -106,8 +110,8 @@ static inline void add_part(const Launch* launch, const LaneWork* work, const RE
     add_part(launch, work, &light, shares, lanes, part++, film);                              \
   }
 NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, const LaneWork* work,
-                                  const PathStates* paths, const REAL3* all, MASK lanes,
-                                  __global float4* restrict film) {
+                                  const REAL3* all, MASK lanes, __global float4* restrict film) {
+  const PathStates* paths = &work->paths;
   float shares[BATCH];
   EACH_LANE(lane, lanes) {
     const float3 light = get3(all, lane);
@@ -124,35 +128,32 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
                                const Launch* launch, u32 first, u32 end, __global const u32* restrict pixels,
                                __global float4* restrict film, __global float* restrict weights,
                                __global u32* restrict counters, __global u32* restrict ray_counts) {
-  u32 counts[ALL_COUNTS];  // volatile: in memory, since a GPU's registers are for the path
-  for (u32 i = 0; i < ALL_COUNTS; ++i) ((volatile u32*)counts)[i] = 0;
   for (u32 item = first; item < end; ++item) begin_film(launch, item, film, weights, ray_counts);
-  LaneWork work = begin_work(first, end);
-  PathStates paths;  // set where lanes begin, as `rays`; of others their samples alone are read
-  paths.at.sample = NO_LANES;
-  SceneRays rays;
+  KEEP_IN_MEMORY(LaneWork, work);
+  begin_work(first, end, work);
+  PathStates* paths = &work->paths;
+  u32* counts = work->counts;
   MASK lanes = NO_LANES;
   for (;;) {
-    const MASK begun = fill_idle_lanes(scene, launch, pixels, camera_media, ~lanes, &work, &paths, &rays,
-                                       counts, ray_counts);
+    const MASK begun = fill_idle_lanes(scene, launch, pixels, camera_media, ~lanes, work, ray_counts);
     const MASK going = lanes | begun;
     if (!any_lane(going)) break;
     counts[COUNT_PRIMARY] += lane_count(begun);
     note_own_rays(begun, counts);
     start_marching(counts);
-    lanes = going & step_path(scene, &paths, &rays, !any_lane(lanes), counts, going);
-    HAVING(HAS_MATTES, add_mattes(scene, launch, &work, &paths, going, film);)
+    lanes = going & step_path(scene, paths, &work->rays, !any_lane(lanes), counts, going);
+    HAVING(HAS_MATTES, add_mattes(scene, launch, work, going, film);)
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;
-    const REAL3 seen = spectrum_seen(scene, &paths.wavelengths, &paths.radiance, over);
-    const REAL alpha = coverage_of(&paths, over);
+    const REAL3 seen = spectrum_seen(scene, &paths->wavelengths, &paths->radiance, over);
+    const REAL alpha = coverage_of(paths, over);
     EACH_LANE(lane, over) {
       const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane)),
                    limited = limit_components(radiance, scene->info->max_component);
-      store_sample((u32)MASK_LANE(work.place, lane) - 1u, limited, work.sign[lane], film, weights, counts);
+      store_sample((u32)MASK_LANE(work->place, lane) - 1u, limited, work->sign[lane], film, weights, counts);
     }
-    HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, &work, &paths, &seen, over, film);)
-    paths.at.sample -= over;  // the mask is -1 in lanes whose path is over: on to their next sample
+    HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, work, &seen, over, film);)
+    paths->at.sample -= over;  // the mask is -1 in lanes whose path is over: on to their next sample
   }
   __global u32* own = counters_of(counters, first);
   add_counts(own, counts);

@@ -34,32 +34,45 @@ static inline void set_tile_sums(const Launch* launch, u32 item, const float* si
 }
 #endif
 
+// What a work-item keeps while it traces.
+typedef struct ItemWork {
+  RayStack stack;
+  float4 radiance[BATCH];
+  float signs[BATCH];
+  TileSamples tile;
+  u32 item;
+  __global const SceneInfo* info;  // read here for each sample, or compilers keep the camera in registers
+  u32 counts[ALL_COUNTS];
+} ItemWork;
+
 // One work-item of the kernel below.
 NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launch* launch, u32 item,
                               __global const u32* restrict pixels, __global float4* restrict film,
                               __global float* restrict weights, __global u32* restrict counters,
                               __global u32* restrict ray_counts) {
-  u32 counts[ALL_COUNTS];
+  KEEP_IN_MEMORY(ItemWork, work);
+  work->item = item;
+  work->info = scene->info;
+  u32* counts = work->counts;
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   begin_film(launch, item, film, weights, ray_counts);
-  RayStack stack;
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
-    float4 radiance[BATCH];
-    for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
+    for (u32 lane = 0; lane < BATCH; ++lane) work->radiance[lane] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     start_marching(counts);
     SceneRays rays;
-    float signs[BATCH];
-    TileSamples tile;
-    const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
-    HAVING(HAS_MATTES, set_tile_sums(launch, item, signs, film, &tile);)
+    Scene read = *scene;
+    read.info = work->info;
+    const MASK lanes =
+        start_rays(&read, launch, pixels, work->item, sample, around, &rays, work->signs, &work->tile);
+    HAVING(HAS_MATTES, set_tile_sums(launch, work->item, work->signs, film, &work->tile);)
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
-    trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
+    trace_whitted(scene, &work->tile, &rays, lanes, &work->stack, work->radiance, counts);
     for (u32 lane = 0; lane < BATCH; ++lane)
-      radiance[lane] = limit_components(radiance[lane], scene->info->max_component);
-    store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);
+      work->radiance[lane] = limit_components(work->radiance[lane], scene->info->max_component);
+    store_lanes(launch, work->item, lanes, work->radiance, work->signs, film, weights, counts);
   }
-  add_ray_counts(launch, pixels, item, counts, ray_counts);
+  add_ray_counts(launch, pixels, work->item, counts, ray_counts);
   add_counts(counters, counts);
   add_finished(counters, counts[COUNT_PRIMARY], launch->sample_count);
 }

@@ -27,7 +27,8 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   EACH_LANE(i, lanes) beams[3u * i + 2u] = (float4)(0.0f);  // no light
 #endif
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
-  Photons photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
+  KEEP_IN_MEMORY(Photons, photons);
+  *photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
   Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
   begun.o = starts.o;
   begun.d = starts.d;
@@ -42,7 +43,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   Landings landings = {0};
   for (lanes = starts.lanes; any_lane(lanes);) {
     start_marching(counts);
-    const MASK going = lanes & step_photon(scene, &photons, &rays, &landings, counts, lanes);
+    const MASK going = lanes & step_photon(scene, photons, &rays, &landings, counts, lanes);
     EACH_LANE(i, lanes & landings.is) {
       const u32 to = first - launch->first + i;
       const float3 flux = get3(&landings.flux, i);
@@ -59,13 +60,13 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     lanes = going;
   }
 #if HAS_SCATTERING
-  EACH_LANE(i, starts.lanes & MASK_OF(photons.beam.length > 0.0f)) {
-    const float light = REAL_LANE(photons.beam.scattered, i);
+  EACH_LANE(i, starts.lanes & MASK_OF(photons->beam.length > 0.0f)) {
+    const float light = REAL_LANE(photons->beam.scattered, i);
     const u32 slice = photon_slice(REAL_LANE(starts.time, i));
-    const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons.beam.sent_on, i);
-    beams[3u * i] = (float4)(get3(&photons.beam.o, i), REAL_LANE(photons.beam.length, i));
-    beams[3u * i + 1u] = (float4)(get3(&photons.beam.d, i), (float)slice_and_sent);
-    beams[3u * i + 2u] = (float4)(get3(&photons.beam.flux, i) * light, light);
+    const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons->beam.sent_on, i);
+    beams[3u * i] = (float4)(get3(&photons->beam.o, i), REAL_LANE(photons->beam.length, i));
+    beams[3u * i + 1u] = (float4)(get3(&photons->beam.d, i), (float)slice_and_sent);
+    beams[3u * i + 2u] = (float4)(get3(&photons->beam.flux, i) * light, light);
   }
 #endif
 }

@@ -82,6 +82,19 @@
 #endif
 #define BATCH (TILE_W * TILE_H)
 
+// Declares `name`, a pointer to a variable that stays in memory where a work-item has one ray: registers are
+// for the ray on its way. Compilers cannot take the variable apart, since they do not know its index.
+#if BATCH == 1
+#define KEEP_IN_MEMORY(type, name)   \
+  type kept_##name[1];               \
+  volatile uint index_of_##name = 0; \
+  type* const name = kept_##name + index_of_##name
+#else
+#define KEEP_IN_MEMORY(type, name) \
+  type kept_##name;                \
+  type* const name = &kept_##name
+#endif
+
 // 1: eight boxes or triangles per instruction, with explicit vectors. 0: one by one in rolled loops, for
 // devices with one ray per lane (native vector width 1), where explicit vectors only make the program eight
 // times as long.

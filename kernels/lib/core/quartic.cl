@@ -18,7 +18,7 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
 #pragma unroll 1
   for (u32 i = 0; i < 40u && low < high; ++i) {
     const float f = polynomial(c, x);
-    if (f == 0.0f) return x;
+    if (f == 0.0f) break;
     if ((f > 0.0f) == rising)
       high = x;
     else

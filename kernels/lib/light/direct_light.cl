@@ -63,7 +63,7 @@ static inline REAL3 sampled_light(const Scene* scene, const LightRay* way, const
   __global const Light* light = scene->lights + way->light;
   BounceNumbers numbers;
   begin_numbers(tile, paths, way->light, BOUNCE_LIGHT_POINT, lanes, &numbers);
-  SphericalRectangles rectangle;
+  SphericalRectangles rectangle = {0};
   const bool flat = is_rectangle(light);
   if (flat) rectangle = see_rectangle(light, s->p, lanes);
   const REAL3 o = along3(s->p, s->offset + s->lift, s->ng);

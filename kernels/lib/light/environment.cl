@@ -204,6 +204,7 @@ static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL
   ChosenCells cells;
   choose_cells(scene, u_x, u_y, lanes, &cells);
   LightSamples sample;
+  sample.pdf = zero;
   REAL x, y, up, side;
   const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
   if (blended) {

@@ -97,7 +97,7 @@ static inline void filter_light(const Scene* scene, const SceneRays* rays, const
 static inline void pass_touching(const Scene* scene, const SceneRays* rays, Hits* hits, Faces* faces,
                                  SceneRays* behind, MASK lanes) {
   EACH_LANE(i, lanes) {
-    Seen seen;
+    Seen seen = {0};
     float apart;
     REAL_LANE(hits->t, i) = meet_touching(scene, rays, i, MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE, hits,
                                           faces, &seen, &apart);

@@ -147,9 +147,9 @@ static inline void start_at_point(const Scene* scene, u32 targets, float4 ball, 
 
 // A photon of the environment, in lane `lane` of the ways to it.
 static inline Emission emit_environment(const LightSamples* sky, u32 lane) {
-  Emission emission;
-  emission.d = -get3(&sky->wi, lane);
-  emission.radiance = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->pdf, lane), 1e-30f);
+  const Emission emission = {
+      .d = -get3(&sky->wi, lane),
+      .radiance = get3(&sky->radiance, lane) / fmax(REAL_LANE(sky->pdf, lane), 1e-30f)};
   return emission;
 }
 
@@ -198,7 +198,7 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.flux = all3((float3)(0.0f));
   starts.dimmed = (MASK)(NOT_DIMMED);
   starts.light = NO_LANES;
-  LightSamples sky;
+  LightSamples sky = {0};
   const MASK of_sky = HAS_ENVIRONMENT ? lanes_of_sky(scene, u.w, lanes) : NO_LANES;
   if (any_lane(of_sky)) sky = sample_environment(scene, v.z, v.w, of_sky);
   EACH_LANE(i, lanes) {

@@ -82,7 +82,8 @@ static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps*
     if (stage == PARALLAX_ABOVE) {
       // Interpolate the heights linearly, unless they have a discontinuity.
       const REAL share = real_clamp(over / nonzero(over - high), zero, one);
-      return select(below, fma(share, below - above, above), MASK_OF(over < 0.0f) & MASK_OF(high > 0.0f));
+      below = select(below, fma(share, below - above, above), MASK_OF(over < 0.0f) & MASK_OF(high > 0.0f));
+      break;
     }
     if (stage == PARALLAX_BELOW) high = over;
     if (stage == PARALLAX_BEGIN) {
@@ -111,6 +112,7 @@ static inline REAL meet_heights(const Scene* scene, __global const MaterialMaps*
     stage = k < PARALLAX_HALVINGS ? PARALLAX_HALVE : k == PARALLAX_HALVINGS ? PARALLAX_BELOW : PARALLAX_ABOVE;
     t = stage == PARALLAX_HALVE ? 0.5f * (above + below) : stage == PARALLAX_BELOW ? below : above;
   }
+  return below;
 }
 
 static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {

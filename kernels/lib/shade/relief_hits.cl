@@ -83,8 +83,8 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   lanes = has_parallax(scene, &s, lanes);
   lanes = see_interfaces(scene, rays, &met->hit, &faces, lanes);
   if (!any_lane(lanes)) return;
-  interact(scene, rays->o, rays->d, &met->hit, &faces, lanes, &s);
-  set_footprints(scene, rays, met->hit.t, &s);
+  s.instance = met->hit.instance;
+  s.ng = safe_unit3(faces.outward);
   const REAL rise = fabs(dot3(s.ng, rays->d));
   const REAL length = ways_through(&s, rays->d, relief_depths(scene, &s, lanes));
   Hits others = met->hit;
@@ -93,6 +93,8 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   if (!any_lane(found)) return;
   const Faces things = hit_faces(scene, rays->d, &others, found);
   found &= MASK_OF(((faces.flags & things.flags) & (int)MATERIAL_TRANSMITS) == 0);
+  interact(scene, rays->o, rays->d, &met->hit, &faces, found, &s);
+  set_footprints(scene, rays, met->hit.t, &s);
   add_parallax(scene, rays->d, found, &s);
   const REAL passed = others.t - met->hit.t;
   found &= MASK_OF(passed < s.sunk * length);

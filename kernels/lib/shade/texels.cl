@@ -165,13 +165,16 @@ static inline void fetch_cells(const Scene* scene, __global const TextureNode* n
 
 // Interpolates them.
 static inline REAL4 filter_cells(const Scene* scene, u32 flags, const StoredCells* cells, MASK lanes) {
-  REAL4 rows[2];
-  for (u32 row = 0; row < 2u; ++row) {
-    rows[row] = decode_texels(scene, &cells->corner[2u * row], flags, lanes);
-    if (flags & TEXTURE_NEAREST) return rows[0];
-    rows[row] = mix4(rows[row], decode_texels(scene, &cells->corner[2u * row + 1u], flags, lanes), cells->s);
+  const REAL zero = (REAL)(0.0f);
+  REAL4 row = real4(zero, zero, zero, zero), above = row;
+#pragma unroll 1
+  for (u32 k = 0; k < 4u; k += 2u) {
+    above = row;
+    row = decode_texels(scene, &cells->corner[k], flags, lanes);
+    if (flags & TEXTURE_NEAREST) break;
+    row = mix4(row, decode_texels(scene, &cells->corner[k + 1u], flags, lanes), cells->s);
   }
-  return mix4(rows[0], rows[1], cells->t);
+  return flags & TEXTURE_NEAREST ? row : mix4(above, row, cells->t);
 }
 
 // The image at (u, v), v up; `footprint` in texels of the largest level.

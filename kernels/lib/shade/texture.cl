@@ -245,17 +245,19 @@ static inline REAL4 combined_values(const Scene* scene, __global const TextureNo
 }
 
 // A texture's values at the points of `lanes`; `first` is its first node.
-static REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
+NEVER_INLINE REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {
   ValueStack stack;
   stack.count = 0;
+  REAL4 value;
   for (u32 i = first;; ++i) {
     __global const TextureNode* node = scene->texture_nodes + i;
-    REAL4 value = combined_values(scene, node, at, lanes, &stack);
+    value = combined_values(scene, node, at, lanes, &stack);
     if (node->flags & TEXTURE_ONE_CHANNEL)
       value = one_channel(value, node->flags >> TEXTURE_CHANNEL_SHIFT & 3u);
-    if (node->flags & TEXTURE_LAST) return value;
+    if (node->flags & TEXTURE_LAST) break;
     if (HAS_OPERANDS) stack.value[stack.count++] = value;
   }
+  return value;
 }
 #else
 static inline REAL4 value_of_texture(const Scene* scene, u32 first, const TexturePoints* at, MASK lanes) {

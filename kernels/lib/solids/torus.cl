@@ -59,8 +59,7 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
 static inline void closest_in_torus(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
   EACH_LANE(i, active) {
-    TorusHit hit;
-    hit.t = REAL_LANE(hits->t, i);
+    TorusHit hit = {REAL_LANE(hits->t, i), (float3)(0.0f)};
     if (!closest_in_one_torus(parameters.x, get3(&o, i), get3(&d, i), REAL_LANE(t_min, i), &hit)) continue;
     REAL_LANE(hits->t, i) = hit.t;
     set3(&hits->ng, i, hit.ng);

@@ -112,9 +112,7 @@ static inline void note_block(const Scene* scene, u32 index, const ShearRay* she
 static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
                               Stretch* stretch) {
   for (u32 i = 0; i < 8u && scene->blocks[index].prim[i] != NO_PRIM; ++i) {
-    Hit hit;
-    hit.t = stretch->to;
-    hit.instance = NO_INSTANCE;
+    Hit hit = {.t = stretch->to, .instance = NO_INSTANCE};
     meet_triangle(scene->blocks, index * 8u + i, shear, stretch->from, instance, &hit);
     if (hit.instance == NO_INSTANCE) continue;
     finish_triangle(scene->instances, scene->blocks, &hit);

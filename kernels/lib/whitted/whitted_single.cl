@@ -50,7 +50,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 // Takes a ray to what it meets next. Returns whether it continues.
 static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                               WaitingRays* paths, RayStack* stack, float4* radiance, u32* counts) {
-  Encounters met;
+  Encounters met = {0};
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, radiance, counts);
@@ -61,14 +61,14 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   u32 light = (u32)paths->depth >> DEPTH_BITS;
   const MASK fresh = MASK_OF(light == 0u);
   paths->depth &= (1 << DEPTH_BITS) - 1;
-  Shading at;
+  KEEP_IN_MEMORY(Shading, at);
   REAL3 seen;
-  const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack,
+  const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, at, &seen, stack,
                                  radiance, counts);
   add_to_pixels(seen, paths->pixel, fresh, radiance);
   forget_glow(rays, ALL_LANES);
   if (!hit) return unseen;
-  send_to_lights(scene, tile, rays, paths, &whole, light, hit, &met.hit, &at, stack, radiance, counts);
+  send_to_lights(scene, tile, rays, paths, &whole, light, hit, &met.hit, at, stack, radiance, counts);
   return NO_LANES;
 }
 
@@ -76,15 +76,15 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
 // w is taken what of the background is seen straight on.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
                                  RayStack* stack, float4* radiance, u32* counts) {
-  WaitingRays paths;
-  paths.throughput = all3((float3)(1.0f));
-  paths.pixel = NO_LANES;
-  paths.depth = (MASK)(1);
-  start_branches(&paths);
+  KEEP_IN_MEMORY(WaitingRays, paths);
+  paths->throughput = all3((float3)(1.0f));
+  paths->pixel = NO_LANES;
+  paths->depth = (MASK)(1);
+  start_branches(paths);
   stack->count = 0;
   while (any_lane(lanes)) {
-    lanes = follow_ray(scene, tile, rays, &paths, stack, radiance, counts);
-    if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
+    lanes = follow_ray(scene, tile, rays, paths, stack, radiance, counts);
+    if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, paths);
   }
 }
 #endif

@@ -43,7 +43,7 @@ static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* pat
     sum.diffuse = (float3)(0.0f);
     sum.transmitted = (float3)(0.0f);
   }
-  float3 wi, flux;
+  float3 wi = (float3)(0.0f), flux = wi;
   while (next_photon(scene, &search, &wi, &flux))
     scatter_photon(scene, &at->s, &bsdf, &wide, -ray->d, wi, flux, &sum);
   const SampledSpectrum light =
