@@ -61,7 +61,8 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   u32 light = (u32)paths->depth >> DEPTH_BITS;
   const MASK fresh = MASK_OF(light == 0u);
   paths->depth &= (1 << DEPTH_BITS) - 1;
-  KEEP_IN_MEMORY(Shading, at);
+  // Ways to lights ask for hits in reliefs while the surface waits.
+  EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(Shading, at);, Shading shading = {0}; Shading* at = &shading;)
   REAL3 seen;
   const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, at, &seen, stack,
                                  radiance, counts);
