@@ -142,6 +142,21 @@ TEST_CASE("a path-traced image has the same bits for every work-group size, tile
   CHECK(same_bits(render_by_own(device, growing).image, render_by_own(device, scene).image));
 }
 
+TEST_CASE("programs as GPUs get them, inlined and with state kept in memory, draw the same bits") {
+  SceneDescription scene = busy_mesh_scene();
+  scene.render.tracer = Tracer::compact;
+  const DeviceInfo device = test_devices().front();
+  HostEnvironment environment = value_of(device.environment);
+  environment.build_options = "-DDEVICE_INLINES_ALL";
+  DeviceInfo like_gpu = device;
+  like_gpu.environment = std::make_shared<const HostEnvironment>(std::move(environment));
+  for (const char* integrator : {"whitted", "path"}) {
+    CAPTURE(integrator);
+    scene.render.integrator = integrator;
+    CHECK(same_bits(render_by_own(like_gpu, scene).image, render_by_own(device, scene).image));
+  }
+}
+
 TEST_CASE("sub-devices compute the same bits as the whole device") {
   const SceneDescription scene = busy_scene();
   for (const DeviceInfo& device : test_devices()) {
