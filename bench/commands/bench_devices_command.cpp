@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "bench/commands/bench_run.h"
 #include "bench/frames/device_ranking.h"

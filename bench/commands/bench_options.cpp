@@ -11,10 +11,10 @@
 #include <sstream>
 #include <tuple>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/revision.h"
@@ -155,7 +155,7 @@ SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
-  return pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+  return pick_devices(list_devices(), options.devices);
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {

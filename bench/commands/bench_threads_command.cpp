@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
-#include "app/process/environment.h"
 #include "app/process/progress.h"
 #include "base/error.h"
 #include "bench/commands/bench_run.h"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "base/cache_folder.h"

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/options/devices.h"
 #include "app/process/child_process.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/standard_streams.h"

@@ -9,7 +9,7 @@
 
 #include "app/job/job.h"
 #include "app/options/command_words.h"
-#include "app/process/environment.h"
+#include "app/options/devices.h"
 #include "app/process/revision.h"
 #include "base/arguments.h"
 #include "base/error.h"

@@ -13,10 +13,9 @@
 
 #include "app/commands/check_report.h"
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
-#include "app/options/pick_devices.h"
 #include "app/process/child_process.h"
-#include "app/process/environment.h"
 #include "app/process/warnings.h"
 #include "base/clock.h"
 #include "base/error.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/options/command.h"
-#include "app/process/environment.h"
+#include "app/options/devices.h"
 #include "base/arguments.h"
 #include "base/error.h"
 #include "device/choice.h"

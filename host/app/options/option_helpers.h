@@ -32,7 +32,4 @@ inline void outside_files(Arguments* app, bool& target) {
                 "trust");
 }
 
-/// SPECs of SUNDOG_DEVICE, separated by commas.
-std::vector<std::string> devices_of_environment();
-
 }  // namespace sundog

@@ -181,17 +181,4 @@ void check_override(const std::string& setting) {
     throw UsageError(fmt::format("--set {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
 }
 
-std::vector<std::string> devices_of_environment() {
-  const char* text = std::getenv("SUNDOG_DEVICE");
-  if (!text || !*text) return {};
-  std::vector<std::string> specs;
-  std::istringstream all(text);
-  for (std::string spec; std::getline(all, spec, ',');) {
-    const std::size_t first = spec.find_first_not_of(" \t\n\v\f\r");
-    specs.push_back(
-        first == spec.npos ? "" : spec.substr(first, spec.find_last_not_of(" \t\n\v\f\r") - first + 1));
-  }
-  return specs;
-}
-
 }  // namespace sundog

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/picture_options.h"

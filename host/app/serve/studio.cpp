@@ -7,7 +7,6 @@
 
 #include "app/options/light_balance.h"
 #include "app/options/option_values.h"
-#include "app/options/pick_devices.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
 #include "base/error.h"
