@@ -74,7 +74,21 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 /// "a,b" -> a, b.
 std::vector<std::string> split_names(const std::string& text);
 
-AddCommand add_bench_threads, add_bench_devices, add_bench_kernels, add_bench_workgroup, add_bench_rays,
-    add_bench_samples, add_bench_quality, add_bench_textures, add_bench_roofline, add_bench_compare;
+/// X(name) for each bench, in the order of help.
+#define SUNDOG_BENCHES(X) \
+  X(workgroup)            \
+  X(threads)              \
+  X(rays)                 \
+  X(samples)              \
+  X(quality)              \
+  X(textures)             \
+  X(devices)              \
+  X(kernels)              \
+  X(roofline)             \
+  X(compare)
+
+#define SUNDOG_BENCH(name) AddCommand add_bench_##name;
+SUNDOG_BENCHES(SUNDOG_BENCH)
+#undef SUNDOG_BENCH
 
 }  // namespace sundog
