@@ -3,27 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/numbers.h"
 
 namespace sundog {
 namespace {
 
 template <class T>
 std::optional<T> number(std::string_view text, T low, T high) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !(value >= low && value <= high)) return {};  // so that NaN is refused
-  return value;
+  const auto value = whole_number<T>(text);
+  return value && *value >= low && *value <= high ? value : std::nullopt;  // NaN is refused
 }
 
 /// "WxH", each from 1 to the greatest size; none when the text is anything else.
