@@ -79,8 +79,7 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
     } else {
       throw SceneError(path.string(), "",
                        "wanted a scene (.json) or a model (" SUNDOG_MODEL_EXTENSIONS
-                       ", each also .gz), found "
-                       "another extension");
+                       ", each also .gz), found another extension");
     }
   }
   apply_overrides(source.document, source.file, overrides);
@@ -164,8 +163,7 @@ json document_at_frame(SceneSource& source, Reading& reading) {
     if (const std::string track = track_of(document, pointer_of(document, setting), true); !track.empty())
       throw SettingError(
           reading.file.string(), track,
-          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the "
-                      "track",
+          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the track",
                       setting));
   return document;
 }

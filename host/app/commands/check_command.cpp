@@ -257,8 +257,7 @@ void add_check(Arguments& root, Command& chosen) {
   values(app, "--device", "SPEC", options->devices,
          "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away "
          "(!SPEC?: if it is there); /N for N compute units (default: SUNDOG_DEVICE, or every device)");
-  app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
-      ->type_name("N")
+  value(app, "--timeout", "N", options->timeout, "seconds that one device may take (default 600)")
       ->range(1, 86400);
   app->add_flag("--json", options->json, "as JSON");
   app->add_option("--worker", options->worker)->hidden();

@@ -64,10 +64,9 @@ void check_names(const std::vector<std::string>& scenes) {
   std::set<std::string> names;
   for (const std::string& scene : scenes)
     if (!names.insert(stem(scene)).second)
-      throw UsageError(
-          fmt::format("gallery: {}: another scene has the name {} too, and pictures are named "
-                      "after scenes: rename one",
-                      scene, stem(scene)));
+      throw UsageError(fmt::format(
+          "gallery: {}: another scene has the name {} too, and pictures are named after scenes: rename one",
+          scene, stem(scene)));
 }
 
 void make_folder(const std::string& folder) {

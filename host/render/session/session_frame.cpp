@@ -1,7 +1,5 @@
 #include "render/session/session_frame.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace sundog {
