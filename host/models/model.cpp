@@ -58,18 +58,9 @@ struct Reader {
   std::string_view extension;
   Model (*load)(models::Source source, const ModelOptions& options);
 };
-constexpr Reader readers[] = {{".gltf", models::load_gltf}, {".glb", models::load_gltf},
-                              {".obj", models::load_obj},   {".ply", models::load_ply},
-                              {".stl", models::load_stl},   {".nff", models::load_nff}};
-
-consteval bool are_extensions_of_readers(std::string_view extensions) {
-  for (const Reader& reader : readers) {
-    if (!extensions.starts_with(reader.extension)) return false;
-    extensions.remove_prefix(std::min(reader.extension.size() + 1, extensions.size()));
-  }
-  return extensions.empty();
-}
-static_assert(are_extensions_of_readers(SUNDOG_MODEL_EXTENSIONS), "name all readers, in their order");
+#define SUNDOG_READER(extension, reader) {extension, models::load_##reader},
+constexpr Reader readers[] = {SUNDOG_MODEL_FORMATS(SUNDOG_READER, SUNDOG_READER)};
+#undef SUNDOG_READER
 
 Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
   if (source.bytes.empty()) models::fail(source, "", "the file is empty");
