@@ -39,7 +39,7 @@ void check_report_files(const ReportFiles& files, const std::vector<std::string>
 void write_report(const Report& report, const ReportFiles& files);
 
 /// SCENE... --device --set --repeat, and those of a report. Where no scene is needed the benchmark has one.
-void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed = true);
+void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed);
 
 /// --size, for benchmarks that render frames of one size.
 void add_bench_size(Arguments* app, BenchOptions& options);
