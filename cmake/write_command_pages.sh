@@ -31,11 +31,12 @@ done < <(commands_of)
 
 troff() { sed -e 's/\\/\\e/g' -e 's/-/\\-/g' -e "s/^\([.']\)/\\\\\&\1/" <<<"$1"; }
 
+models=$("$sundog" 2>&1 | sed -n 's/.* or a model (\(.*\))$/\1/p')
 {
   read -r version < <("$sundog" --version)
   echo ".TH SUNDOG 1 \"\" \"${version}\" \"User Commands\""
   printf '.SH NAME\nsundog \\- OpenCL renderer for meshes, solids, glass and fractals\n.SH SYNOPSIS\n.B sundog\n.I COMMAND\n[\\fIOPTIONS\\fR]\n'
-  printf '.SH DESCRIPTION\nRenders scenes (.json) and models (.gltf .glb .obj .ply .stl .nff) on any OpenCL 1.2 device, and measures devices.\n.SH COMMANDS\n'
+  printf '.SH DESCRIPTION\nRenders scenes (.json) and models (%s) on any OpenCL 1.2 device, and measures devices.\n.SH COMMANDS\n' "$models"
   while IFS=$part read -r name line; do printf '.TP\n.B sundog %s\n%s\n' "$(troff "$name")" "$(troff "$line")"; done < <(commands_of)
   for page in "${pages[@]}"; do
     printf '.SH OPTIONS OF %s\n' "$(troff "${page^^}")"

@@ -222,11 +222,10 @@ void add_scene(nb::module_& m) {
       .def("__copy__", [](const Scene& scene) { return Scene(scene); })
       .def("__deepcopy__", [](const Scene& scene, nb::handle) { return Scene(scene); })
       .def("copy", [](const Scene& scene) { return Scene(scene); })
-      .def(
-          "add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
-          nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
-          "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. Arrays "
-          "of float32 and uint32 in C order are held, not copied: leave them as they are.")
+      .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
+           nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
+           "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. "
+           "Arrays of float32 and uint32 in C order are held, not copied: leave them as they are.")
       .def(
           "add", [](Scene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)); },
           nb::arg("object"), "Appends a dict to the objects.")
@@ -339,7 +338,5 @@ NB_MODULE(_sundog, m) {
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),
         nb::arg("on_picture").none() = nb::none(), nb::arg("picture_seconds") = 1.0,
         "Renders a Scene, a file or a dict, and waits; other threads continue. on_progress(pixels, of, "
-        "seconds) "
-        "may "
-        "return False to stop; Ctrl-C stops too and raises KeyboardInterrupt.");
+        "seconds) may return False to stop; Ctrl-C stops too and raises KeyboardInterrupt.");
 }

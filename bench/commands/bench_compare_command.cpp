@@ -125,10 +125,9 @@ void check_scenes(const KnownReport& base, const KnownReport& other, const std::
     }
     if (!like || *like == own) continue;
     const auto [a, b] = std::ranges::mismatch(*like, own);
-    throw UsageError(
-        fmt::format("bench compare {}: scene {} was measured with {} {}, in the first report {}: "
-                    "measure both alike",
-                    file, own.at("name"), b->first, b->second, a->second));
+    throw UsageError(fmt::format(
+        "bench compare {}: scene {} was measured with {} {}, in the first report {}: measure both alike",
+        file, own.at("name"), b->first, b->second, a->second));
   }
 }
 
@@ -218,11 +217,11 @@ void add_side(Report& report, const Side& base, const Side& side, Tally& tally) 
     throw UsageError(
         fmt::format("bench compare {}: no row was measured as one of {} was", side.name, base.name));
   const auto rows = static_cast<int>(table.rows.size());
-  report.notes.push_back(fmt::format(
-      "{}: faster in {} of {} rows, slower in {}, not told apart in {}; its times are {} of those of {} "
-      "(geometric mean of the ratios).",
-      side.name, verdicts["faster"], rows, verdicts["slower"], verdicts["not told apart"],
-      number_text(std::exp(logs / rows)), base.name));
+  report.notes.push_back(
+      fmt::format("{}: faster in {} of {} rows, slower in {}, not told apart in {}; its times are {} of "
+                  "those of {} (geometric mean of the ratios).",
+                  side.name, verdicts["faster"], rows, verdicts["slower"], verdicts["not told apart"],
+                  number_text(std::exp(logs / rows)), base.name));
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(std::move(plot));
 }
@@ -231,18 +230,14 @@ void add_side(Report& report, const Side& base, const Side& side, Tally& tally) 
 const char* interval_note(const Tally& tally) {
   if (tally.in_turn)
     return "The devices took turns, so runs are compared pair by pair: the median of their ratios. Fewer "
-           "than "
-           "six pairs tell nothing apart.";
+           "than six pairs tell nothing apart.";
   if (tally.fewest_calls < 6)
     return "Fewer than six calls of each: the interval is that of the ranges of all runs, each widened by "
-           "its "
-           "width at both ends, because calls differ by more than the runs within one. Fewer than six runs "
-           "tell nothing apart. Six calls of each, "
-           "made "
-           "in turn, with their reports in a folder each, have a much smaller one.";
+           "its width at both ends, because calls differ by more than the runs within one. Fewer than six "
+           "runs tell nothing apart. Six calls of each, made in turn, with their reports in a folder each, "
+           "have a much smaller one.";
   return "Intervals by bootstrap of the medians of the calls' medians. Calls of both have to be made in "
-         "turn: "
-         "what the machine does meanwhile is in the ratio otherwise.";
+         "turn: what the machine does meanwhile is in the ratio otherwise.";
 }
 
 int bench_compare(const CompareOptions& options) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "bench/commands/bench_run.h"
 #include "bench/frames/device_ranking.h"
@@ -45,13 +46,12 @@ int bench_devices_command(const BenchOptions& asked) {
   if (options.devices.empty()) options.devices = {"all"};
   const std::vector<DeviceInfo> devices = wholes_and_parts(options);
   run.add_devices(devices);
-  run.head().notes.push_back(
-      fmt::format("Median of {} frames after one to warm up; the combinations take turns, devices are opened "
-                  "once, and building kernels does not count. A share is a part of the picture's pixels. A "
-                  "pixel differs if it is more than 0.02 (linear color) from the first device's; more than "
-                  "one pixel in 200 is a problem. Efficiency is the combination's frames a second over the "
-                  "sum of its devices' alone, by the medians.",
-                  options.repeat));
+  run.head().notes.push_back(fmt::format(
+      "Median of {} frames after one to warm up; the combinations take turns, devices are opened once, and "
+      "building kernels does not count. A share is a part of the picture's pixels. A pixel differs if it is "
+      "more than 0.02 (linear color) from the first device's; more than one pixel in 200 is a problem. "
+      "Efficiency is the combination's frames a second over the sum of its devices' alone, by the medians.",
+      options.repeat));
   for (const std::string& file : options.scenes)
     run.measure(std::make_shared<DeviceRanking>(scene_name(file), run.compiled(file), devices));
   return run.publish();

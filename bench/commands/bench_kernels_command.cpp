@@ -60,10 +60,8 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
   if (const auto limits = device.nvidia())
     report.notes.push_back(fmt::format(
         "{}: `threads` is how many threads a multiprocessor can hold if only the kernel's registers limit "
-        "them: {} "
-        "registers, a quarter for each of four schedulers, allocated to warps of {} in steps of 256; at most "
-        "{} "
-        "threads at compute capability {}.{}. `occupancy` is the share of that maximum.",
+        "them: {} registers, a quarter for each of four schedulers, allocated to warps of {} in steps of "
+        "256; at most {} threads at compute capability {}.{}. `occupancy` is the share of that maximum.",
         info.label(), limits->registers, limits->warp, limits->threads(), limits->major, limits->minor));
 }
 
@@ -73,8 +71,7 @@ int bench_kernels(const BenchOptions& options) {
   Report& report = run.head();
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
   report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+  const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
     for (const DeviceInfo& info : devices) {
@@ -85,8 +82,7 @@ int bench_kernels(const BenchOptions& options) {
   report.notes.push_back(
       "`group given` is the largest work-group that sundog uses. `group limit`, `multiple`, `private` (for a "
       "work-item) and `local` (for a group) come from the driver. Registers, stack and spills come from the "
-      "build "
-      "log of NVIDIA's compiler; other drivers do not report them. An empty cell: not known.");
+      "build log of NVIDIA's compiler; other drivers do not report them. An empty cell: not known.");
   return run.publish();
 }
 

@@ -11,10 +11,10 @@
 #include <sstream>
 #include <tuple>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/revision.h"
@@ -65,11 +65,9 @@ void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed)
   if (scene_needed) scenes->required();
   values(app, "--device", "SPEC", options.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
-  app->add_option("--repeat", options.repeat, "runs of each measurement, in turn with the others (default 6)")
-      ->type_name("N")
+  value(app, "--repeat", "N", options.repeat, "runs of each measurement, in turn with the others (default 6)")
       ->range(1, 10000);
-  app->add_option("--seconds", options.seconds, "further runs until those of each measurement took so long")
-      ->type_name("S")
+  value(app, "--seconds", "S", options.seconds, "further runs until those of each measurement took so long")
       ->range(0, 1e6);
   value(app, "--precision", "P%", options.precision,
         "further runs, at most 1000, until the median is known to P per cent: half of its interval");
@@ -155,7 +153,7 @@ SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
-  return pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+  return pick_devices(list_devices(), options.devices);
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {
@@ -184,10 +182,9 @@ void add_bench(Arguments& root, Command& chosen) {
   Arguments* bench =
       root.add_subcommand("bench", "Measure, and write tables, JSON, CSV or a page with plots");
   bench->require_subcommand(1);
-  for (AddCommand* add :
-       {add_bench_workgroup, add_bench_threads, add_bench_rays, add_bench_samples, add_bench_quality,
-        add_bench_textures, add_bench_devices, add_bench_kernels, add_bench_roofline, add_bench_compare})
-    add(*bench, chosen);
+#define SUNDOG_BENCH(name) add_bench_##name(*bench, chosen);
+  SUNDOG_BENCHES(SUNDOG_BENCH)
+#undef SUNDOG_BENCH
 }
 
 }  // namespace sundog

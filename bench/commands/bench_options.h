@@ -39,7 +39,7 @@ void check_report_files(const ReportFiles& files, const std::vector<std::string>
 void write_report(const Report& report, const ReportFiles& files);
 
 /// SCENE... --device --set --repeat, and those of a report. Where no scene is needed the benchmark has one.
-void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed = true);
+void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed);
 
 /// --size, for benchmarks that render frames of one size.
 void add_bench_size(Arguments* app, BenchOptions& options);
@@ -74,7 +74,21 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 /// "a,b" -> a, b.
 std::vector<std::string> split_names(const std::string& text);
 
-AddCommand add_bench_threads, add_bench_devices, add_bench_kernels, add_bench_workgroup, add_bench_rays,
-    add_bench_samples, add_bench_quality, add_bench_textures, add_bench_roofline, add_bench_compare;
+/// X(name) for each bench, in the order of help.
+#define SUNDOG_BENCHES(X) \
+  X(workgroup)            \
+  X(threads)              \
+  X(rays)                 \
+  X(samples)              \
+  X(quality)              \
+  X(textures)             \
+  X(devices)              \
+  X(kernels)              \
+  X(roofline)             \
+  X(compare)
+
+#define SUNDOG_BENCH(name) AddCommand add_bench_##name;
+SUNDOG_BENCHES(SUNDOG_BENCH)
+#undef SUNDOG_BENCH
 
 }  // namespace sundog

@@ -47,8 +47,7 @@ int bench_quality(const QualityOptions& options) {
       "difference from the reference, in linear color. The perceived difference is the mean of "
       "FLIP (Andersson and others 2020) at 67 pixels a degree, where values above 1 count as 1.",
       options.repeat));
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+  const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
       plan.scene = scene_name(file);

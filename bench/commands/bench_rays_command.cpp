@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <optional>
 #include <sstream>
 
 #include "app/options/option_helpers.h"
@@ -60,11 +58,9 @@ int bench_rays(const RaysOptions& options) {
         options.repeat));
   head.notes.emplace_back(
       "Every answer is checked by the host's own tracer and, where the two differ, in double precision; "
-      "later "
-      "runs must have the same answers to the bit. `by rounding` counts the answers that differ and where "
-      "both are right; where the plain tracer is wrong for one ray in a thousand, nothing is timed.");
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+      "later runs must have the same answers to the bit. `by rounding` counts the answers that differ and "
+      "where both are right; where the plain tracer is wrong for one ray in a thousand, nothing is timed.");
+  const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
     head.facts.emplace_back(scene_name(file), describe(*scene));

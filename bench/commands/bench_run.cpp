@@ -121,6 +121,12 @@ void BenchRun::add_devices(const std::vector<DeviceInfo>& devices) {
     head_.facts.emplace_back("PoCL", pocl_fact(*program_environment()));
 }
 
+std::vector<DeviceInfo> BenchRun::devices() {
+  std::vector<DeviceInfo> all = bench_devices(options_);
+  add_devices(all);
+  return all;
+}
+
 void BenchRun::add_scene(const std::string& name, const std::string& file, const CompiledScene& scene) {
   add_row(head_.scenes, {{"name", "", name},
                          {"file", "", file},

@@ -20,6 +20,8 @@ class BenchRun {
   /// The report without measurements: facts, and notes that follow those of the measurements.
   Report& head() { return head_; }
   void add_devices(const std::vector<DeviceInfo>& devices);
+  /// Those that the options mean, added.
+  std::vector<DeviceInfo> devices();
   /// Throws UsageError where the report to continue has measured another scene of that name.
   void add_scene(const std::string& name, const std::string& file, const CompiledScene& scene);
   std::shared_ptr<const CompiledScene> compiled(const std::string& file,

@@ -1,7 +1,6 @@
 // `sundog bench samples`: time and error by samples a pixel.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "app/options/option_helpers.h"
@@ -53,8 +52,7 @@ int bench_samples(const SamplesOptions& options) {
       "0.02. With independent samples \"error x sqrt(samples)\" would stay constant; these samples are "
       "spread evenly over the pixel and do better.",
       options.repeat, reference));
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+  const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
       const auto compile_with = [&run, file](const std::vector<std::string>& overrides) {
@@ -74,9 +72,8 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
                                      bench_samples);
   add_bench_size(app, *options);
   value(app, "--counts", "LIST", options->counts, "samples a pixel (default 1,5,17,26)");
-  app->add_option("--reference", options->reference,
-                  "samples of the picture that counts as right (default: four times the most)")
-      ->type_name("N")
+  value(app, "--reference", "N", options->reference,
+        "samples of the picture that counts as right (default: four times the most)")
       ->range(2, 1 << 18);
   value(app, "--adaptive", "LIST", options->adaptive,
         "thresholds of the adaptive frames (default 0.01,0.02,0.05)");

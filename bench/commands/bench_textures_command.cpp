@@ -23,8 +23,7 @@ int bench_textures(const TexturesOptions& options) {
       "numbers. Levels: all that compiling the scene takes, mostly the smaller levels of the "
       "images. Loading: both. Every result was compared before its time counted.",
       options.repeat));
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+  const std::vector<DeviceInfo> devices = run.devices();
   const auto measure = [&](const std::string& name, const std::string& file, const SceneDescription& scene) {
     run.add_scene(name, file, compile(scene));
     for (const DeviceInfo& device : devices) run.measure(std::make_shared<TextureCost>(name, scene, device));
@@ -45,12 +44,10 @@ void add_bench_textures(Arguments& bench, Command& chosen) {
   Arguments* app = add_bench_command(bench, chosen, "textures", "A frame with textures and without them",
                                      options, bench_textures, false);
   add_bench_size(app, *options);
-  app->add_option("--edge", options->edge, "texels a side of the made scene's images (default 1024)")
-      ->type_name("N")
+  value(app, "--edge", "N", options->edge, "texels a side of the made scene's images (default 1024)")
       ->range(1, 8192);
-  app->add_option("--loaded-edge", options->loaded_edge,
-                  "texels a side of the PNG files whose loading is timed (default 2048)")
-      ->type_name("N")
+  value(app, "--loaded-edge", "N", options->loaded_edge,
+        "texels a side of the PNG files whose loading is timed (default 2048)")
       ->range(1, 8192);
 }
 

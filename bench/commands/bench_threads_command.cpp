@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
-#include "app/process/environment.h"
 #include "app/process/progress.h"
 #include "base/error.h"
 #include "bench/commands/bench_run.h"
@@ -126,17 +126,16 @@ int bench_threads(const ThreadsOptions& options) {
   if (plan.plain) head.facts.emplace_back("plain C++", compiler_text() + ", one thread");
   const std::vector<ThreadScaling> plans = make_plans(options, plan, run);
   announce(options, plans, head);
-  head.notes.push_back(fmt::format(
-      "Median of {} frames after two to warm up, sizes and counts in turn, from the first launch until the "
-      "film is on the host, without building kernels. Threads are compute units of a sub-device. All "
-      "images of a size are the same to the bit.",
-      plans.empty() ? options.repeat : plans.front().repeat));
+  head.notes.push_back(
+      fmt::format("Median of {} frames after two to warm up, sizes and counts in turn, from the first launch "
+                  "until the film is on the host, without building kernels. Threads are compute units of a "
+                  "sub-device. All images of a size are the same to the bit.",
+                  plans.empty() ? options.repeat : plans.front().repeat));
   if (plan.plain)
     head.notes.push_back(
         "Plain C++ is the same integrator written as an ordinary program: recursion, scalar floats, the same "
         "BVH, none of the kernels' code. It draws one frame of each size, which is the device's image but "
-        "for "
-        "rounding. Speed-ups are over one thread of the device.");
+        "for rounding. Speed-ups are over one thread of the device.");
   for (const ThreadScaling& each : plans) run.measure(std::make_shared<ThreadTimes>(each), 0, each.repeat);
   return run.publish();
 }
@@ -151,11 +150,9 @@ void add_bench_threads(Arguments& bench, Command& chosen) {
   value(app, "--sizes", "N,N...", options->sizes, "pixels a side (default 128,256,352,448,512,640)");
   value(app, "--counts", "N,N...", options->counts,
         "threads (default: powers of two up to the machine's cores)");
-  app->add_option(
-         "--budget", options->budget,
-         "about how long it may take: larger sizes of plain C++, frames, then larger images are left out "
-         "(default 100, or no limit with --sizes)")
-      ->type_name("SECONDS")
+  value(app, "--budget", "SECONDS", options->budget,
+        "about how long it may take: larger sizes of plain C++, frames, then larger images are left out "
+        "(default 100, or no limit with --sizes)")
       ->range(0, 1e6);
   app->add_flag("--no-plain", options->no_plain, "without the column of plain single-threaded C++");
 }

@@ -138,8 +138,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
       "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
       "no times."};
-  const std::vector<DeviceInfo> devices = bench_devices(options);
-  run.add_devices(devices);
+  const std::vector<DeviceInfo> devices = run.devices();
   const double parts = static_cast<double>(options.scenes.size() * devices.size() * kernels.size());
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
@@ -173,13 +172,10 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
          fmt::format("one of {}; the first two are the frame (default: all)", fmt::join(kernel_names, ", ")));
   value(app, "--sizes", "N,WxH...", options->sizes,
         "work-groups to compare with the default (default: all that make sense)");
-  app->add_option(
-         "--budget", options->budget,
-         "about how long it may take: then further runs, and sizes, are left out (default: no limit)")
-      ->type_name("SECONDS")
+  value(app, "--budget", "SECONDS", options->budget,
+        "about how long it may take: then further runs, and sizes, are left out (default: no limit)")
       ->range(0, 1e6);
-  app->add_option("--rays", options->rays, "camera rays a side for the tracer's kernels (default 512)")
-      ->type_name("N")
+  value(app, "--rays", "N", options->rays, "camera rays a side for the tracer's kernels (default 512)")
       ->range(16, 16384);
 }
 

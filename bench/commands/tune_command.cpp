@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
 #include "base/cache_folder.h"
@@ -144,8 +145,7 @@ void add_tune(Arguments& root, Command& chosen) {
   values(app, "--device", "SPEC", options->bench.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options->bench.overrides, "change the scenes, as in /camera/fov=30");
   outside_files(app, options->bench.outside_files);
-  app->add_option("--budget", options->budget, "seconds for a device, with compilation (default 60)")
-      ->type_name("SECONDS");
+  value(app, "--budget", "SECONDS", options->budget, "seconds for a device, with compilation (default 60)");
   app->add_option("--worker", options->worker)->hidden();
   app->add_flag("--show", options->show, "print the results that are kept");
   app->add_flag("--forget", options->forget, "remove the results of --device, or all");

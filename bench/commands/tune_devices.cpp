@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/options/devices.h"
 #include "app/process/child_process.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/standard_streams.h"
@@ -132,9 +132,8 @@ std::vector<std::string> worker_arguments(const TuneOptions& options, const Devi
   for (const std::string& setting : options.bench.overrides)
     arguments.insert(arguments.end(), {"--set", setting});
   if (options.bench.outside_files) arguments.push_back("--allow-outside-files");
-  const std::string units = device.sub_units > 0 ? fmt::format("/{}", device.sub_units) : "";
-  arguments.insert(arguments.end(), {"--budget", fmt::format("{}", options.budget), "--worker",
-                                     fmt::format("{}:{}{}", device.platform, device.device, units)});
+  arguments.insert(arguments.end(),
+                   {"--budget", fmt::format("{}", options.budget), "--worker", device.spec()});
   return arguments;
 }
 

@@ -180,25 +180,20 @@ void DeviceRanking::add_to(Report& report) const {
   for (const std::size_t i : order) {
     const Subject& subject = subjects_[i];
     const Combination& made = *combinations_[i];
-    std::vector<Field> measured{{"scene", "", name_}, {"devices", "", names(made.devices)}};
-    std::vector<Field> shown{measured[1]};
-    for (const Field& field : run_fields(subject)) measured.push_back(field);
+    const Field devices{"devices", "", names(made.devices)};
+    std::vector<Field> shown{devices}, more;
     if (subject.is_good()) {
       const Spread ms = scaled(subject.seconds(), 1e3);
-      const auto part = efficiency(made);
-      const Field more[] = {{"shares", "", made.shares_text(subject)},
-                            {"efficiency", "", part ? Cell(*part) : Cell()},
-                            {"differing pixels", "", static_cast<double>(made.differing)}};
-      measured.insert(measured.end(), std::begin(more), std::end(more));
+      more = {{"shares", "", made.shares_text(subject)},
+              {"efficiency", "", efficiency(made)},
+              {"differing pixels", "", static_cast<double>(made.differing)}};
       shown.insert(shown.end(), {{"time", "ms", ms}, {"of the best", "", ms.median / (1e3 * best)}});
-      shown.insert(shown.end(), std::begin(more), std::end(more));
+      shown.insert(shown.end(), more.begin(), more.end());
       plot.bars.push_back(
           {names(made.devices).substr(0, 40), ms, made.devices.size() > 1 ? made.shares_text(subject) : ""});
     }
-    if (!subject.problem.empty()) shown.push_back({"problem", "", subject.problem});
-    add_row(table, shown);
-    add_row(report.measurements, measured);
-    report.ways.push_back(subject);
+    add_row(table, shown, subject);
+    add_measured(report, subject, {{"scene", "", name_}, devices}, more);
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(std::move(plot));

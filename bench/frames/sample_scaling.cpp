@@ -108,11 +108,10 @@ Table SampleTimes::even_table() const {
     std::vector<Field> row{{"samples", "", plan_.ways[i].setting}};
     if (subjects_[i].is_good()) {
       row[0].cell = figures_[i]->samples;
-      row.push_back({"time", "ms", scaled(subjects_[i].seconds(), 1e3)});
+      row.push_back({"time", "ms", milliseconds(subjects_[i])});
       for (const Field& field : figures(i)) row.push_back(field);
     }
-    if (!subjects_[i].problem.empty()) row.push_back({"problem", "", subjects_[i].problem});
-    add_row(table, row);
+    add_row(table, row, subjects_[i]);
   }
   return table;
 }
@@ -129,13 +128,12 @@ Table SampleTimes::way_table() const {
       const double part = of_even(i);
       row.insert(row.end(),
                  {{"a pixel", "", figures_[i]->samples},
-                  {"time", "ms", scaled(subjects_[i].seconds(), 1e3)},
+                  {"time", "ms", milliseconds(subjects_[i])},
                   {"rays", "millions", figures_[i]->rays / 1e6},
                   {"rms error", "", figures_[i]->error.rms},
                   {"of the rays of even samples at this error", "%", part > 0 ? Cell(part) : Cell()}});
     }
-    if (!subjects_[i].problem.empty()) row.push_back({"problem", "", subjects_[i].problem});
-    add_row(table, row);
+    add_row(table, row, subjects_[i]);
   }
   return table;
 }
@@ -184,21 +182,21 @@ void SampleTimes::add_to(Report& report) const {
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
     const SampleWay& way = plan_.ways[i];
     const bool good = subjects_[i].is_good();
-    std::vector<Field> row{
-        {"scene", "", plan_.scene},
-        {"device", "", plan_.device.label()},
-        {"way", "", way.family == even_family ? way.family : fmt::format("{}, {}", way.family, way.setting)},
-        {"samples", "", good ? Cell(figures_[i]->samples) : Cell()},
-        {"reference samples", "", static_cast<double>(plan_.reference)}};
-    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
+    std::vector<Field> more;
     if (good) {
-      for (const Field& field : figures(i)) row.push_back(field);
       const double part = of_even(i);
-      row.push_back({"rays", "millions", figures_[i]->rays / 1e6});
-      row.push_back({"of even rays", "%", part > 0 ? Cell(part) : Cell()});
+      more = figures(i);
+      more.push_back({"rays", "millions", figures_[i]->rays / 1e6});
+      more.push_back({"of even rays", "%", part > 0 ? Cell(part) : Cell()});
     }
-    add_row(report.measurements, row);
-    report.ways.push_back(subjects_[i]);
+    add_measured(
+        report, subjects_[i],
+        {{"scene", "", plan_.scene},
+         {"device", "", plan_.device.label()},
+         {"way", "", way.family == even_family ? way.family : fmt::format("{}, {}", way.family, way.setting)},
+         {"samples", "", good ? Cell(figures_[i]->samples) : Cell()},
+         {"reference samples", "", static_cast<double>(plan_.reference)}},
+        more);
   }
 }
 

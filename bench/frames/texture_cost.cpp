@@ -151,8 +151,7 @@ void TextureCost::add_to(Report& report) const {
   std::vector<Field> row{{"scene", "", scene_}, {"device", "", device_}};
   const char* names[] = {"without", "textured"};
   for (std::size_t i = 0; i < 2; ++i) {
-    const bool good = subjects_[i].is_good();
-    row.push_back({names[i], "ms", good ? Cell(scaled(subjects_[i].seconds(), 1e3)) : Cell()});
+    row.push_back({names[i], "ms", milliseconds(subjects_[i])});
     row.push_back({fmt::format("rays {}", names[i]), "", *rays_[i]});
     report.ways.push_back(subjects_[i]);
   }
@@ -210,11 +209,10 @@ void ImageCost::add_to(Report& report) const {
     };
     row.insert(row.end(), {{"decoding", "ms", later(parts_->decode)},
                            {"levels", "ms", later(parts_->levels)},
-                           {"loading", "ms", scaled(subject.seconds(), 1e3)},
+                           {"loading", "ms", milliseconds(subject)},
                            {"loading on processors", "ms", later(parts_->processor)}});
   }
-  if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
-  add_row(report.measurements, row);
+  add_row(report.measurements, row, subject);
   report.ways.push_back(subject);
 }
 

@@ -164,7 +164,7 @@ void ThreadTimes::add_to(Report& report) const {
         plan_.scene, sizes));
   const auto time_cell = [&](int size, unsigned count) {
     const Subject* time = find(size, count);
-    return time ? Cell(scaled(time->seconds(), 1e3)) : Cell();
+    return time ? milliseconds(*time) : Cell();
   };
   const auto gain_cell = [&](double scale, int size, unsigned count) {
     const auto gain = speed_up(size, count);
@@ -187,15 +187,13 @@ void ThreadTimes::add_to(Report& report) const {
   report.parts.emplace_back(std::move(plot));
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     const auto [size, threads] = ways_[i];
-    std::vector<Field> row{{"scene", "", plan_.scene},
-                           {"device", "", threads ? plan_.device.label() : "plain C++"},
-                           {"size", "pixels", static_cast<double>(size)},
-                           {"threads", "", threads ? static_cast<double>(threads) : 1.0}};
-    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
     const auto gain = threads ? speed_up(size, threads) : std::nullopt;
-    row.push_back({"speed-up", "", gain ? Cell(gain->median) : Cell()});
-    add_row(report.measurements, row);
-    report.ways.push_back(subjects_[i]);
+    add_measured(report, subjects_[i],
+                 {{"scene", "", plan_.scene},
+                  {"device", "", threads ? plan_.device.label() : "plain C++"},
+                  {"size", "pixels", static_cast<double>(size)},
+                  {"threads", "", threads ? static_cast<double>(threads) : 1.0}},
+                 {{"speed-up", "", gain ? Cell(gain->median) : Cell()}});
     if (!subjects_[i].problem.empty())
       report.notes.push_back(fmt::format("{}: {}", subjects_[i].name, subjects_[i].problem));
   }

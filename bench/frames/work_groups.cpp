@@ -189,14 +189,13 @@ Table WorkGroupTimes::table() const {
     const Subject& subject = subjects_[i];
     std::vector<Field> row{{"work-group", "", ways_[i]->text}};
     if (subject.is_good()) {
-      row.push_back({"time", "ms", scaled(subject.seconds(), 1e3)});
+      row.push_back({"time", "ms", milliseconds(subject)});
       if (compared)
         row.push_back({"of the default", "", subject.seconds().median / subjects_.front().seconds().median});
       if (const auto compile = ways_[i]->compile_seconds())
         row.push_back({"compiled at first launch", "ms", 1e3 * *compile});
     }
-    if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
-    add_row(result, row);
+    add_row(result, row, subject);
   }
   return result;
 }
@@ -220,12 +219,11 @@ void WorkGroupTimes::add_to(Report& report) const {
       row[4].cell = static_cast<double>(way.group.x);
       row[5].cell = static_cast<double>(way.group.y);
     }
-    for (const Field& field : run_fields(subject)) row.push_back(field);
+    std::vector<Field> more;
     const auto compile = way.compile_seconds();
     if (round == std::string("sweep"))
-      row.push_back({"compiled at first launch", "ms", compile ? Cell(1e3 * *compile) : Cell()});
-    add_row(report.measurements, row);
-    report.ways.push_back(subject);
+      more.push_back({"compiled at first launch", "ms", compile ? Cell(1e3 * *compile) : Cell()});
+    add_measured(report, subject, row, more);
   };
   for (std::size_t i = 0; i < ways_.size(); ++i) measured(subjects_[i], *ways_[i], "sweep");
   if (duel_.empty() || !least()) return;

@@ -18,7 +18,7 @@
 #include "base/file.h"
 #include "base/image_io.h"
 #include "bench/report/samples.h"
-#include "parse_arguments.h"
+#include "peer_program.h"
 
 using namespace sundog;
 
@@ -166,18 +166,13 @@ int main(int argc, char** argv) {
   app.add_option("--device", options.device, "sundog's OpenCL device");
   app.add_option("--folder", options.folder, "for scenes and pictures");
   app.add_option("--json", options.json, "file for the figures");
-  parse_or_exit(app, argc, argv);
   setenv("QT_QPA_PLATFORM", "offscreen", 0);
-  try {
+  return run_program(app, argc, argv, [&] {
     std::filesystem::create_directories(options.folder);
     fmt::print("{0}x{0}, one thread, {1} runs in turn\n{2:12} {3:>10} {4:>10} {5:>9} {6:>9} {7:>11}\n",
                options.size, options.repeats, "", "sundog", "Mandelb.", "x wall", "x cpu", "outlines");
     nlohmann::json report{{"size", options.size}, {"repeats", options.repeats}};
     for (const Surface& s : surfaces) report["surfaces"].push_back(measure(s, options));
     if (!options.json.empty()) write_file(options.json, report.dump(2) + "\n");
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "against_mandelbulber: {}\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -19,7 +19,7 @@
 #include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
-#include "parse_arguments.h"
+#include "peer_program.h"
 #include "povray_from_scene.h"
 #include "povray_run.h"
 #include "scene/load.h"
@@ -171,7 +171,7 @@ DeviceInfo choose_device(unsigned threads) {
   return device;
 }
 
-int run(const Options& options) {
+void run(const Options& options) {
   const std::string version = povray::installed_version();
   const DeviceInfo device = choose_device(options.threads);
   fmt::print("{}, driver {}; {}\n{} threads, {}x{}, {} runs in turn; {} shadows; seconds by the {} clock\n",
@@ -194,7 +194,6 @@ int run(const Options& options) {
     report["scenes"].push_back(to_json(m, !version.empty()));
   }
   if (!options.json.empty()) write_file(options.json, report.dump(2) + "\n");
-  return 0;
 }
 
 }  // namespace
@@ -218,12 +217,8 @@ int main(int argc, char** argv) {
   app.add_flag("--media", options.media,
                "absorption as POV-Ray's media: right everywhere, but slower than fading");
   app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  parse_or_exit(app, argc, argv);
-  if (side > 0) options.width = options.height = side;
-  try {
-    return sundog::run(options);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "against_povray: {}\n", error.what());
-    return 1;
-  }
+  return run_program(app, argc, argv, [&] {
+    if (side > 0) options.width = options.height = side;
+    sundog::run(options);
+  });
 }

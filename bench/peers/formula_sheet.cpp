@@ -17,7 +17,7 @@
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 #include "formula/list.h"
-#include "parse_arguments.h"
+#include "peer_program.h"
 #include "scene/read/scene_reader.h"
 #include "stb/stb_easy_font.h"
 
@@ -187,13 +187,8 @@ int main(int argc, char** argv) {
   app.add_option("--samples", sheet.samples, "samples a pixel (default 9)")->range(1, 4096);
   bool bare = false;
   app.add_flag("--no-names", bare, "the surfaces alone, without their names");
-  parse_or_exit(app, argc, argv);
-  sheet.names = !bare;
-  try {
+  return run_program(app, argc, argv, [&] {
+    sheet.names = !bare;
     make(sheet);
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "formula_sheet: {}\n", error.what());
-    return 1;
-  }
+  });
 }

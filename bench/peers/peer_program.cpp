@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "parse_arguments.h"
 
 namespace sundog {
 
@@ -21,18 +21,26 @@ void add_peer_options(Arguments& app, PeerOptions& options) {
   app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
 }
 
-int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
-                     const std::function<nlohmann::json(const std::string& model)>& measure) {
-  parse_or_exit(app, argc, argv);
+int run_program(Arguments& app, int argc, char** argv, const std::function<void()>& run) {
   try {
-    nlohmann::json results = nlohmann::json::array();
-    for (const std::string& model : options.models) results.push_back(measure(model));
-    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
+    app.parser().parse(argc, argv);
+    run();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.parser().exit(error);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", std::filesystem::path(argv[0]).filename().string(), error.what());
     return 1;
   }
-  return 0;
+}
+
+int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
+                     const std::function<nlohmann::json(const std::string& model)>& measure) {
+  return run_program(app, argc, argv, [&] {
+    nlohmann::json results = nlohmann::json::array();
+    for (const std::string& model : options.models) results.push_back(measure(model));
+    if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
+  });
 }
 
 }  // namespace sundog

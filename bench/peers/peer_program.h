@@ -1,5 +1,5 @@
-// The common frame of the programs that measure in turn with a peer: MODEL... and the same options on the
-// command line, a result for each model, all of them as JSON.
+// The common frame of the programs that measure in turn with a peer. Those of models have MODEL... and the
+// same options on the command line, a result for each model, all of them as JSON.
 #pragma once
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -21,8 +21,11 @@ struct PeerOptions {
 /// MODEL... --repeats --json --wall --spatial.
 void add_peer_options(Arguments& app, PeerOptions& options);
 
-/// Parses, runs `measure` for each model and writes what it returned; main()'s result. Errors are one line on
-/// stderr.
+/// Reads the command line, or prints help or an error; then calls `run`, whose errors are one line on stderr.
+/// Returns main()'s status.
+int run_program(Arguments& app, int argc, char** argv, const std::function<void()>& run);
+
+/// run_program() that runs `measure` for each model and writes what it returned.
 int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure);
 

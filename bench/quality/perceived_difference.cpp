@@ -12,6 +12,9 @@
 namespace sundog {
 namespace {
 
+/// A viewer's: a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m.
+constexpr double pixels_per_degree = 67;
+
 using glm::dvec3;
 
 constexpr double pi = std::numbers::pi;
@@ -97,7 +100,7 @@ Plane<T> filtered(const Plane<T>& in, const Weights& across, const Weights& down
 
 /// Filters each opponent channel by the eye's contrast sensitivity: a Gaussian for lightness and red-green,
 /// the sum of two for blue-yellow.
-Plane<dvec3> blurred(const Plane<dvec3>& opponents, double pixels_per_degree) {
+Plane<dvec3> blurred(const Plane<dvec3>& opponents) {
   const dvec3 narrow(0.0047, 0.0053, 0.04);
   const double wide = 0.025, first = 34.1, second = 13.5;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * pixels_per_degree));
@@ -125,7 +128,7 @@ struct Features {
   Plane<double> edges, points;
 };
 
-Features features_of(const Plane<double>& lightness, double pixels_per_degree) {
+Features features_of(const Plane<double>& lightness) {
   const double deviation = 0.5 * feature_width * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));
   const auto bell = [&](double i) { return std::exp(-i * i / (2 * deviation * deviation)); };
@@ -159,7 +162,7 @@ struct Looks {
   Features features;
 };
 
-Looks looks_of(const Image& image, double pixels_per_degree) {
+Looks looks_of(const Image& image) {
   const auto channels = static_cast<std::size_t>(image.channels);
   std::size_t at = 0;
   const auto opponents = plane<dvec3>(image.width, image.height, [&](int, int) {
@@ -172,11 +175,10 @@ Looks looks_of(const Image& image, double pixels_per_degree) {
     return opponents_of(rgb);
   });
   Looks looks;
-  looks.colors = blurred(opponents, pixels_per_degree);
+  looks.colors = blurred(opponents);
   for (dvec3& color : looks.colors.values) color = seen_color(rgb_of(color));
-  looks.features = features_of(plane<double>(image.width, image.height,
-                                             [&](int x, int y) { return (opponents.at(x, y).x + 16) / 116; }),
-                               pixels_per_degree);
+  looks.features = features_of(plane<double>(
+      image.width, image.height, [&](int x, int y) { return (opponents.at(x, y).x + 16) / 116; }));
   return looks;
 }
 
@@ -191,10 +193,10 @@ double color_difference(const dvec3& a, const dvec3& b) {
 
 }  // namespace
 
-std::vector<float> perceived_differences(const Image& a, const Image& b, double pixels_per_degree) {
+std::vector<float> perceived_differences(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels < 3 || b.channels < 3)
     throw std::invalid_argument("perceived_differences: wanted two images of one size with colours");
-  const Looks one = looks_of(a, pixels_per_degree), other = looks_of(b, pixels_per_degree);
+  const Looks one = looks_of(a), other = looks_of(b);
   std::vector<float> differences;
   for (std::size_t i = 0; i < one.colors.values.size(); ++i) {
     const double color = color_difference(one.colors.values[i], other.colors.values[i]);
@@ -207,8 +209,8 @@ std::vector<float> perceived_differences(const Image& a, const Image& b, double 
   return differences;
 }
 
-double perceived_difference(const Image& a, const Image& b, double pixels_per_degree) {
-  const std::vector<float> differences = perceived_differences(a, b, pixels_per_degree);
+double perceived_difference(const Image& a, const Image& b) {
+  const std::vector<float> differences = perceived_differences(a, b);
   if (differences.empty()) return 0;
   return std::accumulate(differences.begin(), differences.end(), 0.0) /
          static_cast<double>(differences.size());

@@ -108,16 +108,12 @@ void QualityTimes::add_to(Report& report) const {
                              {"samples", "", static_cast<double>(time.samples)}};
     std::vector<Field> row{{"scene", "", plan_.scene}, {"device", "", plan_.device.label()}};
     row.insert(row.end(), shown.begin(), shown.end());
-    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
-    const Field errors[] = {{"rms error", "", good ? Cell(time.rms) : Cell()},
-                            {"perceived difference", "", good ? Cell(time.perceived) : Cell()}};
-    shown.push_back({"time", "ms", good ? Cell(scaled(subjects_[i].seconds(), 1e3)) : Cell()});
-    shown.insert(shown.end(), std::begin(errors), std::end(errors));
-    row.insert(row.end(), std::begin(errors), std::end(errors));
-    if (!subjects_[i].problem.empty()) shown.push_back({"problem", "", subjects_[i].problem});
-    add_row(table, shown);
-    add_row(report.measurements, row);
-    report.ways.push_back(subjects_[i]);
+    const std::vector<Field> errors{{"rms error", "", good ? Cell(time.rms) : Cell()},
+                                    {"perceived difference", "", good ? Cell(time.perceived) : Cell()}};
+    shown.push_back({"time", "ms", milliseconds(subjects_[i])});
+    shown.insert(shown.end(), errors.begin(), errors.end());
+    add_row(table, shown, subjects_[i]);
+    add_measured(report, subjects_[i], row, errors);
   }
   report.parts.emplace_back(std::move(table));
   report.parts.emplace_back(goal_table());

@@ -54,6 +54,6 @@ inline const std::vector<std::string> ray_kinds = {"primary",  "shadow",     "bo
 /// The rays of a frame of size x size pixels (as primary_rays() has them) and what follows from their hits,
 /// a set a kind: of `kinds`, or of all when it is empty. Kinds without any ray have no set.
 std::vector<RaySet> frame_rays(const CompiledScene& scene, const Viewpoint& view, unsigned size,
-                               const TraceFunction& trace, const std::vector<std::string>& kinds = {});
+                               const TraceFunction& trace, const std::vector<std::string>& kinds);
 
 }  // namespace sundog

@@ -107,7 +107,6 @@ void RayTimes::add_to(Report& report) const {
   Table table{fmt::format("{} on {}, {} tracer", name_, info_.label(), tracer), {}, {}};
   BarPlot bars{table.title, "Mrays/s", {}};
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    report.ways.push_back(subjects_[i]);
     std::vector<Field> row{{"scene", "", name_}, {"device", "", info_.label()}, {"tracer", "", tracer}};
     std::vector<Field> shown;
     if (i < kinds_.size()) {
@@ -117,8 +116,8 @@ void RayTimes::add_to(Report& report) const {
       shown = {{"kind", "", kind.set.kind},
                {"rays", "", number(rays)},
                {"hits", "%", 100.0 * number(kind.check.hits) / number(rays)},
-               {"rate", "Mrays/s", per_second ? Cell(*per_second) : Cell()},
-               {"kernel", "Mrays/s", kernel ? Cell(*kernel) : Cell()},
+               {"rate", "Mrays/s", per_second},
+               {"kernel", "Mrays/s", kernel},
                {"checked", "", fmt::format("{}, {} by rounding", kind.check.checked, kind.check.rounded)}};
       row.insert(row.end(), {shown[0],
                              shown[1],
@@ -130,10 +129,8 @@ void RayTimes::add_to(Report& report) const {
                              {"differ", "", number(kind.check.differ)}});
       if (per_second) bars.bars.push_back({kind.set.kind, *per_second, fmt::format("{} rays", rays)});
     }
-    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
-    if (!subjects_[i].problem.empty()) shown.push_back({"problem", "", subjects_[i].problem});
-    add_row(table, shown);
-    add_row(report.measurements, row);
+    add_row(table, shown, subjects_[i]);
+    add_measured(report, subjects_[i], row);
   }
   report.parts.emplace_back(std::move(table));
   if (!bars.bars.empty()) report.parts.emplace_back(std::move(bars));

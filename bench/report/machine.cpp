@@ -75,8 +75,7 @@ std::string busy_note() {
   if (::getloadavg(load.data(), 1) != 1 || load[0] < disturbing * cores) return {};
   return fmt::format(
       "Other programs were using the machine before the start (load {:.1f} on {} logical cores): times may "
-      "be longer "
-      "and vary more than on an idle machine.",
+      "be longer and vary more than on an idle machine.",
       load[0], cores);
 }
 

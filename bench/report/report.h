@@ -23,6 +23,10 @@ struct Cell {
   Cell(const char* text) : kind(Kind::word), word(text) {}
   Cell(double number) : kind(Kind::number), spread{number, number, number} {}
   Cell(const Spread& measured) : kind(Kind::spread), spread(measured) {}
+  template <class T>
+  Cell(const std::optional<T>& known) {
+    if (known) *this = Cell(*known);
+  }
 };
 
 /// `unit` may be empty. A Spread takes four columns of a CSV: name, name_min, name_max, name_runs.
@@ -48,9 +52,6 @@ struct Field {
 
 /// Appends a row; a name that the table has no column for gets one.
 void add_row(Table& table, const std::vector<Field>& fields);
-
-/// The columns that every bench has for a way: time, runs, cores, load, problem.
-std::vector<Field> run_fields(const MeasuredWay& way);
 
 struct CurvePoint {
   double x = 0;
@@ -104,6 +105,17 @@ struct Report {
   Table devices, scenes;           // what was measured, for other programs
   bool complete = true;            // false: the bench still runs, or was interrupted
 };
+
+/// Its time; nothing where it has none.
+Cell milliseconds(const MeasuredWay& way);
+
+/// Appends a row for people, with the way's problem where it has one.
+void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way);
+
+/// Adds a way and its row of measurements: `key`, then what every bench has (time, runs, cores, load,
+/// problem), then `more`.
+void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
+                  const std::vector<Field>& more = {});
 
 /// Facts, the tables among the parts (the measurements when there are none), notes.
 std::string report_text(const Report& report);

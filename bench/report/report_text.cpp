@@ -182,20 +182,33 @@ void add_row(Table& table, const std::vector<Field>& fields) {
   for (auto& each : table.rows) each.resize(table.columns.size());
 }
 
-std::vector<Field> run_fields(const MeasuredWay& way) {
+Cell milliseconds(const MeasuredWay& way) {
+  return way.is_good() ? Cell(scaled(way.seconds(), 1e3)) : Cell();
+}
+
+void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way) {
+  if (!way.problem.empty()) row.push_back({"problem", "", way.problem});
+  add_row(table, row);
+}
+
+void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
+                  const std::vector<Field>& more) {
   const bool good = way.is_good();
   const Spread seconds = way.seconds(), others = way.others();
   const double joules = way.joules(),
                mean = std::accumulate(seconds.runs.begin(), seconds.runs.end(), 0.0) /
                       static_cast<double>(std::max<std::size_t>(1, seconds.runs.size()));
-  return {{"time", "ms", good ? Cell(scaled(seconds, 1e3)) : Cell()},
-          {"runs", "", good ? Cell(static_cast<double>(seconds.runs.size())) : Cell()},
-          {"cores used", "", good ? Cell(way.cores()) : Cell()},
-          {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
-          {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
-          {"energy", "J", good && joules >= 0 ? Cell(joules) : Cell()},
-          {"power", "W", good && joules >= 0 ? Cell(joules / mean) : Cell()},
-          {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}};
+  key.insert(key.end(), {{"time", "ms", milliseconds(way)},
+                         {"runs", "", good ? Cell(static_cast<double>(seconds.runs.size())) : Cell()},
+                         {"cores used", "", good ? Cell(way.cores()) : Cell()},
+                         {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
+                         {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
+                         {"energy", "J", good && joules >= 0 ? Cell(joules) : Cell()},
+                         {"power", "W", good && joules >= 0 ? Cell(joules / mean) : Cell()},
+                         {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}});
+  key.insert(key.end(), more.begin(), more.end());
+  add_row(report.measurements, key);
+  report.ways.push_back(way);
 }
 
 std::string number_text(double value) {

@@ -24,7 +24,7 @@ std::string svg(const CurvePlot& plot, Place place = Place::page);
 std::string svg(const BarPlot& plot, Place place = Place::page);
 std::string svg(const HeatMap& map, Place place = Place::page);
 
-/// Round numbers from 0 that cover [0, most] in about `count` steps.
-std::vector<double> axis_ticks(double most, int count = 5);
+/// Round numbers from 0 that cover [0, most] in about five steps.
+std::vector<double> axis_ticks(double most);
 
 }  // namespace sundog

@@ -167,8 +167,8 @@ std::string legend(const CurvePlot& plot, const Axes& axes) {
 
 }  // namespace
 
-std::vector<double> axis_ticks(double most, int count) {
-  const double rough = most / count, power = std::pow(10.0, std::floor(std::log10(rough)));
+std::vector<double> axis_ticks(double most) {
+  const double rough = most / 5, power = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10 * power;
   for (const double factor : {5.0, 2.5, 2.0, 1.0})
     if (factor * power >= rough * (1 - 1e-9)) step = factor * power;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "base/clock.h"
 #include "bench/report/machine.h"
@@ -285,7 +284,6 @@ Table DevicePeaks::table() const {
 
 void DevicePeaks::add_to(Report& report) const {
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    report.ways.push_back(subjects_[i]);
     std::vector<Field> row{{"device", "", info_.label()}};
     if (i < peaks_.size()) {
       const Peak& peak = *peaks_[i];
@@ -302,8 +300,7 @@ void DevicePeaks::add_to(Report& report) const {
       const Spread queued = queued_of(i);
       row.push_back({"queued", "us", queued.median > 0 ? Cell(queued) : Cell()});
     }
-    for (const Field& field : run_fields(subjects_[i])) row.push_back(field);
-    add_row(report.measurements, row);
+    add_measured(report, subjects_[i], row);
   }
   report.parts.emplace_back(table());
 }

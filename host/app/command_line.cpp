@@ -9,7 +9,7 @@
 
 #include "app/job/job.h"
 #include "app/options/command_words.h"
-#include "app/process/environment.h"
+#include "app/options/devices.h"
 #include "app/process/revision.h"
 #include "base/arguments.h"
 #include "base/error.h"
@@ -73,10 +73,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   root.set_version_flag("--version", SUNDOG_VERSION);
   root.require_subcommand(1);
   Command chosen;
-  for (AddCommand* add :
-       {add_render, add_devices, add_formulas, add_kernels, add_info, add_compare, add_check, add_tune,
-        add_merge, add_mix, add_bake, add_gallery, add_halo, add_serve, add_bench, add_compile, add_worker})
-    add(arguments, chosen);
+#define SUNDOG_COMMAND(name) add_##name(arguments, chosen);
+  SUNDOG_COMMANDS(SUNDOG_COMMAND)
+#undef SUNDOG_COMMAND
   const CommandWords words = words_of(root);
   if (argc < 2)
     return text_command(fmt::format(short_help, fmt::join(command_names(words), ", ")), exit_usage);

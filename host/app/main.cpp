@@ -1,6 +1,5 @@
 // sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/time.h>
 #include <unistd.h>
 

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <new>
-#include <stdexcept>
 
 #include "base/error.h"
 #include "base/file.h"

@@ -10,8 +10,6 @@
 #include <bit>
 #include <boost/pfr.hpp>
 #include <cstring>
-#include <memory>
-#include <optional>
 
 namespace sundog {
 namespace {

@@ -27,8 +27,7 @@ constexpr std::array rules{
     // threads, where the GPU has them; render_path gets them always. GPUs without ignore both options.
     // occluded_rays takes 16 rays a thread without spills, where the compiler chooses 8.
     DeviceRule{"intel", "Intel(R) OpenCL", true, false,
-               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 "
-               "-cl-intel-enable-auto-large-GRF-mode",
+               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 -cl-intel-enable-auto-large-GRF-mode",
                "", "-cl-intel-256-GRF-per-thread"},
     // By other drivers, which do not know these options.
     DeviceRule{"", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},

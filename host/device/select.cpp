@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <functional>
-#include <optional>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "device/choice.h"
 #include "device/devices.h"
 #include "device/driver_folder.h"
@@ -20,13 +18,6 @@ std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
-}
-
-std::optional<unsigned> whole_number(std::string_view text) {
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Numbers match no device, because they occur in many names.
@@ -51,7 +42,7 @@ Spec parse_spec(const std::string& text) {
   const std::size_t slash = spec.pattern.rfind('/');
   if (slash != std::string::npos) {
     const std::string tail = spec.pattern.substr(slash + 1);
-    if (const auto units = whole_number(tail)) {
+    if (const auto units = whole_number<unsigned>(tail)) {
       if (*units == 0)
         throw UsageError(fmt::format("the device spec {}: /N wants 1 or more compute units, found 0", text));
       spec.sub_units = *units;
@@ -82,8 +73,8 @@ bool matches(const Spec& spec, const DeviceInfo& device) {
   if (pattern == "all" || pattern == device.type) return true;
   if (pattern == "cpu" || pattern == "gpu" || pattern == "accelerator") return false;
   if (const std::size_t colon = pattern.find(':'); colon != std::string::npos) {
-    const auto platform = whole_number(pattern.substr(0, colon)),
-               index = whole_number(pattern.substr(colon + 1));
+    const auto platform = whole_number<unsigned>(pattern.substr(0, colon)),
+               index = whole_number<unsigned>(pattern.substr(colon + 1));
     if (platform && index)
       return device.platform == static_cast<int>(*platform) && device.device == static_cast<int>(*index);
   }
@@ -198,12 +189,15 @@ DeviceInfo fastest(std::span<const DeviceInfo> all) {
 
 }  // namespace
 
+std::string DeviceInfo::spec() const {
+  return fmt::format("{}:{}{}", platform, device, sub_units > 0 ? fmt::format("/{}", sub_units) : "");
+}
+
 std::string DeviceInfo::label() const {
   if (device < 0) return fmt::format("{} {}", platform, platform_name);
-  std::string part = sub_units > 0 ? fmt::format("/{}", sub_units) : "";
-  if (first_unit > 0) part += fmt::format("@{}", first_unit);
-  const std::string where = host.empty() ? "" : fmt::format(" (rank {} on {})", rank, host);
-  return fmt::format("{}:{}{} {} / {}{}", platform, device, part, platform_name, name, where);
+  const std::string from = first_unit > 0 ? fmt::format("@{}", first_unit) : "",
+                    where = host.empty() ? "" : fmt::format(" (rank {} on {})", rank, host);
+  return fmt::format("{}{} {} / {}{}", spec(), from, platform_name, name, where);
 }
 
 std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,

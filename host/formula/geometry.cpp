@@ -1,6 +1,5 @@
 // Lengths, products, and the folds of kaleidoscopic formulas.
 #include <cmath>
-#include <stdexcept>
 
 #include "formula/value.h"
 

@@ -19,56 +19,11 @@ double evaluate(Op op, double a, double b, double c) {
     case Op::constant:
     case Op::input:
       return a;
-    case Op::add:
-      return a + b;
-    case Op::subtract:
-      return a - b;
-    case Op::multiply:
-      return a * b;
-    case Op::divide:
-      return a / b;
-    case Op::negate:
-      return -a;
-    case Op::absolute:
-      return std::abs(a);
-    case Op::minimum:
-      return std::fmin(a, b);
-    case Op::maximum:
-      return std::fmax(a, b);
-    case Op::round_down:
-      return std::floor(a);
-    case Op::square_root:
-      return std::sqrt(a);
-    case Op::inverse_root:
-      return std::pow(a, -0.5 * b);
-    case Op::rough_inverse_root:
-      return 1 / std::sqrt(a);
-    case Op::sine:
-      return std::sin(a);
-    case Op::cosine:
-      return std::cos(a);
-    case Op::arc_cosine:
-      return std::acos(a);
-    case Op::arc_tangent:
-      return std::atan2(a, b);
-    case Op::exponential:
-      return std::exp(a);
-    case Op::logarithm:
-      return std::log(a);
-    case Op::power:
-      return std::pow(a, b);
-    case Op::less:
-      return a < b;
-    case Op::less_equal:
-      return a <= b;
-    case Op::both:
-      return a != 0 && b != 0;
-    case Op::either:
-      return a != 0 || b != 0;
-    case Op::opposite:
-      return a == 0;
-    case Op::choose:
-      return a != 0 ? b : c;
+#define SUNDOG_OP(name, value) \
+  case Op::name:               \
+    return value;
+      SUNDOG_FORMULA_OPS(SUNDOG_OP)
+#undef SUNDOG_OP
   }
   return 0;
 }

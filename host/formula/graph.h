@@ -18,34 +18,41 @@ inline constexpr NodeId no_node = 0xFFFFFFFFu;
 /// less, less_equal, both, either and opposite return conditions; choose(condition, a, b) is a if it holds,
 /// else b. All others return numbers. power takes a base >= 0; inverse_root is 1 / sqrt(a)^b of an a > 0 and
 /// a constant integer b; rough_inverse_root is 1 / sqrt(a) to 1e-4, for slopes.
+///
+/// X(operation, its value of a, b and c): each operation stands here alone.
+#define SUNDOG_FORMULA_OPS(X)             \
+  X(add, a + b)                           \
+  X(subtract, a - b)                      \
+  X(multiply, (a * b))                    \
+  X(divide, a / b)                        \
+  X(negate, -a)                           \
+  X(absolute, std::abs(a))                \
+  X(minimum, std::fmin(a, b))             \
+  X(maximum, std::fmax(a, b))             \
+  X(round_down, std::floor(a))            \
+  X(square_root, std::sqrt(a))            \
+  X(inverse_root, std::pow(a, -0.5 * b))  \
+  X(rough_inverse_root, 1 / std::sqrt(a)) \
+  X(sine, std::sin(a))                    \
+  X(cosine, std::cos(a))                  \
+  X(arc_cosine, std::acos(a))             \
+  X(arc_tangent, std::atan2(a, b))        \
+  X(exponential, std::exp(a))             \
+  X(logarithm, std::log(a))               \
+  X(power, std::pow(a, b))                \
+  X(less, a < b)                          \
+  X(less_equal, a <= b)                   \
+  X(both, a != 0 && b != 0)               \
+  X(either, a != 0 || b != 0)             \
+  X(opposite, a == 0)                     \
+  X(choose, a != 0 ? b : c)
+
 enum class Op {
   constant,
   input,
-  add,
-  subtract,
-  multiply,
-  divide,
-  negate,
-  absolute,
-  minimum,
-  maximum,
-  round_down,
-  square_root,
-  inverse_root,
-  rough_inverse_root,
-  sine,
-  cosine,
-  arc_cosine,
-  arc_tangent,
-  exponential,
-  logarithm,
-  power,
-  less,
-  less_equal,
-  both,
-  either,
-  opposite,
-  choose
+#define SUNDOG_OP(name, value) name,
+  SUNDOG_FORMULA_OPS(SUNDOG_OP)
+#undef SUNDOG_OP
 };
 
 struct Node {

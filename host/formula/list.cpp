@@ -93,9 +93,8 @@ std::string formula_list_text() {
   for (const FormulaDefinition& d : formula_list()) text += entry_text(d) + "\n";
   text += fmt::format(
       "formula\n    Your own: \"start\" and \"map\" (statements), or \"distance\" (an expression). A map "
-      "sets z; it may read c, "
-      "p, r = |z|, i, pi\n    and its parameters. At most {} characters a text, {} iterations, {} "
-      "parameters.\n\n",
+      "sets z; it may read c, p, r = |z|, i, pi\n    and its parameters. At most {} characters a text, {} "
+      "iterations, {} parameters.\n\n",
       FormulaLimits::characters, FormulaDefinition::max_iterations, FormulaDefinition::max_parameters);
   text += "operations on fields\n";
   for (const FieldOperation& o : field_operations())

@@ -97,11 +97,10 @@ std::vector<FormulaDefinition> solid_formulas() {
       round_box(half),
       solid("torus", "Torus about y", hart, "length(length(p.x, p.z) - major_radius, p.y) - minor_radius",
             {length("major_radius", 1, "", "major"), length("minor_radius", 0.3, "", "minor")}),
-      solid(
-          "cylinder", "Cylinder about y", quilez,
-          "a = length(p.x, p.z) - radius; b = abs(p.y) - half_height\nmin(max(a, b), 0) + length(max(a, 0), "
-          "max(b, 0))",
-          {length("radius", 1), length("half_height", 1, "", "height")}),
+      solid("cylinder", "Cylinder about y", quilez,
+            "a = length(p.x, p.z) - radius; b = abs(p.y) - half_height\nmin(max(a, b), 0) + length(max(a, "
+            "0), max(b, 0))",
+            {length("radius", 1), length("half_height", 1, "", "height")}),
       solid("capsule", "Capsule along y", quilez,
             "length(p - vec3(0, clamp(p.y, -half_height, half_height), 0)) - radius",
             {length("radius", 0.5), length("half_height", 0.7, "without the caps", "height")}),

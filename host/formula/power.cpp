@@ -2,7 +2,6 @@
 // rho, the number is u + i rho and its n-th power A + i rho B, where A and B are polynomials in u and rho^2
 // built by squaring. Squaring uses A^2 + rho^2 B^2 = r^(2k), so A' = 2 A^2 - r^(2k).
 #include <cmath>
-#include <stdexcept>
 
 #include "formula/value.h"
 

@@ -1,6 +1,5 @@
 #include "formula/value.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

@@ -1,7 +1,5 @@
 // The corners of a mesh, grouped by the point that they meet at.
 #pragma once
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -9,19 +7,13 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "models/values/mesh.h"
 
 namespace sundog::models {
 
 inline std::uint32_t corner_vertex(const Mesh& mesh, std::uint32_t corner) {
   return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
-}
-
-template <class Body>
-void in_parallel(std::size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
 }
 
 /// Large arrays are first touched by the threads that fill them: zeroing one takes longer than its use.

@@ -54,14 +54,13 @@ std::string unread_text(const std::vector<std::string>& features) {
   return rest == 0 ? text : fmt::format("{} and {} more feature{}", text, rest, rest == 1 ? "" : "s");
 }
 
-/// In the order of SUNDOG_MODEL_EXTENSIONS.
 struct Reader {
   std::string_view extension;
   Model (*load)(models::Source source, const ModelOptions& options);
 };
-constexpr Reader readers[] = {{".gltf", models::load_gltf}, {".glb", models::load_gltf},
-                              {".obj", models::load_obj},   {".ply", models::load_ply},
-                              {".stl", models::load_stl},   {".nff", models::load_nff}};
+#define SUNDOG_READER(extension, reader) {extension, models::load_##reader},
+constexpr Reader readers[] = {SUNDOG_MODEL_FORMATS(SUNDOG_READER, SUNDOG_READER)};
+#undef SUNDOG_READER
 
 Model load(models::Source source, const std::string& extension, const ModelOptions& options) {
   if (source.bytes.empty()) models::fail(source, "", "the file is empty");

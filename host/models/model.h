@@ -61,8 +61,14 @@ struct ModelOptions {
   bool outside_files = false;  // the model may name files outside its folder
 };
 
-/// The files that load_model() reads, in texts.
-#define SUNDOG_MODEL_EXTENSIONS ".gltf .glb .obj .ply .stl .nff"
+/// X(extension, reader) for each format, whose reader is models::load_READER(); `First` takes the first.
+#define SUNDOG_MODEL_FORMATS(First, X) \
+  First(".gltf", gltf) X(".glb", gltf) X(".obj", obj) X(".ply", ply) X(".stl", stl) X(".nff", nff)
+
+/// The files that load_model() reads, in texts: ".gltf .glb ...".
+#define SUNDOG_MODEL_EXTENSIONS SUNDOG_MODEL_FORMATS(SUNDOG_FIRST_EXTENSION, SUNDOG_NEXT_EXTENSION)
+#define SUNDOG_FIRST_EXTENSION(extension, reader) extension
+#define SUNDOG_NEXT_EXTENSION(extension, reader) " " extension
 
 /// Reads SUNDOG_MODEL_EXTENSIONS, each also gzipped (.gz). Triangulates polygons (n corners give n - 2
 /// triangles, even degenerate ones), generates missing normals, loads textures' images. Throws

@@ -236,8 +236,7 @@ void MaterialLibrary::read(const fs::path& path) {
       const std::string name(text.rest());
       if (name.empty())
         model_.warnings.push_back(
-            fmt::format("{}: line {}: newmtl without a name: only a usemtl without a name "
-                        "takes it",
+            fmt::format("{}: line {}: newmtl without a name: only a usemtl without a name takes it",
                         path.string(), text.line()));
       const auto [stated, added] = stated_.try_emplace(name);
       material = added ? &stated->second : &again;

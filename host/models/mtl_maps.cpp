@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "base/numbers.h"
 #include "models/beside.h"
 
 namespace sundog::models {
@@ -13,9 +13,7 @@ namespace {
 
 bool is_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
+  return whole_number<double>(word).has_value();
 }
 
 /// One to three numbers; missing ones keep their values.

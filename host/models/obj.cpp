@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "base/numbers.h"
 #include "models/far_mesh.h"
 #include "models/mtl.h"
 #include "models/normals.h"
@@ -156,11 +157,9 @@ class ObjReader {
   // Resolves an index: 1 is the first, -1 the latest.
   std::uint32_t resolve(std::string_view digits, std::size_t count, std::string_view what,
                         Lost* lost = nullptr) {
-    std::int64_t index = 0;
-    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-    const auto size = static_cast<std::int64_t>(count);
-    if (code != std::errc() || end != digits.data() + digits.size())
-      text_.fail(fmt::format("a face's {} index wanted, as in 1/2/3", what));
+    const auto found = whole_number<std::int64_t>(digits);
+    if (!found) text_.fail(fmt::format("a face's {} index wanted, as in 1/2/3", what));
+    const std::int64_t index = *found, size = static_cast<std::int64_t>(count);
     if (index == 0 || index > size || index < -size) {
       const std::string why = fmt::format("{} {} does not exist: {} are defined so far", what, index, count);
       if (!lost || count > 0 || index == 0) text_.fail(why);

@@ -5,11 +5,9 @@
 
 namespace sundog::models {
 
-Model load_obj(Source source, const ModelOptions& options);
-Model load_ply(Source source, const ModelOptions& options);
-Model load_stl(Source source, const ModelOptions& options);
-Model load_gltf(Source source, const ModelOptions& options);
-Model load_nff(Source source, const ModelOptions& options);
+#define SUNDOG_READER(extension, reader) Model load_##reader(Source source, const ModelOptions& options);
+SUNDOG_MODEL_FORMATS(SUNDOG_READER, SUNDOG_READER)
+#undef SUNDOG_READER
 
 /// Adds `mesh`, with positions relative to `origin`, and an object that places it, unless it is empty.
 void add_mesh(Model& model, Mesh mesh, const dvec3& origin = dvec3(0));

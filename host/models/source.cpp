@@ -58,11 +58,10 @@ class Inflater {
       status = inflate(&stream_, Z_NO_FLUSH);
       out.resize(done + step - stream_.avail_out);
       if (out.size() > bound)
-        throw SceneError(
-            path.string(), "",
-            fmt::format("its {} bytes unpack to more than {} MiB, over {} times as much, which no "
-                        "model does; where one should, unpack it with gunzip",
-                        packed.size(), bound >> 20, most_growth));
+        throw SceneError(path.string(), "",
+                         fmt::format("its {} bytes unpack to more than {} MiB, over {} times as much, which "
+                                     "no model does; where one should, unpack it with gunzip",
+                                     packed.size(), bound >> 20, most_growth));
       if (status == Z_BUF_ERROR || (status == Z_OK && stream_.avail_in == 0 && stream_.avail_out > 0))
         throw broken("it ends early");
       if (status != Z_OK && status != Z_STREAM_END) throw broken(stream_.msg ? stream_.msg : "not gzip data");

@@ -31,12 +31,11 @@ void warn_of_dark_world(SceneDescription& scene) {
                            (fog ? scene.fog.density * glm::min(scene.fog.color, dvec3(1)) : dvec3(0)),
               taken = world.scattering + world.absorption + (fog ? dvec3(scene.fog.density) : dvec3(0));
   if (taken == dvec3(0) || !shines_from_afar(scene)) return;
-  scene.warnings.push_back(
-      fmt::format("{}: no light of a sun, a sky or a directional light gets through what has no end; put the "
-                  "scene into a "
-                  "box instead, of a medium with \"scattering\": [{:.4g}], \"absorption\": [{:.4g}]",
-                  fog ? "/world/fog" : "/world/medium", fmt::join(numbers(scattering), ", "),
-                  fmt::join(numbers(taken - scattering), ", ")));
+  scene.warnings.push_back(fmt::format(
+      "{}: no light of a sun, a sky or a directional light gets through what has no end; put the scene into "
+      "a box instead, of a medium with \"scattering\": [{:.4g}], \"absorption\": [{:.4g}]",
+      fog ? "/world/fog" : "/world/medium", fmt::join(numbers(scattering), ", "),
+      fmt::join(numbers(taken - scattering), ", ")));
 }
 
 }  // namespace sundog

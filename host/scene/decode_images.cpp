@@ -120,8 +120,7 @@ void fit_images(SceneDescription& scene) {
     if (image.pixels.width != image.file_width || image.pixels.height != image.file_height)
       scene.warnings.push_back(
           fmt::format("the image {} is made smaller, from {}x{} to {}x{}: the scene's images take more than "
-                      "the {} MiB of "
-                      "/render/texture_memory",
+                      "the {} MiB of /render/texture_memory",
                       image.name, image.file_width, image.file_height, image.pixels.width,
                       image.pixels.height, scene.render.texture_memory));
 }

@@ -6,9 +6,6 @@ namespace sundog {
 
 class FrameCache;
 
-/// Bytes that a scene's images may take on a device before they are made smaller.
-inline constexpr std::size_t default_texture_bytes = std::size_t{1} << 30;
-
 /// Decodes all images, several at a time; one that is there twice for the same use is kept once. Images that
 /// together take more than `render.texture_memory`, the greatest first, are halved, with a warning each.
 /// `cache` has those of the frames before. Throws SceneError with the image's file and place.

@@ -82,10 +82,7 @@ void split(const Mesh& mesh, const glm::uvec3& triangle, const bool (&cut)[3], M
 
 double area_of(const Mesh& mesh) {
   double area = 0;
-  for (const glm::uvec3& t : mesh.triangles) {
-    const dvec3 p(mesh.positions[t.x]);
-    area += glm::length(glm::cross(dvec3(mesh.positions[t.y]) - p, dvec3(mesh.positions[t.z]) - p)) / 2;
-  }
+  for (const glm::uvec3& t : mesh.triangles) area += glm::length(face_normal(mesh, t)) / 2;
   return area;
 }
 
@@ -160,9 +157,7 @@ class Displacer {
     std::vector<dvec2> heights(mesh.positions.size(), dvec2(0));  // sum and count
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const glm::uvec3 triangle = mesh.triangles[t];
-      const dvec3 p(mesh.positions[triangle.x]);
-      const dvec3 face =
-          glm::cross(dvec3(mesh.positions[triangle.y]) - p, dvec3(mesh.positions[triangle.z]) - p);
+      const dvec3 face = face_normal(mesh, triangle);
       const MaterialDescription* material = material_of(mesh, t);
       for (int corner = 0; corner < 3; ++corner) {
         const u32 vertex = triangle[corner];

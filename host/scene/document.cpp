@@ -5,20 +5,14 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
-#include "scene/animate.h"
-#include "scene/json/parse.h"
 #include "scene/json/value.h"
 #include "scene/lamps.h"
-#include "scene/model_scene.h"
 #include "scene/read/focus.h"
-#include "scene/read/frame_cache.h"
 #include "scene/read/parts.h"
 #include "scene/read/scene_reader.h"
 #include "scene/read/surfaces.h"
 
 namespace sundog {
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
@@ -63,48 +57,7 @@ bool has_place(const json& document) {
          document["camera"].contains("position");
 }
 
-json model_document(const fs::path& path, const LoadOptions& options) {
-  const auto [width, height] = options.size;
-  const std::optional<double> aspect =
-      width > 0 && height > 0 ? std::optional(static_cast<double>(width) / height) : std::nullopt;
-  const Model model = load_model(path, {.outside_files = options.outside_files});
-  const bool plays = options.frame && model.pose;
-  json document = make_model_scene(path, model, aspect, plays);
-  if (plays) set_view(document, posed(model, path, {.seconds = seconds_at(document, *options.frame)}));
-  take_ground_above(document, document["camera"]["position"][1].get<double>());
-  return document;
-}
-
 }  // namespace
-
-json read_scene_document(const fs::path& path, const LoadOptions& options) {
-  require_readable(path, path, "");
-  if (!is_model_file(path) && path.extension() != ".json")
-    throw SceneError(path.string(), "", "wanted a scene (.json) or a model, found another extension");
-  json document = is_model_file(path) ? model_document(path, options) : read_json_file(path, options.faults);
-  const char* keys[] = {"width", "height"};
-  for (std::size_t i = 0; i < 2 && document.is_object(); ++i)
-    if (options.size[i] > 0) document["image"][keys[i]] = options.size[i];
-  return document;
-}
-
-SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options,
-                                     const NamedMeshes& made) {
-  std::vector<std::string> warnings;
-  bool plays = false;
-  const JsonContext context{
-      .file = file,
-      .native_code = options.native_code,
-      .warnings = &warnings,
-      .outside_files = options.outside_files,
-      .seconds = options.frame ? std::optional(seconds_at(document, *options.frame)) : std::nullopt,
-      .plays = &plays};
-  SceneDescription scene = read_scene(JsonValue(document, context), std::nullopt, made);
-  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-  if (made.empty())  // those of programs are held already
-    for (Mesh& mesh : scene.meshes) share_vertices(mesh);
-  return scene;
-}
 
 std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& scene, const json& before,
                                                      const json& after, const LoadOptions& options) {

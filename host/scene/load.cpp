@@ -79,8 +79,7 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
     } else {
       throw SceneError(path.string(), "",
                        "wanted a scene (.json) or a model (" SUNDOG_MODEL_EXTENSIONS
-                       ", each also .gz), found "
-                       "another extension");
+                       ", each also .gz), found another extension");
     }
   }
   apply_overrides(source.document, source.file, overrides);
@@ -148,27 +147,33 @@ json play_view(SceneSource& source, const Reading& reading) {
   return document;
 }
 
+/// The document before its tracks are applied.
+json unmoved_document(SceneSource& source, const Reading& reading) {
+  const bool plays = reading.options.frame && source.model && source.model->pose;
+  return plays ? play_view(source, reading) : source.document;
+}
+
 /// The document of the frame. A setting that a track would undo is refused.
 json document_at_frame(SceneSource& source, Reading& reading) {
-  if (!reading.options.frame) return source.document;
-  json document = source.model && source.model->pose ? play_view(source, reading) : source.document;
+  json document = unmoved_document(source, reading);
+  if (!reading.options.frame) return document;
   const JsonContext context = reading.context();
   explained(document, reading, [&] { apply_animation(document, *reading.options.frame, context); });
   for (const std::string& setting : reading.overrides)
     if (const std::string track = track_of(document, pointer_of(document, setting), true); !track.empty())
       throw SettingError(
           reading.file.string(), track,
-          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the "
-                      "track",
+          fmt::format("sets in each frame what the setting {} sets too: leave that out, or change the track",
                       setting));
   return document;
 }
 
-SceneDescription read_document(const json& document, Reading& reading, std::optional<Model> model) {
+SceneDescription read_document(const json& document, Reading& reading, std::optional<Model> model,
+                               const NamedMeshes& made = {}) {
   if (const auto frame = reading.options.frame) reading.seconds = seconds_at(document, *frame);
   return explained(document, reading, [&] {
     const JsonContext context = reading.context();
-    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model));
+    SceneDescription scene = read_scene(JsonValue(document, context), std::move(model), made);
     scene.warnings.insert(scene.warnings.end(), reading.warnings.begin(), reading.warnings.end());
     return scene;
   });
@@ -244,6 +249,25 @@ SceneDescription load_scene(const fs::path& path, const std::vector<std::string>
   Reading reading{source.file, overrides, options};
   const json document = document_at_frame(source, reading);
   return read_document(document, reading, std::move(source.model));
+}
+
+json read_scene_document(const fs::path& path, const LoadOptions& options) {
+  constexpr const char* keys[] = {"width", "height"};
+  std::vector<std::string> overrides;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (options.size[i] > 0) overrides.push_back(fmt::format("/image/{}={}", keys[i], options.size[i]));
+  SceneSource source = open_source(path, overrides, options);
+  return unmoved_document(source, {source.file, overrides, options});
+}
+
+SceneDescription load_scene_document(const json& document, const fs::path& file, const LoadOptions& options,
+                                     const NamedMeshes& made) {
+  const std::vector<std::string> no_overrides;
+  Reading reading{file, no_overrides, options};
+  SceneDescription scene = read_document(document, reading, std::nullopt, made);
+  if (made.empty())  // those of programs are held already
+    for (Mesh& mesh : scene.meshes) share_vertices(mesh);
+  return scene;
 }
 
 }  // namespace sundog

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "models/model.h"
 #include "scene/description.h"
 
 namespace sundog {
@@ -43,6 +45,14 @@ std::string scene_file_name(const std::filesystem::path& path);
 /// UsageError for an override that is not of that form.
 SceneDescription load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                             const LoadOptions& options = {});
+
+/// The document that load_scene() reads: a scene file's, or one generated around a model. Throws SceneError.
+nlohmann::json read_scene_document(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// Reads the scene of a document. `file` (which need not exist) names it in messages, and file names are
+/// relative to its folder. `made` are additional meshes. Throws SceneError.
+SceneDescription load_scene_document(const nlohmann::json& document, const std::filesystem::path& file,
+                                     const LoadOptions& options = {}, const NamedMeshes& made = {});
 
 /// The part of a frame for which tracks and animations are blurred, and the number of times at which the
 /// scene is seen meanwhile.

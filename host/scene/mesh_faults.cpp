@@ -6,26 +6,10 @@
 #include <limits>
 #include <numeric>
 
+#include "models/normals.h"
+
 namespace sundog {
 namespace {
-
-/// For each vertex, the first one at the same position.
-std::vector<std::uint32_t> weld(std::span<const glm::vec3> positions) {
-  std::vector<std::uint32_t> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    const glm::vec3 &p = positions[a], &q = positions[b];
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    return p.z != q.z ? p.z < q.z : a < b;
-  };
-  std::sort(order.begin(), order.end(), before);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
-  }
-  return first;
-}
 
 struct Edge {
   std::uint32_t low, high;
@@ -100,7 +84,7 @@ std::size_t count_inside_out(std::vector<Part>& parts) {
 }  // namespace
 
 MeshFaults find_faults(const Mesh& mesh) {
-  const std::vector<std::uint32_t> first = weld(mesh.positions);
+  const std::vector<std::uint32_t> first = models::weld_positions(mesh);
   std::vector<glm::uvec3> triangles;
   std::vector<Edge> edges;
   for (const glm::uvec3& t : mesh.triangles) {

@@ -123,8 +123,8 @@ class SUNDOG_API Scene {
   Scene& operator=(Scene&&) noexcept;  ///< as the move constructor
   ~Scene();
 
-  /// Reads a scene (.json) or a model (.gltf .glb .obj .ply .stl .nff, each also .gz); a model without a
-  /// camera or lights gets default ones. Throws Error (scene).
+  /// Reads a scene (.json) or a model of a format that `sundog render` takes; a model without a camera or
+  /// lights gets default ones. Throws Error (scene).
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   /// Reads a scene from text; file names in it are relative to `folder`. Throws Error (scene).
   static Scene from_json(std::string_view text, const std::filesystem::path& folder = ".",

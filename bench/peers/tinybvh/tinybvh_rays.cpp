@@ -5,9 +5,7 @@
 // has none, for both: a shadow ray continues behind its light. Hits are compared before a time counts.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"

@@ -38,9 +38,7 @@ void add_triangles(const Object& object, const Mesh& mesh, std::vector<LowTriang
   const std::vector<CornerTangent> tangents = corner_tangents(mesh);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const glm::uvec3 triangle = mesh.triangles[t];
-    const dvec3 p(mesh.positions[triangle.x]);
-    const dvec3 face =
-        glm::cross(dvec3(mesh.positions[triangle.y]) - p, dvec3(mesh.positions[triangle.z]) - p);
+    const dvec3 face = face_normal(mesh, triangle);
     LowTriangle low;
     for (int i = 0; i < 3; ++i) {
       const u32 vertex = triangle[i];

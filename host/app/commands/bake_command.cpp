@@ -10,11 +10,10 @@
 
 #include "app/bake/bake.h"
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "base/error.h"
@@ -105,8 +104,7 @@ int bake_map(const BakeOptions& options) {
                      "its texture coordinates cover no texel of the map: unwrap it, or give a "
                      "greater --size");
   warn_of_coverage(options, coverage);
-  const std::vector<DeviceInfo> devices =
-      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
   Device device(devices.front());
   RayTracer tracer(device, high);
   ProgressBar bar(!options.quiet);

@@ -13,10 +13,9 @@
 
 #include "app/commands/check_report.h"
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
-#include "app/options/pick_devices.h"
 #include "app/process/child_process.h"
-#include "app/process/environment.h"
 #include "app/process/warnings.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -258,8 +257,7 @@ void add_check(Arguments& root, Command& chosen) {
   values(app, "--device", "SPEC", options->devices,
          "only these devices: P:D, cpu, gpu, accelerator, all, part of a name, or !SPEC to take away "
          "(!SPEC?: if it is there); /N for N compute units (default: SUNDOG_DEVICE, or every device)");
-  app->add_option("--timeout", options->timeout, "seconds that one device may take (default 600)")
-      ->type_name("N")
+  value(app, "--timeout", "N", options->timeout, "seconds that one device may take (default 600)")
       ->range(1, 86400);
   app->add_flag("--json", options->json, "as JSON");
   app->add_option("--worker", options->worker)->hidden();

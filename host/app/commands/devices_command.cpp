@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "app/options/command.h"
-#include "app/process/environment.h"
+#include "app/options/devices.h"
 #include "base/arguments.h"
 #include "base/error.h"
 #include "device/choice.h"

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
@@ -64,10 +64,9 @@ void check_names(const std::vector<std::string>& scenes) {
   std::set<std::string> names;
   for (const std::string& scene : scenes)
     if (!names.insert(stem(scene)).second)
-      throw UsageError(
-          fmt::format("gallery: {}: another scene has the name {} too, and pictures are named "
-                      "after scenes: rename one",
-                      scene, stem(scene)));
+      throw UsageError(fmt::format(
+          "gallery: {}: another scene has the name {} too, and pictures are named after scenes: rename one",
+          scene, stem(scene)));
 }
 
 void make_folder(const std::string& folder) {
@@ -139,8 +138,7 @@ int gallery(GalleryOptions options) {
   make_folder(options.folder);
   const fs::path page = fs::path(options.folder) / "index.html";
   check_writable(page);
-  const std::vector<DeviceInfo> devices =
-      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
   Gallery all{"sundog gallery", {{"sundog", SUNDOG_VERSION}}, {}};
   for (const DeviceInfo& device : devices) all.facts.emplace_back("device", device_fact(device));
   const Facts machine = machine_facts();

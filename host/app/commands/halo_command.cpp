@@ -9,10 +9,10 @@
 #include <numbers>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/save_image.h"
@@ -156,8 +156,7 @@ int make_picture(const HaloOptions& options) {
   check_output_files({options.picture.out}, {options.scene});
   check_picture(options.picture, false);
   const EnvironmentDescription e = halo_of(options);
-  const std::vector<DeviceInfo> devices =
-      pick_devices(list_devices(), options.devices.empty() ? devices_of_environment() : options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
   const TracedHalo traced = trace_halo_map(e, devices, options.quiet || options.json);
   const Image image = shown_in(options.picture.out, picture_of(options, e, traced.map, rows), tone_map,
                                dithers(options.picture));

@@ -82,10 +82,9 @@ void check_sum(const MixCommand& command, const AovImages& aovs, const Image& im
     if (is_light_group(name)) whole.emplace(name.substr(prefix.size()), 1);
   const double all = total(image), sum = total(sum_of(whole, aovs, image, 3));
   if (!(std::abs(all - sum) <= 0.02 * std::abs(all)))
-    throw UsageError(
-        fmt::format("{}: is not the sum of its light groups: render it with --aov {} and the "
-                    "colour space srgb",
-                    command.picture, light_groups_aov));
+    throw UsageError(fmt::format(
+        "{}: is not the sum of its light groups: render it with --aov {} and the colour space srgb",
+        command.picture, light_groups_aov));
 }
 
 int mix(const MixCommand& command) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/job/remote_devices.h"
+#include "app/options/devices.h"
 #include "app/process/environment.h"
 #include "app/process/warnings.h"
 #include "base/error.h"

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/options/devices.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"

@@ -42,7 +42,7 @@ struct KeptOpen {
 
 /// Loads the scene of such settings and makes a worker of the device; with `kept`, waits until nobody else in
 /// the process uses that device. Throws SceneError, DeviceError.
-OpenedWorker open_worker(const nlohmann::json& settings, KeptOpen* kept = nullptr);
+OpenedWorker open_worker(const nlohmann::json& settings, KeptOpen* kept);
 
 /// The devices that a worker process sees: this one makes no OpenCL call.
 std::vector<DeviceInfo> enumerate_in_worker();

@@ -9,6 +9,7 @@
 
 #include "app/job/job.h"
 #include "app/job/remote_devices.h"
+#include "app/options/devices.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "render/remote/hang_watch.h"

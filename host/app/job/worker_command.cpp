@@ -8,7 +8,7 @@
 
 #include "app/job/remote_devices.h"
 #include "app/options/command.h"
-#include "app/process/environment.h"
+#include "app/options/devices.h"
 #include "app/process/interrupt.h"
 #include "base/arguments.h"
 #include "base/error.h"

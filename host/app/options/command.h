@@ -21,9 +21,29 @@ struct Command {
 /// Declares a command below `root`, and makes it `chosen` where it is named.
 using AddCommand = void(Arguments& root, Command& chosen);
 
-AddCommand add_render, add_devices, add_formulas, add_kernels, add_info, add_compare, add_check, add_tune,
-    add_merge, add_mix, add_bake, add_gallery, add_halo, add_serve, add_bench;
-/// Not for people: other processes of sundog start these.
-AddCommand add_compile, add_worker;
+/// X(name) for each command, in the order of help; the last two are not for people: other processes of sundog
+/// start them.
+#define SUNDOG_COMMANDS(X) \
+  X(render)                \
+  X(devices)               \
+  X(formulas)              \
+  X(kernels)               \
+  X(info)                  \
+  X(compare)               \
+  X(check)                 \
+  X(tune)                  \
+  X(merge)                 \
+  X(mix)                   \
+  X(bake)                  \
+  X(gallery)               \
+  X(halo)                  \
+  X(serve)                 \
+  X(bench)                 \
+  X(compile)               \
+  X(worker)
+
+#define SUNDOG_COMMAND(name) AddCommand add_##name;
+SUNDOG_COMMANDS(SUNDOG_COMMAND)
+#undef SUNDOG_COMMAND
 
 }  // namespace sundog

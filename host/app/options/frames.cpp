@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <set>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/numbers.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -17,9 +17,8 @@ namespace {
 constexpr int most_frame = 999'999;
 
 int frame_number(std::string_view part, const std::string& text) {
-  int number = -1;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
-  if (error != std::errc() || end != part.data() + part.size() || number < 0 || number > most_frame)
+  const int number = whole_number<int>(part).value_or(-1);
+  if (number < 0 || number > most_frame)
     throw UsageError(fmt::format(
         "--frames {}: wanted frames such as 5, 0..48, 48..0 or 1,4,10..20, whole numbers from 0 to {}", text,
         most_frame));

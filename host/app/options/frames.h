@@ -7,7 +7,7 @@ namespace sundog {
 
 /// The frames of a list such as "0..48", "48..0" or "1,4,10..20", each from 0 to 999999, in its order and
 /// each once; of a range every `step`-th. Throws UsageError.
-std::vector<int> parse_frames(const std::string& text, int step = 1);
+std::vector<int> parse_frames(const std::string& text, int step);
 
 /// "3, 7..9": the frames by rising number.
 std::string frames_text(std::vector<int> frames);

@@ -11,9 +11,8 @@ namespace sundog {
 inline constexpr const char* scene_help =
     "a .json scene (-: from the standard input), or a " SUNDOG_MODEL_EXTENSIONS " model";
 inline constexpr const char* device_help =
-    "P:D, cpu, gpu, accelerator, all, part of a name (pocl, nvidia, ...), or !SPEC to take away (!SPEC?: "
-    "if it is there); /N for N compute units "
-    "(default: SUNDOG_DEVICE, or the fastest)";
+    "P:D, cpu, gpu, accelerator, all, part of a name (pocl, nvidia, ...), or !SPEC to take away (!SPEC?: if "
+    "it is there); /N for N compute units (default: SUNDOG_DEVICE, or the fastest)";
 
 template <class T>
 Option* value(Arguments* app, const char* name, const char* type, T& target, const std::string& help) {
@@ -27,12 +26,9 @@ inline void values(Arguments* app, const char* name, const char* type, std::vect
 }
 
 inline void outside_files(Arguments* app, bool& target) {
-  app->add_flag("--allow-outside-files", target,
-                "the scene and its models may name files outside their own folders; only for files that you "
-                "trust");
+  app->add_flag(
+      "--allow-outside-files", target,
+      "the scene and its models may name files outside their own folders; only for files that you trust");
 }
-
-/// SPECs of SUNDOG_DEVICE, separated by commas.
-std::vector<std::string> devices_of_environment();
 
 }  // namespace sundog

@@ -3,27 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/numbers.h"
 
 namespace sundog {
 namespace {
 
 template <class T>
 std::optional<T> number(std::string_view text, T low, T high) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  if (!whole || !(value >= low && value <= high)) return {};  // so that NaN is refused
-  return value;
+  const auto value = whole_number<T>(text);
+  return value && *value >= low && *value <= high ? value : std::nullopt;  // NaN is refused
 }
 
 /// "WxH", each from 1 to the greatest size; none when the text is anything else.
@@ -179,19 +174,6 @@ void check_override(const std::string& setting) {
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos || equals < 2 || setting[0] != '/')
     throw UsageError(fmt::format("--set {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
-}
-
-std::vector<std::string> devices_of_environment() {
-  const char* text = std::getenv("SUNDOG_DEVICE");
-  if (!text || !*text) return {};
-  std::vector<std::string> specs;
-  std::istringstream all(text);
-  for (std::string spec; std::getline(all, spec, ',');) {
-    const std::size_t first = spec.find_first_not_of(" \t\n\v\f\r");
-    specs.push_back(
-        first == spec.npos ? "" : spec.substr(first, spec.find_last_not_of(" \t\n\v\f\r") - first + 1));
-  }
-  return specs;
 }
 
 }  // namespace sundog

@@ -39,12 +39,6 @@ const std::shared_ptr<DriverThreads>& driver_threads() {
   return threads;
 }
 
-std::vector<DeviceInfo> list_devices() {
-  std::vector<DeviceInfo> devices = enumerate_devices(program_environment());
-  for (DeviceInfo& device : devices) device.threads = driver_threads();
-  return devices;
-}
-
 LoadOptions with_streams(LoadOptions options) {
   options.standard_input = standard_input;
   options.faults = program_environment()->faults;

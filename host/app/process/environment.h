@@ -1,11 +1,9 @@
 // Makes the HostEnvironment (base/environment.h) that this program passes to the layers below.
 #pragma once
 #include <memory>
-#include <vector>
 
 #include "base/driver_threads.h"
 #include "base/environment.h"
-#include "device/devices.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -17,9 +15,6 @@ const EnvironmentPtr& program_environment();
 /// The threads that drivers have not let go of. While there are any, the process ends by _exit(): what static
 /// destructors and drivers' exit handlers take down is in use.
 const std::shared_ptr<DriverThreads>& driver_threads();
-
-/// The devices of this process.
-std::vector<DeviceInfo> list_devices();
 
 /// The options, with the standard input for a scene named "-".
 LoadOptions with_streams(LoadOptions options);

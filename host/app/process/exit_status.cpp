@@ -12,7 +12,6 @@
 #include <new>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "app/process/warnings.h"
 #include "base/error.h"
@@ -55,8 +54,7 @@ std::string memory_limit() {
 std::string thread_limit(std::string_view message) {
   if (message.find(std::strerror(EAGAIN)) == std::string_view::npos) return "";
   return ": no thread can be started: raise the limits on them (`ulimit -u`, or the container's) and on "
-         "address "
-         "space (`ulimit -v`)";
+         "address space (`ulimit -v`)";
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct RunProgress {
 /// The bar's text, at most `columns` wide. `since` is the first progress of this run: a resumed render begins
 /// with pixels that cost it nothing. The time left is that of all frames.
 std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns,
-                          const RunProgress& run = {});
+                          const RunProgress& run);
 
 /// "34 s", "2 min 05 s".
 std::string duration_text(double seconds);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,21 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-json count_shapes(const SceneDescription& scene) {
-  json counts = json::object();
-  for (const Object& object : scene.objects) {
-    json& count = counts[std::string(shape_names[object.shape.index()])];
-    count = count.is_null() ? 1 : count.get<int>() + 1;
-  }
-  return counts;
-}
-
-json count_lights(const SceneDescription& scene) {
-  json counts = json::object();
-  for (const LightDescription& light : scene.lights) {
-    json& count = counts[std::string(facts_of(light.type).name)];
-    count = count.is_null() ? 1 : count.get<int>() + 1;
-  }
+/// How many there are by name.
+json count_names(const auto& list, const auto& name_of) {
+  std::map<std::string, int> counts;
+  for (const auto& each : list) ++counts[std::string(name_of(each))];
   return counts;
 }
 
@@ -138,8 +128,10 @@ json scene_figures(const SceneDescription& scene, const CompiledScene& flat) {
           {"meshes", scene.meshes.size()},
           {"instances", flat.instances.size()},
           {"unbounded", planes(flat)},
-          {"objects", count_shapes(scene)},
-          {"lights", count_lights(scene)},
+          {"objects", count_names(scene.objects,
+                                  [](const Object& object) { return shape_names[object.shape.index()]; })},
+          {"lights", count_names(scene.lights,
+                                 [](const LightDescription& light) { return facts_of(light.type).name; })},
           {"materials", scene.materials.size()},
           {"media", scene.media.size()},
           {"fields", scene.fields.size()},

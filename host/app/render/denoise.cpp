@@ -40,11 +40,11 @@ void* load_library() {
     if (void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
     why = why.empty() ? ::dlerror() : why;
   }
-  throw UsageError(fmt::format(
-      "--denoise needs Intel's Open Image Denoise: {}. Get it from https://www.openimagedenoise.org, "
-      "or with `pip install --target FOLDER pyoidn`, and set SUNDOG_OIDN to the folder of "
-      "libOpenImageDenoise.so.2 (FOLDER/pyoidn/oidn/lib)",
-      why));
+  throw UsageError(
+      fmt::format("--denoise needs Intel's Open Image Denoise: {}. Get it from "
+                  "https://www.openimagedenoise.org, or with `pip install --target FOLDER pyoidn`, and set "
+                  "SUNDOG_OIDN to the folder of libOpenImageDenoise.so.2 (FOLDER/pyoidn/oidn/lib)",
+                  why));
 }
 
 }  // namespace
@@ -80,10 +80,9 @@ void find(void* library, const char* name, Function*& function, const char* othe
   void* symbol = ::dlsym(library, name);
   if (!symbol && other_name) symbol = ::dlsym(library, other_name);
   if (!symbol)
-    throw UsageError(
-        fmt::format("--denoise: the library that was loaded is no Open Image Denoise of version "
-                    "1 or 2: it has no {}",
-                    name));
+    throw UsageError(fmt::format(
+        "--denoise: the library that was loaded is no Open Image Denoise of version 1 or 2: it has no {}",
+        name));
   function = reinterpret_cast<Function*>(symbol);
 }
 

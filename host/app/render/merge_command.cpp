@@ -1,7 +1,6 @@
 // `sundog merge PART... -o OUT`: the image from the parts that `render --tiles i/N` wrote.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "app/options/command.h"

@@ -5,13 +5,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <cstdlib>
-#include <string_view>
 
 #include "app/options/output_files.h"
 #include "app/process/revision.h"
 #include "base/error.h"
+#include "base/numbers.h"
 
 namespace sundog {
 namespace {
@@ -41,12 +40,10 @@ std::time_t time_of_picture() {
   constexpr std::time_t most = 253402300799;  // the end of the year 9999
   const char* set = std::getenv("SOURCE_DATE_EPOCH");
   if (!set || !*set) return std::time(nullptr);
-  const std::string_view text = set;
-  std::time_t seconds = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > most)
+  const std::time_t seconds = whole_number<std::time_t>(set).value_or(-1);
+  if (seconds < 0 || seconds > most)
     throw UsageError(fmt::format(
-        "SOURCE_DATE_EPOCH={:.40}: wanted a time for --metadata, whole seconds since 1970 from 0 to {}", text,
+        "SOURCE_DATE_EPOCH={:.40}: wanted a time for --metadata, whole seconds since 1970 from 0 to {}", set,
         most));
   return seconds;
 }

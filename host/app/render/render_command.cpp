@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/picture_options.h"
@@ -152,15 +153,13 @@ void add_render(Arguments& root, Command& chosen) {
         "end the render when its mean estimated error is below T");
   value(app, "--write-every", "S", typed->write_every, "write the picture so far every S seconds");
   values(app, "--set", "POINTER=VALUE", command.overrides, "change the scene, as in /camera/fov=30");
-  app->add_flag(
-      "--draft", command.draft,
-      "a preview by kernels that all scenes share: whatever is edited, nothing is compiled anew. They "
-      "are slower and round otherwise, so a few pixels differ from the picture");
+  app->add_flag("--draft", command.draft,
+                "a preview by kernels that all scenes share: whatever is edited, nothing is compiled anew. "
+                "They are slower and round otherwise, so a few pixels differ from the picture");
   value(app, "--work-group", "SIZE", typed->work_group, "local size: N, WxH, auto or driver");
   value(app, "--split", "HOW", typed->split,
         "share the frame among devices: dynamic (by measured speed), static (fixed parts by estimated speed) "
-        "or "
-        "fixed shares such as 3,1");
+        "or fixed shares such as 3,1");
   value(app, "--tile", "N", typed->tile, "edge of the tiles in pixels (default: by measured speed)");
   value(app, "--frames", "LIST", typed->frames,
         "render these frames of the scene's animation, as 0..48, 48..0 or 1,4,10..20, to numbered files "

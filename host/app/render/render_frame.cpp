@@ -9,8 +9,8 @@
 
 #include "app/job/rank_watch.h"
 #include "app/job/remote_devices.h"
+#include "app/options/devices.h"
 #include "app/options/output_files.h"
-#include "app/options/pick_devices.h"
 #include "app/process/environment.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
@@ -103,15 +103,15 @@ bool shows_draft(const RenderCommand& command, const LoadedScene& scene, const S
          scene.times == 1;
 }
 
+void add_to(float4& sum, const float4& more) {
+  sum.x += more.x, sum.y += more.y, sum.z += more.z, sum.w += more.w;
+}
+
 /// Joins the parts of light, or the light of groups. Other AOVs are those of the first time.
 void add_light(const Film& more, RenderResult& all) {
   const AovLayout& layout = all.film.layout;
-  for (std::size_t i = 0; i < all.film.aovs.size(); ++i) {
-    if (i % layout.vectors() < layout.first_light()) continue;
-    float4& sum = all.film.aovs[i];
-    const float4& other = more.aovs[i];
-    sum.x += other.x, sum.y += other.y, sum.z += other.z, sum.w += other.w;
-  }
+  for (std::size_t i = 0; i < all.film.aovs.size(); ++i)
+    if (i % layout.vectors() >= layout.first_light()) add_to(all.film.aovs[i], more.aovs[i]);
   for (auto& [name, image] : all.aovs)
     if (is_light(name)) image = all.film.develop_aov(name);
 }
@@ -119,9 +119,7 @@ void add_light(const Film& more, RenderResult& all) {
 /// Joins the samples of the same frame at another time.
 void add_samples(const RenderResult& more, int channels, RenderResult& all) {
   for (std::size_t i = 0; i < all.film.sums.size(); ++i) {
-    float4& sum = all.film.sums[i];
-    const float4& other = more.film.sums[i];
-    sum.x += other.x, sum.y += other.y, sum.z += other.z, sum.w += other.w;
+    add_to(all.film.sums[i], more.film.sums[i]);
     all.film.weights[i] += more.film.weights[i];
     all.film.done[i] = all.film.done[i] && more.film.done[i];
   }

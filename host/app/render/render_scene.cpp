@@ -37,10 +37,9 @@ void check_write_every(const RenderCommand& command) {
 /// Checks options that need a whole picture (--denoise, --far, AOVs) or a format with texts (--metadata).
 void check_extras(const RenderCommand& command) {
   if (command.part && (command.denoise || command.metadata))
-    throw UsageError(
-        fmt::format("{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or "
-                    "--tiles out",
-                    command.out));
+    throw UsageError(fmt::format(
+        "{}: a part of a frame is neither denoised nor described: leave --denoise, --metadata or --tiles out",
+        command.out));
   if (!command.far.empty() && (command.part || std::ranges::count(command.aovs, "depth") == 0))
     throw UsageError(fmt::format("--far {}: {}", command.far,
                                  command.part ? "a part keeps its infinite depths: give --far to merge"

@@ -101,14 +101,6 @@ json counters_json(const RayCounts& counts) {
           {"march_taken_back", counts[COUNT_MARCH_BACK]}};
 }
 
-json rays_json(const RayCounts& counts) {
-  return {{"primary", counts[COUNT_PRIMARY]},
-          {"reflection", counts[COUNT_REFLECTION]},
-          {"refraction", counts[COUNT_REFRACTION]},
-          {"shadow", counts[COUNT_SHADOW]},
-          {"march_steps", counts[COUNT_MARCH_STEPS]}};
-}
-
 /// The ledger's entries, in the order of the work.
 std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
   return {{"load", times.load},
@@ -137,6 +129,14 @@ json energy_json(const TimeLedger& times) {
 }
 
 }  // namespace
+
+json rays_json(const RayCounts& counts) {
+  return {{"primary", counts[COUNT_PRIMARY]},
+          {"reflection", counts[COUNT_REFLECTION]},
+          {"refraction", counts[COUNT_REFRACTION]},
+          {"shadow", counts[COUNT_SHADOW]},
+          {"march_steps", counts[COUNT_MARCH_STEPS]}};
+}
 
 json stats_json(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                 const RenderResult& result, const TimeLedger& times) {

@@ -31,6 +31,9 @@ nlohmann::json stats_json(const RenderCommand& command, const SceneDescription& 
 /// The file's "seconds".
 nlohmann::json seconds_json(const TimeLedger& times);
 
+/// Rays by kind: primary, reflection, refraction, shadow, and the steps of marching.
+nlohmann::json rays_json(const RayCounts& counts);
+
 /// Rays of all kinds: primary, reflection, refraction and shadow.
 std::uint64_t ray_count(const RayCounts& counts);
 

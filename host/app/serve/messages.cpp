@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/render/stats.h"
 #include "scene/integrators.h"
 #include "scene/light_groups.h"
 
@@ -42,12 +43,8 @@ json object_json(const SceneDescription& scene, const Object& object) {
 }
 
 json device_row(const DeviceInfo& device, bool picked) {
-  return {{"spec", device_spec(device)},
-          {"name", device.name},
-          {"platform", device.platform_name},
-          {"type", device.type},
-          {"units", device.compute_units},
-          {"problem", device.problem},
+  return {{"spec", device.spec()}, {"name", device.name},           {"platform", device.platform_name},
+          {"type", device.type},   {"units", device.compute_units}, {"problem", device.problem},
           {"picked", picked}};
 }
 
@@ -58,35 +55,16 @@ json activity_json(const DeviceActivity& device) {
                        {"launches", times.launches},
                        {"ms", times.device_ms > 0 ? times.device_ms : times.host_ms},
                        {"group", fmt::format("{}x{}", times.local_x, times.local_y)}});
-  return {{"spec", device_spec(device.info)},
-          {"name", device.info.name},
-          {"doing", device.doing},
-          {"tiles", device.tiles},
-          {"pixels", device.pixels},
-          {"share", device.share},
-          {"busy", device.busy_seconds},
-          {"messages", device.messages},
-          {"notes", device.notes},
+  return {{"spec", device.info.spec()},   {"name", device.info.name},    {"doing", device.doing},
+          {"tiles", device.tiles},        {"pixels", device.pixels},     {"share", device.share},
+          {"busy", device.busy_seconds},  {"messages", device.messages}, {"notes", device.notes},
           {"kernels", std::move(kernels)}};
-}
-
-json ray_counts_json(const RayCounts& counts) {
-  return {{"primary", counts[COUNT_PRIMARY]},
-          {"reflection", counts[COUNT_REFLECTION]},
-          {"refraction", counts[COUNT_REFRACTION]},
-          {"shadow", counts[COUNT_SHADOW]},
-          {"march_steps", counts[COUNT_MARCH_STEPS]}};
 }
 
 }  // namespace
 
 std::string message_text(const json& message) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
-std::string device_spec(const DeviceInfo& device) {
-  const std::string units = device.sub_units > 0 ? fmt::format("/{}", device.sub_units) : "";
-  return fmt::format("{}:{}{}", device.platform, device.device, units);
 }
 
 json devices_message(const std::vector<DeviceInfo>& all, const std::vector<DeviceInfo>& picked) {
@@ -155,7 +133,7 @@ json status_message(const Snapshot& now) {
           {"block", now.block},
           {"fraction", now.fraction},
           {"seconds", now.seconds},
-          {"rays", ray_counts_json(now.counts)},
+          {"rays", rays_json(now.counts)},
           {"times",
            {{"compiled", times.compiled},
             {"ready", times.ready},

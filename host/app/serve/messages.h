@@ -26,7 +26,4 @@ nlohmann::json status_message(const Snapshot& now);
 
 nlohmann::json picked_message(const Picked& picked, const SceneDescription& scene);
 
-/// "0:1", as --device takes it.
-std::string device_spec(const DeviceInfo& device);
-
 }  // namespace sundog

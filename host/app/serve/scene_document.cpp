@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
 #include "app/serve/frame_limit.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/numbers.h"
 #include "models/model.h"
 #include "scene/document.h"
 #include "scene/json/override.h"
@@ -52,11 +52,9 @@ std::vector<std::string> tokens_of(const std::string& pointer) {
 }
 
 std::size_t index_of(const json& array, const std::string& token, const std::string& pointer) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
-  if (error != std::errc() || end != token.data() + token.size() || index >= array.size())
-    lead_nowhere(pointer);
-  return index;
+  const auto index = whole_number<std::size_t>(token);
+  if (!index || *index >= array.size()) lead_nowhere(pointer);
+  return *index;
 }
 
 /// The child of `parent`; of an object it is made where it is missing.

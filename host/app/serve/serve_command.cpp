@@ -9,10 +9,9 @@
 #include <thread>
 
 #include "app/options/command.h"
+#include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/options/pick_devices.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
 #include "app/process/warnings.h"
@@ -78,8 +77,7 @@ int serve(const ServeOptions& options) {
   SceneDocument document = first_document(options);
   print_warnings(document.scene()->warnings);
   StudioSetup setup{working_folder(), list_devices(), {}};
-  setup.picked =
-      pick_devices(setup.devices, options.devices.empty() ? devices_of_environment() : options.devices);
+  setup.picked = pick_devices(setup.devices, options.devices);
   WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});
   const std::string token = options.token_file.empty() ? random_token() : kept_token(options.token_file);
   const Gate gate = make_gate(server.port(), token, options.hosts);

@@ -7,7 +7,6 @@
 
 #include "app/options/light_balance.h"
 #include "app/options/option_values.h"
-#include "app/options/pick_devices.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
 #include "base/error.h"
@@ -85,6 +84,7 @@ WebHandlers Studio::handlers() {
       server_.send(client, message_text({{"is", "welcome"},
                                          {"client", client},
                                          {"version", SUNDOG_VERSION},
+                                         {"models", SUNDOG_MODEL_EXTENSIONS},
                                          {"most_upload_bytes", server_.limits().body_bytes}}));
       server_.send(client, message_text(devices_message(setup_.devices, setup_.picked)));
       server_.send(client, message_text(scene_message(document_)));

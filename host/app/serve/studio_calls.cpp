@@ -123,7 +123,7 @@ std::string Studio::command_line() const {
   else
     text += quoted(document_.file().stem().string() + ".json");  // the page says: save the scene first
   text += lights_.empty() ? " -o picture.png" : " -o picture.exr --aov light_groups";
-  for (const DeviceInfo& device : setup_.picked) text += " --device " + quoted(device_spec(device));
+  for (const DeviceInfo& device : setup_.picked) text += " --device " + quoted(device.spec());
   if (split_ != "dynamic") text += " --split " + quoted(split_);
   if (work_group_ != "auto") text += " --work-group " + quoted(work_group_);
   if (settings)

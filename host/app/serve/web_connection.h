@@ -12,8 +12,7 @@ namespace sundog {
 
 inline constexpr const char* security_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-    "base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'";
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 inline RequestHead head_of(const http::request<http::string_body>& request) {
   RequestHead head;
@@ -82,10 +81,9 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     if (parser_->chunked()) return {411, "wanted a Content-Length"};
     const std::uint64_t bytes = parser_->content_length().value_or(0);
     if (bytes > server_.limits.body_bytes)
-      return {413,
-              fmt::format("the upload has {} bytes, the viewer takes at most {}: put it into the folder that "
-                          "sundog was started in, and open it there",
-                          bytes, server_.limits.body_bytes)};
+      return {413, fmt::format("the upload has {} bytes, the viewer takes at most {}: put it into the folder "
+                               "that sundog was started in, and open it there",
+                               bytes, server_.limits.body_bytes)};
     if (server_.held_bytes + bytes > server_.limits.bodies_bytes)
       return {503, fmt::format("uploads of {} bytes are under way: try again when they are done",
                                server_.held_bytes)};

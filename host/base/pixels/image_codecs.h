@@ -39,7 +39,7 @@ Image decode_pfm(std::string_view bytes);
 /// length can use. Call before decoding, which allocates that memory.
 void check_exr_header(std::string_view bytes);
 /// Throws IoError only: there is nothing it refuses.
-std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options = {});
+std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options);
 /// `colors`: red, green and blue become those of sRGB, by the file's chromaticities; what is outside is cut
 /// off.
 Image decode_exr(std::string_view bytes, bool colors = true);

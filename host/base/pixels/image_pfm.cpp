@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 
+#include "base/numbers.h"
 #include "base/pixels/image_codecs.h"
 
 namespace sundog {
@@ -34,11 +34,10 @@ std::string_view next_word(std::string_view bytes, std::size_t& at) {
 
 template <class T>
 T number(std::string_view word, const char* what) {
-  T value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size())
+  const auto value = whole_number<T>(word);
+  if (!value)
     throw std::runtime_error(fmt::format("PFM header: wanted {}, found '{}'", what, word.substr(0, 20)));
-  return value;
+  return *value;
 }
 
 Header read_header(std::string_view bytes) {

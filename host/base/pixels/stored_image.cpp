@@ -53,8 +53,7 @@ void check_image_size(std::int64_t width, std::int64_t height, std::size_t pixel
   const auto there = available_memory();
   if (there && pixels * pixel_bytes > *there / 2)
     throw std::runtime_error(
-        fmt::format("the image of {}x{} pixels takes {} MiB, more than half of the memory "
-                    "that is available",
+        fmt::format("the image of {}x{} pixels takes {} MiB, more than half of the memory that is available",
                     width, height, pixels * pixel_bytes >> 20));
 }
 

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "compile/bvh/vertices.h"
 #include "compile/bvh/wide_bvh.h"
 #include "compile/steps.h"
@@ -155,12 +155,10 @@ void build_tree(const MeshInputs& in, double unit, Tree& tree) {
   const Mesh& mesh = tree.mesh(in);
   const auto fill = [&](std::span<Ref> refs) {
     std::atomic<bool> bad{false};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, refs.size(), 4096), [&](const auto& range) {
-      for (std::size_t t = range.begin(); t != range.end(); ++t) {
-        const Bounds box = triangle_box(mesh, mesh.triangles[t]);
-        if (box.empty()) bad = true;
-        refs[t] = Ref::of(box, static_cast<u32>(t));
-      }
+    in_parallel(refs.size(), [&](std::size_t t) {
+      const Bounds box = triangle_box(mesh, mesh.triangles[t]);
+      if (box.empty()) bad = true;
+      refs[t] = Ref::of(box, static_cast<u32>(t));
     });
     if (bad) fail_corner(in, tree.meshes);
   };

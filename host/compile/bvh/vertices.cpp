@@ -1,29 +1,14 @@
 // See vertices.h.
 #include "compile/bvh/vertices.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace sundog {
 namespace {
-
-void parallel_range(std::size_t count, const auto& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
-}
-
-/// Face normal with twice the area as its length; in scaled double precision, so that tiny and huge triangles
-/// have one.
-glm::dvec3 face_normal(const Mesh& mesh, const glm::uvec3& triangle) {
-  const glm::dvec3 origin(mesh.positions[triangle.x]);
-  return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - origin,
-                    glm::dvec3(mesh.positions[triangle.z]) - origin);
-}
 
 bool usable(const glm::dvec3& normal) {
   const double length = glm::length(normal);
@@ -54,7 +39,7 @@ Vertex make_vertex(const Mesh& mesh, std::size_t index) {
 /// Replaces the mesh's normals that have no direction.
 void mend_normals(const Mesh& mesh, std::span<Vertex> vertices) {
   std::atomic<bool> broken{false};
-  parallel_range(mesh.normals.size(), [&](std::size_t i) {
+  in_parallel(mesh.normals.size(), [&](std::size_t i) {
     if (!usable(glm::dvec3(mesh.normals[i]))) broken = true;
   });
   if (!broken) return;
@@ -79,7 +64,7 @@ float triangle_extent(const Mesh& mesh, const glm::uvec3& triangle) {
 
 void fill_facets(const Mesh& mesh, u32 first_vertex, u32 default_material, std::span<Vertex> vertices,
                  std::span<TriangleShading> triangles) {
-  parallel_range(mesh.triangles.size(), [&](std::size_t t) {
+  in_parallel(mesh.triangles.size(), [&](std::size_t t) {
     const glm::dvec3 normal = face_normal(mesh, mesh.triangles[t]);
     TriangleShading& triangle = triangles[t];
     triangle.material = triangle_material(mesh, t, default_material);
@@ -105,9 +90,9 @@ void fill_vertices(const Mesh& mesh, u32 first_vertex, u32 default_material, std
     fill_facets(mesh, first_vertex, default_material, vertices, triangles);
     return;
   }
-  parallel_range(vertices.size(), [&](std::size_t i) { vertices[i] = make_vertex(mesh, i); });
+  in_parallel(vertices.size(), [&](std::size_t i) { vertices[i] = make_vertex(mesh, i); });
   mend_normals(mesh, vertices);
-  parallel_range(triangles.size(), [&](std::size_t t) {
+  in_parallel(triangles.size(), [&](std::size_t t) {
     const glm::uvec3& corners = mesh.triangles[t];
     triangles[t] = {{first_vertex + corners.x, first_vertex + corners.y, first_vertex + corners.z},
                     triangle_material(mesh, t, default_material),

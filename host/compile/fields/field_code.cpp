@@ -94,18 +94,17 @@ Operand FieldCode::define(const std::string& name, FieldOp op, Operands operands
   return add(name, std::move(s), type_of(op), true);
 }
 
-Operand FieldCode::declare(const std::string& name, FieldOp op, Operands operands, std::size_t number) {
-  const Operand variable = define(name, op, std::move(operands), number);
+Operand FieldCode::declare(const std::string& name, FieldOp op, Operands operands) {
+  const Operand variable = define(name, op, std::move(operands));
   statements_.back().constant = false;
   return variable;
 }
 
-void FieldCode::assign(const Operand& variable, FieldOp op, Operands operands, std::size_t number) {
+void FieldCode::assign(const Operand& variable, FieldOp op, Operands operands) {
   FieldStatement s;
   s.op = op;
   s.result = variable.index;
   s.operands = std::move(operands);
-  s.number = number;
   statements_.push_back(std::move(s));
 }
 

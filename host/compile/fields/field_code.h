@@ -65,8 +65,8 @@ class FieldCode {
   /// Defines a constant value; `name` is a suggestion.
   Operand define(const std::string& name, FieldOp op, Operands operands, std::size_t number = 0);
   /// Declares a variable with its initial value.
-  Operand declare(const std::string& name, FieldOp op, Operands operands, std::size_t number = 0);
-  void assign(const Operand& variable, FieldOp op, Operands operands, std::size_t number = 0);
+  Operand declare(const std::string& name, FieldOp op, Operands operands);
+  void assign(const Operand& variable, FieldOp op, Operands operands);
   /// A point from three numbers, or a sample from eight.
   Operand assemble(const std::string& name, FieldType type, Operands numbers);
   Operand call(const std::string& function, FieldType type, const Operand& point, std::size_t table,

@@ -1,5 +1,4 @@
 // Compiles the fields, each for its nearest view.
-#include <algorithm>
 #include <limits>
 
 #include "base/error.h"

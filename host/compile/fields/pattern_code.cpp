@@ -46,8 +46,7 @@ std::string pattern_code(std::span<const PatternFormula> formulas) {
          "    return select((REAL)(0.0f), x, MASK_OF(fabs(x) < 1e30f));\n}\n\n" +
          functions +
          "static inline REAL4 pattern_formula(u32 number, REAL3 p, REAL width, __global const float* "
-         "restrict "
-         "q) {\n" +
+         "restrict q) {\n" +
          calls +
          "    const REAL zero = (REAL)(0.0f);\n    return real4(zero, zero, zero, zero);\n}\n\n#endif\n";
 }

@@ -138,8 +138,7 @@ class FieldsEmitter {
   static std::string native_code(const std::string& code, std::size_t index) {
     return fmt::format(
         "static inline REAL native{0}(REAL3 p) {{\n#line 1 \"native code {0} of the scene\"\n{1}\n}}\n#line "
-        "1 "
-        "\"after native code {0}\"\n"
+        "1 \"after native code {0}\"\n"
         "static inline SdfSample native{0}_sample(REAL3 p) {{\n  SdfSample s = no_sample();\n  s.distance = "
         "native{0}(p);\n  return s;\n}}\n\n",
         index, code);
@@ -289,8 +288,7 @@ class FieldsEmitter {
   std::string shallow_functions() const {
     std::string out =
         "static inline REAL3 sdf_place(u32 field, REAL3 p, __global const float* restrict q) {\n  const u32 "
-        "o "
-        "= SDF_ORIGINS + 3u * field;\n  return real3(p.x + q[o], p.y + q[o + 1u], p.z + q[o + 2u]);\n}\n\n";
+        "o = SDF_ORIGINS + 3u * field;\n  return real3(p.x + q[o], p.y + q[o + 1u], p.z + q[o + 2u]);\n}\n\n";
     for (int kind = 0; kind < 4; ++kind) {
       if (kind == 3 && std::find(uneven_.begin(), uneven_.end(), true) == uneven_.end()) break;
       out += fmt::format(

@@ -1,7 +1,6 @@
 #include "compile/fields/sdf_emit.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <utility>
 
 namespace sundog {
@@ -9,52 +8,29 @@ namespace {
 
 /// All except sums, choices and powers of roots, whose operands have another order.
 FieldOp field_op(Op op) {
-  switch (op) {
-    case Op::multiply:
-      return FIELD_MULTIPLY;
-    case Op::divide:
-      return FIELD_DIVIDE;
-    case Op::negate:
-      return FIELD_NEGATE;
-    case Op::absolute:
-      return FIELD_ABSOLUTE;
-    case Op::minimum:
-      return FIELD_MINIMUM;
-    case Op::maximum:
-      return FIELD_MAXIMUM;
-    case Op::round_down:
-      return FIELD_ROUND_DOWN;
-    case Op::square_root:
-      return FIELD_SQUARE_ROOT;
-    case Op::rough_inverse_root:
-      return FIELD_ROUGH_INVERSE_ROOT;
-    case Op::sine:
-      return FIELD_SINE;
-    case Op::cosine:
-      return FIELD_COSINE;
-    case Op::arc_cosine:
-      return FIELD_ARC_COSINE;
-    case Op::arc_tangent:
-      return FIELD_ARC_TANGENT;
-    case Op::exponential:
-      return FIELD_EXPONENTIAL;
-    case Op::logarithm:
-      return FIELD_LOGARITHM;
-    case Op::power:
-      return FIELD_POWER;
-    case Op::less:
-      return FIELD_LESS;
-    case Op::less_equal:
-      return FIELD_LESS_EQUAL;
-    case Op::both:
-      return FIELD_BOTH;
-    case Op::either:
-      return FIELD_EITHER;
-    case Op::opposite:
-      return FIELD_OPPOSITE;
-    default:
-      return FIELD_COPY;
-  }
+  static constexpr std::pair<Op, FieldOp> ops[] = {{Op::multiply, FIELD_MULTIPLY},
+                                                   {Op::divide, FIELD_DIVIDE},
+                                                   {Op::negate, FIELD_NEGATE},
+                                                   {Op::absolute, FIELD_ABSOLUTE},
+                                                   {Op::minimum, FIELD_MINIMUM},
+                                                   {Op::maximum, FIELD_MAXIMUM},
+                                                   {Op::round_down, FIELD_ROUND_DOWN},
+                                                   {Op::square_root, FIELD_SQUARE_ROOT},
+                                                   {Op::rough_inverse_root, FIELD_ROUGH_INVERSE_ROOT},
+                                                   {Op::sine, FIELD_SINE},
+                                                   {Op::cosine, FIELD_COSINE},
+                                                   {Op::arc_cosine, FIELD_ARC_COSINE},
+                                                   {Op::arc_tangent, FIELD_ARC_TANGENT},
+                                                   {Op::exponential, FIELD_EXPONENTIAL},
+                                                   {Op::logarithm, FIELD_LOGARITHM},
+                                                   {Op::power, FIELD_POWER},
+                                                   {Op::less, FIELD_LESS},
+                                                   {Op::less_equal, FIELD_LESS_EQUAL},
+                                                   {Op::both, FIELD_BOTH},
+                                                   {Op::either, FIELD_EITHER},
+                                                   {Op::opposite, FIELD_OPPOSITE}};
+  const auto* found = std::ranges::find(ops, op, &std::pair<Op, FieldOp>::first);
+  return found == std::end(ops) ? FIELD_COPY : found->second;
 }
 
 }  // namespace

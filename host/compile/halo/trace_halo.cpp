@@ -2,7 +2,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <algorithm>
-#include <atomic>
 
 #include "compile/halo/halo_map.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "compile/layers/albedos.h"
 #include "compile/layers/base.h"

@@ -2,7 +2,6 @@
 #include "compile/lights/light_tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "scene/integrators.h"

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <numbers>
 
 #include "compile/view/lattice_turns.h"
 #include "shared/lobe_energy.h"

@@ -2,7 +2,6 @@
 #include "compile/view/filter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -2,7 +2,6 @@
 // at a time of the animations. In: JSON and buffers. Out: a Model whose objects share meshes.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_access.hpp>
 #include <memory>

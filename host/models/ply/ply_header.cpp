@@ -1,8 +1,6 @@
 // Reads PLY's header (G. Turk, "The PLY polygon file format", 1994).
 #include "models/ply/ply_header.h"
 
-#include <fmt/format.h>
-
 #include <array>
 
 #include "models/text.h"

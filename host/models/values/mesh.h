@@ -26,4 +26,10 @@ struct Mesh {
   std::size_t source_vertex_count = 0;  // in the file, before vertices are split or dropped
 };
 
+/// A triangle's normal, twice its area long; in double precision, so that tiny and huge triangles have one.
+inline glm::dvec3 face_normal(const Mesh& mesh, const glm::uvec3& triangle) {
+  const glm::dvec3 p(mesh.positions[triangle.x]);
+  return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - p, glm::dvec3(mesh.positions[triangle.z]) - p);
+}
+
 }  // namespace sundog

@@ -1,13 +1,12 @@
 // See compact_nodes.h.
 #include "render/device/compact_nodes.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+
+#include "base/parallel.h"
 
 namespace sundog {
 namespace {
@@ -74,9 +73,7 @@ CompactNode compact(const Bvh8Node& wide) {
 
 std::vector<CompactNode> compact_nodes(std::span<const Bvh8Node> nodes) {
   std::vector<CompactNode> result(nodes.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) result[i] = compact(nodes[i]);
-  });
+  in_parallel(nodes.size(), [&](std::size_t i) { result[i] = compact(nodes[i]); });
   return result;
 }
 

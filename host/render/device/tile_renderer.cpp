@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 #include "base/clock.h"
@@ -213,10 +212,9 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
     finished = 0;
   // A stopped tile may have samples of unfinished rows.
   if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;
-  throw LoopsCutShort(
-      fmt::format("{}: the driver ends the kernel's loops too early ({} of {} samples were traced to "
-                  "their end)",
-                  device_.info().label(), finished / 2, std::max(wanted, primary)));
+  throw LoopsCutShort(fmt::format(
+      "{}: the driver ends the kernel's loops too early ({} of {} samples were traced to their end)",
+      device_.info().label(), finished / 2, std::max(wanted, primary)));
 }
 
 TileResult TileRenderer::render(const TileRequest& request, const StopFlags& flags) {

@@ -57,10 +57,10 @@ void check_memory(const std::filesystem::path& path, const Film& film, const Pas
   const auto pixels = static_cast<std::uintmax_t>(pass.width) * static_cast<std::uintmax_t>(pass.height);
   const std::size_t a_pixel = sample_bytes + (pass.surfaces ? sizeof(float4) * film.layout.vectors() : 0);
   if (pixels * a_pixel > file_bytes)
-    throw SceneError(path.string(), "",
-                     fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes; remove it to "
-                                 "start anew",
-                                 pass.width, pass.height, file_bytes));
+    throw SceneError(
+        path.string(), "",
+        fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes; remove it to start anew",
+                    pass.width, pass.height, file_bytes));
 }
 
 /// More than a checkpoint of that frame has: a list of pixels is padded to rows of whole blocks.
@@ -89,10 +89,9 @@ std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most
     std::string start(sizeof magic, ' ');
     std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
     if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
-      throw UsageError(
-          path.string() +
-          ": is a checkpoint of another version of sundog; finish the frame with that version, or "
-          "remove the file to start anew");
+      throw UsageError(path.string() +
+                       ": is a checkpoint of another version of sundog; finish the frame with that version, "
+                       "or remove the file to start anew");
     const std::uintmax_t size = std::filesystem::file_size(path, failed);
     if (!failed && size > most) throw other_checkpoint(path);
   }

@@ -88,11 +88,10 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
   if (!missing.empty())
     throw SceneError(
         found.begin()->second, "",
-        fmt::format("part{0} {1} of {2} {3} missing: render {4} as part {5}/{2} and with the options of the "
-                    "others",
-                    missing.size() > 1 ? "s" : "", listed(missing), count, missing.size() > 1 ? "are" : "is",
-                    missing.size() > 1 ? "each" : "it",
-                    missing.size() > 1 ? "I" : std::to_string(missing.front())),
+        fmt::format(
+            "part{0} {1} of {2} {3} missing: render {4} as part {5}/{2} and with the options of the others",
+            missing.size() > 1 ? "s" : "", listed(missing), count, missing.size() > 1 ? "are" : "is",
+            missing.size() > 1 ? "each" : "it", missing.size() > 1 ? "I" : std::to_string(missing.front())),
         Remedy::part);
 }
 

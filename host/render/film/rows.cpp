@@ -6,7 +6,8 @@
 
 namespace sundog {
 
-std::vector<RowRange> divide_rows(int height, std::span<const double> shares, int align) {
+std::vector<RowRange> divide_rows(int height, std::span<const double> shares) {
+  constexpr int align = 4;  // as tiles are aligned
   const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
   const int bands = (height + align - 1) / align;
   std::vector<RowRange> ranges;

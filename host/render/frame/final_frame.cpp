@@ -14,10 +14,10 @@ namespace {
 void begin_passes(Frame& frame) {
   const std::filesystem::path& file = frame.options.resume;
   if (!file.empty() && is_there(file)) {
-    read_checkpoint(file, frame.film, frame.pass, frame.made, frame.key);
+    read_checkpoint(file, frame.film, frame.pass, frame.pass_film, frame.key);
     if (frame.pass.is_none() && frame.film.grows) return begin_pass(frame, std::nullopt);
     if (frame.pass.is_none()) {  // complete, perhaps of another part: keep its pixels, make those missing
-      frame.made = std::exchange(frame.film, Film(frame.film.width, frame.film.height, frame.film));
+      frame.pass_film = std::exchange(frame.film, Film(frame.film.width, frame.film.height, frame.film));
       frame.pass = *next_pass(frame.film, frame.plan);
     }
     if (!may_be_of(frame.plan, frame.pass)) throw damaged_checkpoint(file);
@@ -53,7 +53,7 @@ double frame_efficiency(const Frame& frame) {
 void keep_checkpoint(const Frame& frame, RenderResult& result) {
   if (checkpoint_path(frame.options).empty() || result.complete) return;
   try {
-    write_checkpoint(checkpoint_path(frame.options), frame.film, frame.pass, frame.made, frame.key,
+    write_checkpoint(checkpoint_path(frame.options), frame.film, frame.pass, frame.pass_film, frame.key,
                      frame.options.faults);
     result.checkpoint_kept = true;
   } catch (const IoError& error) {
@@ -127,7 +127,7 @@ RenderResult finish_frame(Frame& frame) {
   keep_checkpoint(frame, result);
   if (is_lost) std::rethrow_exception(result.failure);
   // With what there is of another pass, parts of the picture would have twice the samples of others.
-  if (result.time_limited && frame.film.stage > 0) frame.made = Film();
+  if (result.time_limited && frame.film.stage > 0) frame.pass_film = Film();
   result.film = take_film(frame);
   develop(options, result);
   if (options.region) cut_to(frame.inner, result);

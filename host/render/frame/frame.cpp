@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
+#include "render/plan/frame_tiles.h"
 
 namespace sundog {
 namespace {
@@ -44,7 +45,7 @@ std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   const std::size_t pixels = pixel_count(tile);
   if (!pass.pixels.empty()) {
     request.pixels.resize(pixels);
-    for_each_pixel(frame.made, tile,
+    for_each_pixel(frame.pass_film, tile,
                    [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
   }
   if (pass.first_sample == 0) return request;
@@ -53,7 +54,7 @@ std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   request.rays.resize(film.rays.empty() ? 0 : pixels);
   const std::size_t vectors = pass.surfaces ? film.layout.vectors() : 0;
   request.aovs.resize(vectors * pixels);
-  for_each_pixel(frame.made, tile, [&](std::size_t at, std::size_t i) {
+  for_each_pixel(frame.pass_film, tile, [&](std::size_t at, std::size_t i) {
     prefetch_sums(film, pass, i + pixels_ahead);
     const std::int64_t found = image_index(film, pass, i);
     if (found < 0) return;
@@ -82,7 +83,7 @@ void take_figures(Frame& frame, std::size_t i) {
 /// Puts a tile, or the finished rows of one, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.made.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
+  frame.pixels_done += frame.pass_film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
   frame.workers[i].report.pixels += pixel_count(made.tile);
   if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
@@ -181,6 +182,17 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
 }
 
 }  // namespace
+
+Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds)
+    : options(std::move(options_)),
+      plan(std::move(plan_)),
+      film(std::move(film_)),
+      queue({.lists = std::vector<WaitingTiles>(1)}, speeds) {
+  std::vector<double> estimates;
+  for (const DeviceSpeed& speed : speeds) estimates.push_back(speed.estimate);
+  tiles = [this, estimates](const Film& of_pass) { return plan_tiles(options, of_pass, estimates); };
+  queue.expect_more();
+}
 
 void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
   frame.queue.retire(i);

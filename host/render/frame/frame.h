@@ -31,32 +31,26 @@ struct CoarsePasses {
 /// end.
 struct Frame : std::enable_shared_from_this<Frame> {
   /// `film` is empty: begin_pass() or continue_pass() come next.
-  Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds)
-      : options(std::move(options_)),
-        plan(std::move(plan_)),
-        film(std::move(film_)),
-        queue({.lists = std::vector<WaitingTiles>(1)}, std::move(speeds)) {
-    queue.expect_more();
-  }
+  Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds);
 
   enum class Phase { opening, working, closing, gone };
   struct Worker {
     std::shared_ptr<DeviceWorker> device;
-    DeviceReport report;
+    DeviceReport report = {};
     Phase phase = Phase::opening;
     bool failed = false;  // for good
   };
 
   const RenderOptions options;
   const SamplingPlan plan;
-  std::function<TilePlan(const Film&)> tiles;  // of a pass
+  std::function<TilePlan(const Film&)> tiles;  // of a pass, whose finished tiles are given
   Tile area, inner;  // of the picture, that the film holds; of the film, that are the region
   std::vector<Worker> workers;
   std::mutex mutex;  // for everything below, and the workers' reports and phases
   std::condition_variable changed;
-  Film film;  // of the passes that are complete
-  Pass pass;  // the one in hand; none where the film is complete
-  Film made;  // what there is of it
+  Film film;       // of the passes that are complete
+  Pass pass;       // the one in hand; none where the film is complete
+  Film pass_film;  // the finished tiles of that pass
   CoarsePasses coarse;
   TileQueue queue;
   RayCounts counts{};
@@ -89,7 +83,7 @@ void plan_next_pass(Frame& frame);
 /// Begins a pass; without one the frame is complete.
 void begin_pass(Frame& frame, std::optional<Pass> next);
 
-/// Begins the rest of a pass of which Frame::made has a part.
+/// Begins the rest of a pass of which Frame::pass_film has a part.
 void continue_pass(Frame& frame);
 
 /// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).

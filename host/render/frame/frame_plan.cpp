@@ -54,12 +54,6 @@ std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options
   return options.region ? hash_bytes(&*options.region, sizeof *options.region, key) : key;
 }
 
-std::vector<double> estimates(const std::vector<WorkerPlan>& devices) {
-  std::vector<double> result;
-  for (const WorkerPlan& device : devices) result.push_back(device.info.estimate);
-  return result;
-}
-
 Tile area_of(const CompiledScene& scene, const RenderOptions& options) {
   return frame_area(options.region, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height));
 }
@@ -87,14 +81,13 @@ FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
 }
 
 std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const RenderOptions& options) {
-  std::vector<DeviceSpeed> speeds(devices.size());
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    speeds[i].estimate = devices[i].info.estimate;
-    speeds[i].processor = devices[i].processor;
-    speeds[i].measured = devices[i].pixels_a_second;
-    speeds[i].sample = devices[i].measured_pixels;
-    if (options.tuning) speeds[i].tile_seconds = 1e-3 * options.tuning(devices[i].info).tile_ms;
-  }
+  std::vector<DeviceSpeed> speeds;
+  for (const WorkerPlan& device : devices)
+    speeds.push_back({.measured = device.pixels_a_second,
+                      .sample = device.measured_pixels,
+                      .estimate = device.info.estimate,
+                      .processor = device.processor,
+                      .tile_seconds = options.tuning ? 1e-3 * options.tuning(device.info).tile_ms : 0});
   return speeds;
 }
 
@@ -123,15 +116,8 @@ std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<
   auto frame = std::make_shared<Frame>(options, plan_of(scene, options),
                                        Film(area.width, area.height, needs_of(scene, options)),
                                        speeds_of(devices, options));
-  frame->tiles = [options, shares = estimates(devices)](const Film& made) {
-    return plan_tiles(options, made, shares);
-  };
-  for (const WorkerPlan& device : devices) {
-    Frame::Worker worker;
-    worker.device = device.make(frame->options);
-    worker.report.info = device.info;
-    frame->workers.push_back(std::move(worker));
-  }
+  for (const WorkerPlan& device : devices)
+    frame->workers.push_back({.device = device.make(frame->options), .report = {.info = device.info}});
   frame->area = area;
   frame->inner = options.region.value_or(area);
   frame->inner.x -= area.x, frame->inner.y -= area.y;

@@ -2,8 +2,6 @@
 #include "render/plan/passes.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "render/plan/convergence.h"

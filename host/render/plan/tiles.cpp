@@ -26,8 +26,8 @@ std::vector<Tile> unfinished_in_row(const Film& film, const Tile& row) {
 
 }  // namespace
 
-std::vector<Tile> cut_tiles(int width, int height, int edge, int align) {
-  const int step = std::max(align, (edge + align - 1) / align * align);
+std::vector<Tile> cut_tiles(int width, int height, int edge) {
+  const int step = std::max(tile_align, (edge + tile_align - 1) / tile_align * tile_align);
   std::vector<Tile> tiles;
   for (int y = 0; y < height; y += step)
     for (int x = 0; x < width; x += step)

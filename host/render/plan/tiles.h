@@ -11,9 +11,9 @@ namespace sundog {
 /// Tiles are aligned to this many pixels: the edge of a work-item's block on devices with vectors.
 constexpr int tile_align = 4;
 
-/// Disjoint rectangles of `edge` pixels (rounded up to a multiple of `align`) that cover the image, row by
+/// Disjoint rectangles of `edge` pixels (rounded up to a multiple of tile_align) that cover the image, row by
 /// row; smaller at the right and lower edge. The order is the order of work.
-std::vector<Tile> cut_tiles(int width, int height, int edge, int align = tile_align);
+std::vector<Tile> cut_tiles(int width, int height, int edge);
 
 /// Disjoint rectangles that cover every unfinished pixel of `area`, in whole blocks of tile_align x
 /// tile_align. `area` is aligned to tile_align.

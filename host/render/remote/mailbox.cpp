@@ -249,7 +249,8 @@ std::vector<int> Mailbox::silent_for(double seconds) {
   return silent;
 }
 
-bool Mailbox::leave(int status, double grace) {
+bool Mailbox::leave(int status) {
+  constexpr double grace = 15;
   const Stopwatch waited;
   Lock lock(state_->mutex);
   if (rank_ != 0) {

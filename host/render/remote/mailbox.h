@@ -49,9 +49,9 @@ class Mailbox {
   std::vector<int> silent_for(double seconds);
 
   /// Ends the job. Rank 0 notifies the others, and each waits for all. If some are gone, or take more than
-  /// `grace` seconds, rank 0 kills them all, and exits with `status`. Another rank returns false if rank 0 is
+  /// 15 seconds, rank 0 kills them all, and exits with `status`. Another rank returns false if rank 0 is
   /// gone.
-  bool leave(int status, double grace = 15);
+  bool leave(int status);
 
  private:
   using Key = std::pair<int, std::uint32_t>;  // rank, channel

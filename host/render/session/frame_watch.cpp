@@ -51,7 +51,7 @@ void keep_checkpoint(Frame& frame) {
     frame.pixels_kept = frame.pixels_done;
     film = frame.film;
     pass = frame.pass;
-    made = frame.made;
+    made = frame.pass_film;
   }
   try {
     write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);

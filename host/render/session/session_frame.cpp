@@ -1,10 +1,6 @@
 #include "render/session/session_frame.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "render/plan/frame_tiles.h"
 
 namespace sundog {
 namespace {
@@ -33,12 +29,11 @@ SamplingPlan sampling_of(const CompiledScene& scene, const std::vector<std::stri
 }
 
 std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneWorker>>& workers) {
-  std::vector<DeviceSpeed> speeds(workers.size());
-  for (std::size_t i = 0; i < workers.size(); ++i) {
-    speeds[i].estimate = workers[i]->info().estimate;
-    speeds[i].processor = workers[i]->processor();
-    speeds[i].tile_seconds = tile_seconds;
-  }
+  std::vector<DeviceSpeed> speeds;
+  for (const auto& worker : workers)
+    speeds.push_back({.estimate = worker->info().estimate,
+                      .processor = worker->processor(),
+                      .tile_seconds = tile_seconds});
   return speeds;
 }
 
@@ -74,14 +69,14 @@ Image develop(const Film& film, std::span<const glm::vec3> balance) {
 
 /// The pixels of the pass in hand that are done.
 void fill_from_pass(const Frame& frame, std::span<const glm::vec3> balance, Image& image) {
-  const Film& made = frame.made;
-  for (std::size_t i = 0; i < made.done.size(); ++i) {
-    const std::int64_t p = made.done[i] ? image_index(frame.film, frame.pass, i) : -1;
+  const Film& done = frame.pass_film;
+  for (std::size_t i = 0; i < done.done.size(); ++i) {
+    const std::int64_t p = done.done[i] ? image_index(frame.film, frame.pass, i) : -1;
     if (p < 0) continue;
     float* pixel = image.data.data() + 4 * p;
     std::fill_n(pixel, 4, 0.0f);
-    set_pixel(pixel, made.sums[i], made.weights[i]);
-    balance_pixel(made, i, balance, pixel);
+    set_pixel(pixel, done.sums[i], done.weights[i]);
+    balance_pixel(done, i, balance, pixel);
   }
 }
 
@@ -107,16 +102,9 @@ std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
   const std::size_t pixels = film.pixels();
   auto frame = std::make_shared<Frame>(options, sampling_of(*order.scene, order.aovs), std::move(film),
                                        speeds_of(order.workers));
-  std::vector<double> estimates;
-  for (const auto& worker : order.workers) {
-    Frame::Worker entry;
-    entry.device = worker;
-    entry.report.info = worker->info();
-    estimates.push_back(worker->info().estimate);
-    frame->workers.push_back(std::move(entry));
-  }
+  for (const auto& worker : order.workers)
+    frame->workers.push_back({.device = worker, .report = {.info = worker->info()}});
   frame->live = true;
-  frame->tiles = [options, estimates](const Film& made) { return plan_tiles(options, made, estimates); };
   frame->coarse.pixel_seconds = order.pixel_seconds;
   begin_coarse(*frame, order.settings.coarse ? first_block(order.pixel_seconds, pixels) : 0);
   return frame;
@@ -150,7 +138,7 @@ FrameSamples samples_of(const Frame& frame, unsigned wanted) {
 Image picture_of(const Frame& frame, std::span<const glm::vec3> balance) {
   const Film& film = frame.film;
   const CoarsePasses& coarse = frame.coarse;
-  if (frame.made.done.empty()) return develop(film, balance);
+  if (frame.pass_film.done.empty()) return develop(film, balance);
   if (frame.plan.settings.subsample && coarse.block == 0 && film.stage > 0)
     return develop(film_so_far(frame), balance);
   Image image = film.stage > 0 ? develop(film, balance) : Image(film.width, film.height, 4);

@@ -18,16 +18,16 @@ using RayCounts = std::array<std::uint64_t, COUNTERS>;
 struct DeviceReport {
   DeviceInfo info;
   std::uint64_t tiles = 0, failures = 0;
-  std::uint64_t pixels = 0;           // kept in the image
-  std::uint64_t outrun = 0;           // tiles that another device finished sooner
-  double busy_seconds = 0;            // on tiles that it finished
-  double share = 0;                   // of the frame's pixels
-  bool ready = false;                 // its kernels were built before the end of the frame
-  bool retired = false;               // it failed too often, or hangs
-  bool abandoned = false;             // its driver had not returned at the end
-  std::vector<std::string> messages;  // its failures
-  std::vector<std::string> notes;     // warnings
-  std::map<std::string, KernelTimes> kernels;
+  std::uint64_t pixels = 0;                // kept in the image
+  std::uint64_t outrun = 0;                // tiles that another device finished sooner
+  double busy_seconds = 0;                 // on tiles that it finished
+  double share = 0;                        // of the frame's pixels
+  bool ready = false;                      // its kernels were built before the end of the frame
+  bool retired = false;                    // it failed too often, or hangs
+  bool abandoned = false;                  // its driver had not returned at the end
+  std::vector<std::string> messages = {};  // its failures
+  std::vector<std::string> notes = {};     // warnings
+  std::map<std::string, KernelTimes> kernels = {};
   bool kernels_cached = false;
   std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
   std::uint64_t kernels_built = 0;  // programs compiled by the driver

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "base/error.h"
 #include "base/names.h"
+#include "base/numbers.h"
 #include "scene/json/parse.h"
 #include "scene/json/value.h"
 
@@ -40,11 +39,8 @@ std::vector<std::string> split_pointer(std::string_view pointer) {
 }
 
 std::optional<std::size_t> array_index(std::string_view token) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
-  const bool canonical = token.size() == 1 || (!token.empty() && token[0] != '0');
-  if (error != std::errc() || end != token.data() + token.size() || !canonical) return std::nullopt;
-  return index;
+  const bool canonical = token.size() == 1 || !token.starts_with('0');
+  return canonical ? whole_number<std::size_t>(token) : std::nullopt;
 }
 
 /// The item that a token means: by its index, or by the name that no other item has.

@@ -2,7 +2,6 @@
 #include "scene/procedural/ice_block.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "scene/procedural/cube_grid.h"
 #include "scene/procedural/random.h"

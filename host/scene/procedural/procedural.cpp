@@ -208,10 +208,9 @@ ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
     static const nlohmann::json::json_pointer place("/generate/type");
     const bool generated = meshes && mesh != meshes->json().end() && mesh->contains(place);
     if (!generated || (mesh->at(place) != "lathe" && mesh->at(place) != "fill"))
-      name->fail(
-          fmt::format("\"{}\" is no lathe; wanted the name of a mesh that a \"lathe\" or its \"fill\" "
-                      "generates",
-                      name->text()));
+      name->fail(fmt::format(
+          "\"{}\" is no lathe; wanted the name of a mesh that a \"lathe\" or its \"fill\" generates",
+          name->text()));
     return follow_exactly(meshes->member(name->text(), "a mesh").member("generate", "a recipe"), *meshes);
   } catch (const GenerateError& error) {
     (name ? *name : object.value()).fail(error.what());

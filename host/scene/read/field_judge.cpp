@@ -65,8 +65,7 @@ class FormulaJudge {
     if (found_.inside == found_.finite && found_.greatest.value < 0)
       place("distance")
           .warn(fmt::format("the whole interval is inside: the greatest distance found is {:.3g}, at {}; "
-                            "where it is above 0, "
-                            "there is nothing",
+                            "where it is above 0, there is nothing",
                             found_.greatest.value, text_of(found_.greatest.at)));
     // Thin sheets may lie between the points, but the estimate is small near them.
     if (found_.inside == 0 && found_.least.value > (escapes ? 0.01 : 1e-3) * size_)
@@ -84,8 +83,7 @@ class FormulaJudge {
       if (own.json().contains(b.section)) own = own.member(b.section, "");
       own.warn(
           fmt::format("line {}, column {}: {} is asked for {:.3g} at {}, which it is not defined for ({} {} "
-                      "are like that): it "
-                      "takes {:g} instead",
+                      "are like that): it takes {:g} instead",
                       b.guard.line, b.guard.column, b.guard.function, b.value, text_of(b.at), b.count,
                       of_points(), b.value < b.guard.low ? b.guard.low : b.guard.high));
     }
@@ -123,11 +121,10 @@ class FormulaJudge {
     if (is_own_ && !has_safety_ && bearable < 0.02 && found_.reach.value < 0.02 &&
         bearable < found_.reach.value)
       place("distance")
-          .fail(
-              fmt::format("the distance jumps, or grows steeper without bound, near {}, where the surface is "
-                          "{:.2g} times as far "
-                          "away: no step is short enough for it (a \"safety\" that is set is taken as it is)",
-                          text_of(found_.reach.at), found_.reach.value));
+          .fail(fmt::format("the distance jumps, or grows steeper without bound, near {}, where the surface "
+                            "is {:.2g} times as far away: no step is short enough for it (a \"safety\" that "
+                            "is set is taken as it is)",
+                            text_of(found_.reach.at), found_.reach.value));
     if (bearable > 0.97 * field_.safety && bearable < 1.5 * field_.safety) return;
     if (has_safety_) {
       if (bearable < field_.safety)

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -182,8 +181,7 @@ void read_local_terms(JsonObject& object, MaterialDescription& material, Texture
   if (dielectric && object.has("color") && !object.has("ambient") && !object.has("diffuse"))
     object.find("color")->fail(
         "a dielectric has no \"color\" unless it has \"ambient\" or \"diffuse\": tint it by \"transmission\" "
-        "or by its "
-        "medium's \"absorption\"");
+        "or by its medium's \"absorption\"");
 }
 
 /// A thin wall has an index and no inside.
@@ -270,8 +268,7 @@ void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibr
   if ((material.medium >= 0 || material.wall_ior > 0) &&
       (material.opacity < 1 || material.textures.opacity >= 0))
     object.at("opacity").fail(
-        "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" "
-        "instead");
+        "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" instead");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Reads the exact solids: each in its own units about the origin with axis y, the transform of its
 // shorthands, and its distance field for field operations.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

@@ -33,6 +33,10 @@ const std::map<std::string, std::string> pages{{"render", "reference/command-lin
                                                {"bench kernels", "guide/benchmarks"},
                                                {"bench textures", "guide/benchmarks"},
                                                {"bench roofline", "guide/benchmarks"},
+                                               {"bench compare", "guide/benchmarks"},
+                                               {"gallery", "reference/command-line"},
+                                               {"mix", "reference/command-line"},
+                                               {"serve", "guide/viewer"},
                                                {"halo", "guide/halo"}};
 
 /// The long options in a text: "--size", as a whole.
@@ -60,6 +64,19 @@ std::set<std::string> known_options(const std::string& command) {
   return all;
 }
 
+/// The commands that `--help` lists, those of `bench` too.
+std::vector<std::string> all_commands(const std::string& parent = "") {
+  const CommandResult help = parent.empty() ? run_sundog({"--help"}) : run_sundog({parent, "--help"});
+  REQUIRE(help.status == 0);
+  std::istringstream lines(help.out.substr(help.out.find("Subcommands:")));
+  std::vector<std::string> all;
+  static const std::regex command("^  ([a-z]+) .*");
+  for (std::string line; std::getline(lines, line);)
+    if (std::smatch found; std::regex_match(line, found, command) && found[1] != "bench")
+      all.push_back(parent.empty() ? found[1].str() : parent + " " + found[1].str());
+  return all;
+}
+
 std::string page_text(const std::string& name) {
   return sundog::read_file(fmt::format(SUNDOG_SOURCE_DIR "/docs/{}.md", name));
 }
@@ -78,6 +95,14 @@ std::string first_cells(const std::string& page) {
 }
 
 }  // namespace
+
+TEST_CASE("every command has a page in the manual") {
+  for (const char* parent : {"", "bench"})
+    for (const std::string& command : all_commands(parent)) {
+      INFO("no page is named for the command " << command);
+      CHECK(pages.contains(command));
+    }
+}
 
 TEST_CASE("the manual has every option of every command, and no other") {
   std::map<std::string, std::set<std::string>> known;

@@ -30,8 +30,8 @@ TEST_CASE("the manual page has every command and option, and bash completes them
   REQUIRE(written.status == 0);
   const std::string page =
       std::regex_replace(sundog::read_file(folder / "sundog.1"), std::regex(R"(\\-)"), "-");
-  for (const char* text :
-       {"sundog render", "OPTIONS OF BENCH RAYS", "--samples", "fIN\\fR", "-o,--out", "EXIT STATUS"}) {
+  for (const char* text : {"sundog render", "models (.gltf .glb", "OPTIONS OF BENCH RAYS", "--samples",
+                           "fIN\\fR", "-o,--out", "EXIT STATUS"}) {
     CAPTURE(text);
     CHECK(page.find(text) != page.npos);
   }

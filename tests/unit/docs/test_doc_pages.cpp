@@ -15,6 +15,7 @@
 #include "catch.h"
 #include "formula/functions.h"
 #include "formula/list.h"
+#include "models/model.h"
 #include "scene_reference.h"
 
 using namespace sundog;
@@ -154,6 +155,15 @@ TEST_CASE("the contact sheet and the pages have as many surfaces as the list") {
       read_image(root / "host/app/serve/page/surfaces.jpg");  // of the viewer, by the same script
   CHECK(thumbnails.width == 8 * 96);
   CHECK(thumbnails.height == static_cast<int>(rows) * 96);
+}
+
+TEST_CASE("the schema and the pages name every format of models") {
+  std::istringstream formats(SUNDOG_MODEL_EXTENSIONS);
+  for (std::string format; formats >> format;)
+    for (const char* name : {"scenes/scene.schema.json", "docs/reference/command-line.md"}) {
+      INFO(name << " lacks " << format);
+      CHECK(read_file(root / name).find(format) != std::string::npos);
+    }
 }
 
 TEST_CASE("hand-written pages have at most 150 lines") {

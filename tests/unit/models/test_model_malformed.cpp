@@ -1,8 +1,10 @@
 // Malformed model files: the optional assets', each with its validator's own report, and hostile ones written
 // here.
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "assets.h"
 #include "catch.h"
@@ -144,8 +146,14 @@ TEST_CASE("every shortened and every damaged copy of a file ends in an error or 
       R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
   const TemporaryFolder folder;
   std::size_t refused = 0;
-  for (const auto& [name, text] :
-       {std::pair{"a.obj", obj}, {"a.ply", ply}, {"a.stl", stl}, {"a.nff", nff}, {"a.gltf", gltf}}) {
+  const std::map<std::string, std::string> files{
+      {".obj", obj}, {".ply", ply}, {".stl", stl}, {".nff", nff}, {".gltf", gltf}};
+  std::istringstream formats(SUNDOG_MODEL_EXTENSIONS);
+  for (std::string format; formats >> format;) {
+    if (format == ".glb") continue;  // glTF in a container
+    INFO("a format needs a file here: " << format);
+    REQUIRE(files.contains(format));
+    const std::string name = "a" + format, text = files.at(format);
     REQUIRE(load_error(folder.write(name, text)).empty());
     for (std::size_t i = 0; i < text.size(); ++i) {
       refused += !load_error(folder.write(name, text.substr(0, i))).empty();

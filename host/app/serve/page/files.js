@@ -89,8 +89,6 @@ export async function copyLink() {
   await copy(`${location.origin}/#token=${store.link.token}&name=${encodeURIComponent(store.state.file)}&scene=${scene}`, 'Link');
 }
 
-const models = ['gltf', 'glb', 'obj', 'ply', 'stl', 'nff'];
-
 /** `read` gives so many bytes. A file that is too large is not even read. */
 async function upload(read, name, bytes) {
   if (bytes > store.state.mostUpload) {
@@ -121,8 +119,8 @@ export async function openLink() {
 }
 
 export async function openFile(file) {
-  const kind = file.name.toLowerCase().split('.').pop();
-  if (kind === 'json' || models.includes(kind)) return upload(() => file.arrayBuffer(), file.name, file.size);
+  const kind = '.' + file.name.toLowerCase().split('.').pop(), {models} = store.state;
+  if (kind === '.json' || models.includes(kind)) return upload(() => file.arrayBuffer(), file.name, file.size);
   store.notice(`${file.name} is neither a scene (.json) nor a model (${models.join(', ')}).`);
 }
 
@@ -141,7 +139,7 @@ export function OpenDialog({onClose}) {
     <input type="search" class="filter" aria-label="Find a file" placeholder="Find a scene or model" value=${wanted} onInput=${(e) => want(e.target.value)} />
     <ul class="files">${shown.map((f) => html`<li key=${f}><button type="button" onClick=${() => open(f)}>${f}</button></li>`)}</ul>
     ${files && shown.length === 0 && html`<p class="hint">No scene or model like that below the folder that sundog was started in.</p>`}
-    <label class="button">Open a file of this computer<input type="file" accept=${['json', ...models].map((kind) => '.' + kind).join()} class="hidden" onChange=${(e) => {
+    <label class="button">Open a file of this computer<input type="file" accept=${['.json', ...store.state.models].join()} class="hidden" onChange=${(e) => {
       if (e.target.files[0]) openFile(e.target.files[0]);
       onClose();
     }} /></label>

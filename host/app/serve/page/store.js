@@ -10,7 +10,7 @@ class Store {
     connected: 'connecting', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
     resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true}, lights: [],
     schema: null, formulas: [], functions: [], selection: null, picked: null, error: null, picture: null, tab: 'build', notice: '',
-    mostUpload: Infinity,
+    mostUpload: Infinity, models: [],  // extensions of files
     question: null, since: null, scenes: 0,  // the version that was opened; how many whole documents have come
   };
   listeners = new Set();
@@ -125,7 +125,7 @@ class Store {
 
   take(message) {
     const takers = {
-      welcome: () => this.update({client: message.client, mostUpload: message.most_upload_bytes}),
+      welcome: () => this.update({client: message.client, mostUpload: message.most_upload_bytes, models: message.models.split(' ')}),
       devices: () => this.update({devices: message.devices}),
       options: () => this.update({options: message}),
       balance: () => message.client !== this.state.client && this.update({lights: message.lights}),

@@ -1,0 +1,18 @@
+// A loop on all cores.
+#pragma once
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace sundog {
+
+/// body(i) for each i below `count`, thousands of them at a time on a thread.
+template <class Body>
+void in_parallel(std::size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+}  // namespace sundog
