@@ -50,11 +50,13 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     SceneRays rays;
     float signs[BATCH];
     TileSamples tile;
+    tile.stack = &stack;
+    tile.radiance = radiance;
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
     HAVING(HAS_MATTES, set_tile_sums(launch, item, signs, film, &tile);)
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
-    trace_whitted(scene, &tile, &rays, lanes, &stack, radiance, counts);
+    trace_whitted(scene, &tile, &rays, lanes, counts);
     for (u32 lane = 0; lane < BATCH; ++lane)
       radiance[lane] = limit_components(radiance[lane], scene->info->max_component);
     store_lanes(launch, item, lanes, radiance, signs, film, weights, counts);

@@ -3,7 +3,8 @@
 #pragma once
 #include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
-#include "lib/whitted/steps.cl"
+#include "lib/whitted/waiting.cl"
+#include "plain/whitted/steps.cl"
 
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to filters, behind which those that pass wait
@@ -73,38 +74,35 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 // Takes a batch to the next interfaces, adds what it sees there to the pixels and leaves the rays that come
 // of it on the stacks.
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
-                               WaitingRays* paths, MASK lanes, bool coherent, RayStack* stack,
-                               ShadowStack* shadows, float4* radiance, u32* counts) {
+                               WaitingRays* paths, MASK lanes, bool coherent, ShadowStack* shadows,
+                               u32* counts) {
   Encounters met;
   Shading at;
-  REAL3 seen;
   MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
                                           : meet_listed(scene, rays, lanes, &met, counts);
-  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & MASK_OF(paths->depth == 1));
-  const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
-                                 radiance, counts);
-  add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,
-             counts);
-  add_to_pixels(seen, paths->pixel, lanes, radiance);
+  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & is_from_camera(paths, lanes));
+  if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
+  const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, lanes);
+  const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
+  add_lights(scene, tile, rays, paths, hit, coherent, tile->stack->count == 0u, &met.hit, &at, shadows,
+             tile->radiance, counts);
+  add_to_pixels(seen, paths->pixel, lanes, tile->radiance);
 }
 
-// The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them. radiance[i].xyz
-// receives the light of pixel i of the tile, from w is taken what of its background is seen straight on.
+// The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
-                                 RayStack* stack, float4* radiance, u32* counts) {
-  WaitingRays paths;
-  start_branches(&paths);
-  paths.throughput = all3((float3)(1.0f));
-  paths.depth = (MASK)(1);
-  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;
+                                 u32* counts) {
+  MASK pixels;
+  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(pixels, i) = (int)i;
+  WaitingRays paths = camera_path(pixels, lanes);
   ShadowStack shadows;
   shadows.count = 0;
-  stack->count = 0;
+  tile->stack->count = 0;
   bool from_camera = true;
   do {
-    follow_batch(scene, tile, rays, &paths, lanes, from_camera, stack, &shadows, radiance, counts);
+    follow_batch(scene, tile, rays, &paths, lanes, from_camera, &shadows, counts);
     from_camera = false;
-    lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
+    lanes = tile->stack->count ? pop_rays(tile->stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));
 }
 #endif

@@ -5,13 +5,10 @@
 #pragma once
 #include "lib/light/direct_light.cl"
 #include "lib/light/shadow.cl"
-#include "lib/whitted/steps.cl"
+#include "lib/whitted/waiting.cl"
+#include "plain/whitted/steps.cl"
 
 #if BATCH == 1
-// A ray that met a surface with more lights than the stack has room for waits itself, to meet it once more:
-// its depth then holds the next light in the bits from here on.
-#define DEPTH_BITS 8u
-
 // Shadow rays of the surface from the number `light` on, as far as there is room; the ray `whole` waits for
 // the rest.
 #if HAS_SHAFTS
@@ -26,7 +23,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
       sent[count++] = light++;
   if (light < scene->info->light_count) {
     WaitingRays again = *whole;
-    again.depth = paths->depth | (int)(light << DEPTH_BITS);
+    wait_for_light(&again, (int)light, ALL_LANES);
     push_rays(stack, rays, &again, ALL_LANES);
   }
   for (u32 i = 0; i < count; ++i)
@@ -40,7 +37,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
   const u32 last = min(scene->info->light_count, light + LIGHT_ROOM);
   if (last < scene->info->light_count) {
     WaitingRays again = *whole;
-    again.depth = paths->depth | (int)(last << DEPTH_BITS);
+    wait_for_light(&again, (int)last, ALL_LANES);
     push_rays(stack, rays, &again, ALL_LANES);
   }
   for (; light < last; ++light) cast_shadows(scene, light, tile, rays, paths, hit, hits, at, stack, counts);
@@ -49,42 +46,34 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 
 // Takes a ray to what it meets next. Returns whether it continues.
 static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays,
-                              WaitingRays* paths, RayStack* stack, float4* radiance, u32* counts) {
+                              WaitingRays* paths, u32* counts) {
   Encounters met;
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
-  if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, radiance, counts);
+  if (to_light) return reach_filters(scene, rays, paths, &met.hit, ALL_LANES, tile->radiance, counts);
   HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, ALL_LANES, &met, counts);)
   MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
-  unseen |= pass_hidden(scene, rays, &met, ~unseen & MASK_OF((paths->depth & ((1 << DEPTH_BITS) - 1)) == 1));
+  unseen |= pass_hidden(scene, rays, &met, ~unseen & is_from_camera(paths, ALL_LANES));
   const WaitingRays whole = *paths;
-  u32 light = (u32)paths->depth >> DEPTH_BITS;
-  const MASK fresh = MASK_OF(light == 0u);
-  paths->depth &= (1 << DEPTH_BITS) - 1;
+  const u32 light = (u32)next_light(paths, ALL_LANES);
   Shading at;
-  REAL3 seen;
-  const MASK hit = meet_surfaces(scene, tile, rays, paths, ALL_LANES, unseen, fresh, &met, &at, &seen, stack,
-                                 radiance, counts);
-  add_to_pixels(seen, paths->pixel, fresh, radiance);
+  const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, ALL_LANES);
+  add_to_pixels(seen, paths->pixel, MASK_OF(light == 0u), tile->radiance);
   forget_glow(rays, ALL_LANES);
-  if (!hit) return unseen;
-  send_to_lights(scene, tile, rays, paths, &whole, light, hit, &met.hit, &at, stack, radiance, counts);
+  if (unseen | ~hit_anything(&met.hit)) return unseen;
+  send_to_lights(scene, tile, rays, paths, &whole, light, ALL_LANES, &met.hit, &at, tile->stack,
+                 tile->radiance, counts);
   return NO_LANES;
 }
 
-// The camera's ray in `rays`, with all that comes of it. radiance->xyz receives the light of the pixel, from
-// w is taken what of the background is seen straight on.
+// The camera's ray in `rays`, with all that comes of it.
 static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
-                                 RayStack* stack, float4* radiance, u32* counts) {
-  WaitingRays paths;
-  paths.throughput = all3((float3)(1.0f));
-  paths.pixel = NO_LANES;
-  paths.depth = (MASK)(1);
-  start_branches(&paths);
-  stack->count = 0;
+                                 u32* counts) {
+  WaitingRays paths = camera_path(NO_LANES, lanes);
+  tile->stack->count = 0;
   while (any_lane(lanes)) {
-    lanes = follow_ray(scene, tile, rays, &paths, stack, radiance, counts);
-    if (!any_lane(lanes) && stack->count) lanes = pop_rays(stack, 1u, rays, &paths);
+    lanes = follow_ray(scene, tile, rays, &paths, counts);
+    if (!any_lane(lanes) && tile->stack->count) lanes = pop_rays(tile->stack, 1u, rays, &paths);
   }
 }
 #endif
