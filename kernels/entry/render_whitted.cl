@@ -42,7 +42,6 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
   u32 counts[ALL_COUNTS];
   for (u32 i = 0; i < ALL_COUNTS; ++i) counts[i] = 0;
   begin_film(launch, item, film, weights, ray_counts);
-  RayStack stack;
   for (u32 sample = launch->first_sample; sample < launch->first_sample + launch->sample_count; ++sample) {
     float4 radiance[BATCH];
     for (u32 lane = 0; lane < BATCH; ++lane) radiance[lane] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
@@ -50,7 +49,6 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     SceneRays rays;
     float signs[BATCH];
     TileSamples tile;
-    tile.stack = &stack;
     tile.radiance = radiance;
     const MASK lanes = start_rays(scene, launch, pixels, item, sample, around, &rays, signs, &tile);
     HAVING(HAS_MATTES, set_tile_sums(launch, item, signs, film, &tile);)

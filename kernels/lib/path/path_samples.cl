@@ -7,6 +7,7 @@
 // receive.
 typedef struct TileSamples {
   RayStack* stack;
+  ShadowStack* shadows;
   float4* radiance;  // xyz; from w is taken what of the background is seen straight on
   HAVING(HAS_RANDOM, MASK x; MASK y; u32 seed;)
   u32 sample;

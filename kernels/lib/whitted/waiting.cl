@@ -1,10 +1,16 @@
-// What steps.cl of the plain text leaves in the tile: rays that wait, and what pixels show less of.
+// What plain/whitted leaves in the tile: rays that wait, and what pixels show less of.
 #pragma once
+#include "lib/light/choose_light.cl"
+#include "lib/light/field_light.cl"
 #include "lib/light/field_openness.cl"
+#include "lib/light/light.cl"
+#include "lib/light/relief_shadow.cl"
+#include "lib/light/shadow.cl"
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/shade/cones.cl"
+#include "lib/trace/shaft.cl"
 
 static inline void wait_again(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
                               MASK lanes) {
@@ -26,6 +32,15 @@ NEVER_INLINE MASK push_child(const TileSamples* tile, const SceneRays* rays, con
   return lanes_of(bits);
 }
 #endif
+
+static inline void push_shadow(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
+                               MASK lanes) {
+  push_shadows(tile->shadows, rays, paths, lanes);
+}
+
+static inline void add_light(const TileSamples* tile, MASK pixel, REAL3 light, MASK lanes) {
+  add_to_pixels(light, pixel, lanes, tile->radiance);
+}
 
 static inline void uncover(const TileSamples* tile, MASK pixel, REAL part, MASK lanes) {
   EACH_LANE(i, lanes) { tile->radiance[MASK_LANE(pixel, i)].w -= REAL_LANE(part, i); }

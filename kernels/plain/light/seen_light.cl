@@ -1,69 +1,69 @@
-// The irradiance of a rectangle that nothing hides. A point a lane.
-#pragma once
-#include "lib/light/light.cl"
+// The irradiance of a rectangle that nothing hides.
+#include "plain/light/light.cl"
+
+HAVING(HAS_AREA_LIGHTS);
 
 // The angle between unit vectors whose cosine is x, over its sine: a polynomial on Chebyshev's nodes in
 // [0, 1] (error 3e-7), and the supplement below.
-static inline REAL angle_over_sine(REAL x) {
-  const REAL y = 1.0f - real_min(fabs(x), (REAL)(1.0f));
-  REAL f = fma(y, (REAL)(0.0176536683f), (REAL)(-0.0432606409f));
-  f = fma(y, f, (REAL)(0.0617602527f));
-  f = fma(y, f, (REAL)(-0.026127294f));
-  f = fma(y, f, (REAL)(0.039620386f));
-  f = fma(y, f, (REAL)(0.0541928006f));
-  f = fma(y, f, (REAL)(0.133635433f));
-  f = fma(y, f, (REAL)(0.333321541f));
-  f = fma(y, f, (REAL)(1.0f));
-  const REAL sine2 = real_max(y * (2.0f - y), (REAL)(1e-12f));
-  return select(f, fma((REAL)(M_PI_F), real_rsqrt(sine2), -f), MASK_OF(x < 0.0f));
+static inline float angle_over_sine(float x) {
+  const float y = 1.0f - real_min(fabs(x), 1.0f);
+  float f = fma(y, 0.0176536683f, -0.0432606409f);
+  f = fma(y, f, 0.0617602527f);
+  f = fma(y, f, -0.026127294f);
+  f = fma(y, f, 0.039620386f);
+  f = fma(y, f, 0.0541928006f);
+  f = fma(y, f, 0.133635433f);
+  f = fma(y, f, 0.333321541f);
+  f = fma(y, f, 1.0f);
+  const float sine2 = real_max(y * (2.0f - y), 1e-12f);
+  return x < 0.0f ? fma(M_PI_F, real_rsqrt(sine2), -f) : f;
 }
 
 // The term of a polygon's side, from the unit vector a to b, in twice the integral of the cosine to n.
-static inline REAL cosine_of_side(REAL3 a, REAL3 b, REAL3 n) {
-  return angle_over_sine(dot3(a, b)) * dot3(cross3(a, b), n);
+static inline float cosine_of_side(float3 a, float3 b, float3 n) {
+  return angle_over_sine(dot(a, b)) * dot(cross(a, b), n);
 }
 
-// The integral of the cosine to n over the directions above the horizon in which the corners' polygon is
-// seen (Lambert 1760; the sides cut at the horizon, and closed along it). Returns the lanes where its sum is
-// no small difference of great terms.
-static inline MASK cosine_of_polygon(const REAL3* corner, REAL3 n, REAL* integral) {
-  REAL3 v[4];
-  REAL z[4];
-#pragma unroll
+// The integral of the cosine to n over the directions above the horizon in which the corners' polygon is seen
+// (Lambert 1760; the sides cut at the horizon, and closed along it). Whether its sum is no small difference
+// of great terms.
+static inline bool cosine_of_polygon(const SeenLight* seen, float3 n, float* integral) {
+  float3 v[4];
+  float z[4];
   for (u32 i = 0; i < 4u; ++i) {
-    v[i] = safe_unit3(corner[i]);
-    z[i] = dot3(n, v[i]);
+    v[i] = safe_unit3(seen->corner[i]);
+    z[i] = dot(n, v[i]);
   }
-  REAL sum = (REAL)(0.0f), size = sum;
-  REAL3 rises = v[0], sets = v[0];
-  MASK cut = NO_LANES;
-#pragma unroll
+  float sum = 0.0f, size = 0.0f;
+  float3 rises = v[0], sets = v[0];
+  bool cut = false;
   for (u32 i = 0; i < 4u; ++i) {
-    const REAL3 a = v[i], b = v[(i + 1u) & 3u];
-    const REAL za = z[i], zb = z[(i + 1u) & 3u];
-    const MASK above = MASK_OF(za > 0.0f), next_above = MASK_OF(zb > 0.0f), crosses = above ^ next_above;
-    REAL3 from = a, to = b;
-    if (any_lane(crosses)) {
-      const REAL3 way = select3(subtract3(scale3(b, za), scale3(a, zb)),
-                                subtract3(scale3(a, zb), scale3(b, za)), next_above);
-      const REAL3 horizon = safe_unit3(way);
-      from = select3(a, horizon, crosses & next_above);
-      to = select3(b, horizon, crosses & above);
-      rises = select3(rises, horizon, crosses & next_above);
-      sets = select3(sets, horizon, crosses & above);
-      cut |= crosses;
+    const float3 a = v[i], b = v[(i + 1u) & 3u];
+    const float za = z[i], zb = z[(i + 1u) & 3u];
+    const bool above = za > 0.0f, next_above = zb > 0.0f;
+    float3 from = a, to = b;
+    if (above != next_above) {
+      const float3 horizon = safe_unit3(next_above ? a * zb - b * za : b * za - a * zb);
+      if (next_above) {
+        from = horizon;
+        rises = horizon;
+      } else {
+        to = horizon;
+        sets = horizon;
+      }
+      cut = true;
     }
-    const REAL term = select((REAL)(0.0f), cosine_of_side(from, to, n), above | next_above);
+    const float term = above || next_above ? cosine_of_side(from, to, n) : 0.0f;
     sum += term;
     size += fabs(term);
   }
-  if (any_lane(cut)) {
-    const REAL term = select((REAL)(0.0f), cosine_of_side(sets, rises, n), cut);
+  if (cut) {
+    const float term = cosine_of_side(sets, rises, n);
     sum += term;
     size += fabs(term);
   }
   *integral = 0.5f * fabs(sum);
-  return MASK_OF(fabs(sum) >= 1e-3f * size);
+  return fabs(sum) >= 1e-3f * size;
 }
 
 // A light that takes up less than this part of its distance is integrated at four places.
@@ -71,31 +71,28 @@ static inline MASK cosine_of_polygon(const REAL3* corner, REAL3 n, REAL* integra
 
 // The integral for a rectangle far away with nothing below the horizon: by Gauss and Legendre's two places
 // along each side.
-static inline MASK cosine_of_far_rectangle(__global const Light* light, const REAL3* corner, REAL3 n,
-                                           REAL* integral) {
-  const float places[2] = {0.211324865f, 0.788675135f};
+static inline bool cosine_of_far_rectangle(UNIFORM __global const Light* light, const SeenLight* seen,
+                                           float3 n, float* integral) {
   const float3 first = light->edge_u.xyz, second = light->edge_v.xyz;
-  const REAL quarter = (REAL)(0.25f * light->direction.w);
-  MASK far = ALL_LANES;
-  REAL sum = (REAL)(0.0f);
+  const float quarter = 0.25f * light->direction.w;
+  bool far = true;
+  float sum = 0.0f;
   for (u32 i = 0; i < 4u; ++i) {
-    const REAL3 to = add3(corner[0], all3(places[i & 1u] * first + places[i >> 1] * second));
-    const REAL3 wi = safe_unit3(to);
-    sum -= dot3(n, wi) * dot3(all3(light->direction.xyz), wi) * (quarter / dot3(to, to));
-    far &= MASK_OF(dot3(n, corner[i]) > 0.0f);
+    const float across = (i & 1u) != 0u ? 0.788675135f : 0.211324865f,
+                down = i > 1u ? 0.788675135f : 0.211324865f;
+    const float3 to = seen->corner[0] + (across * first + down * second);
+    const float3 wi = safe_unit3(to);
+    sum -= dot(n, wi) * dot(light->direction.xyz, wi) * (quarter / dot(to, to));
+    far = far && dot(n, seen->corner[i]) > 0.0f;
   }
   *integral = sum;
-  return far &
-         MASK_OF(dot(first, first) + dot(second, second) < FAR_PART * FAR_PART * dot3(corner[0], corner[0]));
+  return far && dot(first, first) + dot(second, second) <
+                    FAR_PART * FAR_PART * dot(seen->corner[0], seen->corner[0]);
 }
 
-// The integral for a rectangle anywhere, for `lanes`. Returns those where it is known.
-static inline MASK cosine_of_rectangle(__global const Light* light, const SeenLights* seen, REAL3 n,
-                                       MASK lanes, REAL* integral) {
-  const MASK known = lanes & cosine_of_polygon(seen->corner, n, integral), open = lanes & ~known;
-  if (!any_lane(open)) return known;
-  REAL from_afar;
-  const MASK far = open & cosine_of_far_rectangle(light, seen->corner, n, &from_afar);
-  *integral = select(*integral, from_afar, far);
-  return known | far;
+// The integral for a rectangle anywhere. Whether it is known.
+static inline bool cosine_of_rectangle(UNIFORM __global const Light* light, const SeenLight* seen, float3 n,
+                                       float* integral) {
+  if (cosine_of_polygon(seen, n, integral)) return true;
+  return cosine_of_far_rectangle(light, seen, n, integral);
 }

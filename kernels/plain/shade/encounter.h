@@ -3,7 +3,9 @@
 #include "plain/shade/bsdf.h"
 
 typedef struct LANES(Faces) {
-  int flags;
+  float3 outward;  // not normalised
+  bool entering;   // the ray comes from outside
+  int material, flags, medium;
 } Face;
 typedef struct LANES(Encounters) {
   SurfaceHit hit;
@@ -18,8 +20,6 @@ typedef struct LANES(Shading) {
 
 bool hit_anything(const SurfaceHit* hit);
 float clear_of_fog(UNIFORM const Scene* scene, const Encounter* met, HERE);
-void shade_hits(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met, HERE,
-                SurfaceShading* at);
 
 // Light on reliefs.
 float terminator(const SurfaceInteraction* s, float3 wi);

@@ -17,6 +17,14 @@ bool push_child(UNIFORM const TileSamples* tile, const SceneRay* ray, const Wait
 // The ray waits to go on, where rays wait in batches.
 void wait_again(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
 
+// A shadow ray waits.
+void push_shadow(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
+CALLED(note_rays) void note_pixel_ray(int pixel, HERE, UNIFORM u32* counts);
+float soft_shadows(UNIFORM const Scene* scene, const SceneRay* ray, HERE, UNIFORM u32* counts);
+
+// Light that a pixel receives.
+void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
+
 // What pixels show less of: of the background, and where objects and materials cover them.
 void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
 void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,

@@ -1,5 +1,6 @@
 // What Whitted's rays see on their way and at its end, and the rays that come of it.
 #include "plain/light/sky.cl"
+#include "plain/shade/shading.cl"
 #include "plain/whitted/children.cl"
 
 // The world's fog, for a ray that was not inside anything: what it adds, and what it takes from all behind
@@ -56,7 +57,7 @@ ENTRY static inline float3 see_met(UNIFORM const Scene* scene, UNIFORM const Til
   }
   if (HAS_FOG) light += see_fog(scene, met, path);
   if (!hit_anything(&met->hit)) return light + see_background(scene, tile, ray, path);
-  shade_hits(scene, ray, met, at);
+  shade_hit(scene, ray, met, at);
   if (next_light(path) > 0) return light;
   light += see_ambient(scene, ray, path, met, at);
   if (HAS_EMISSION) light += see_emission(scene, path, at);
