@@ -1,7 +1,7 @@
 // Ways to lights of every kind, and what is seen of them.
 #include "plain/light/emission.cl"
+#include "plain/light/environment.cl"
 
-LightSample sample_environment(UNIFORM const Scene* scene, float u_x, float u_y, HERE);
 int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
 
 static inline bool is_in_sky(UNIFORM __global const Light* light) {
