@@ -3,7 +3,7 @@
 // whose path has ended takes its pixel's next sample, then the first pixel that no lane has taken: lanes are
 // seldom idle, and a pixel's samples stay in their order. Shadow rays see what paths that meet lights by
 // chance would.
-#define SHADOWS_AS_PATHS 1
+#define HAS_PATHS 1
 #define RAYS_BY_LANE 1
 #include "lib/core/counters.cl"
 #include "lib/light/choose_light.cl"

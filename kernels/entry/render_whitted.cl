@@ -36,10 +36,8 @@ static inline void set_tile_sums(const Launch* launch, u32 item, const float* si
 
 // What a work-item keeps while it traces.
 typedef struct ItemWork {
-  RayStack stack;
   float4 radiance[BATCH];
   float signs[BATCH];
-  TileSamples tile;
   u32 item;
   __global const SceneInfo* info;  // read here for each sample, or compilers keep the camera in registers
   u32 counts[ALL_COUNTS];
@@ -62,12 +60,14 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
     SceneRays rays;
     Scene read = *scene;
     read.info = work->info;
+    TileSamples tile;
+    tile.radiance = work->radiance;
     const MASK lanes =
-        start_rays(&read, launch, pixels, work->item, sample, around, &rays, work->signs, &work->tile);
-    HAVING(HAS_MATTES, set_tile_sums(launch, work->item, work->signs, film, &work->tile);)
+        start_rays(&read, launch, pixels, work->item, sample, around, &rays, work->signs, &tile);
+    HAVING(HAS_MATTES, set_tile_sums(launch, work->item, work->signs, film, &tile);)
     counts[COUNT_PRIMARY] += lane_count(lanes);
     note_own_rays(lanes, counts);
-    trace_whitted(scene, &work->tile, &rays, lanes, &work->stack, work->radiance, counts);
+    trace_whitted(scene, &tile, &rays, lanes, counts);
     for (u32 lane = 0; lane < BATCH; ++lane)
       work->radiance[lane] = limit_components(work->radiance[lane], scene->info->max_component);
     store_lanes(launch, work->item, lanes, work->radiance, work->signs, film, weights, counts);

@@ -129,7 +129,7 @@ typedef struct SceneInfo {
   u32 guide_count;     // rows of the table `guides`: balls, w = radius
   // Whitted's integrator:
   u32 shafts;           // 1: surfaces ask by shafts what stands before lights with an extent
-                        // (lib/light/direct_light.cl)
+                        // (plain/whitted/shaft_light.cl)
   u32 seed;             // added to the dimensions of samples, a multiple of four; 0: the default
   u32 transparent;      // 1: what is behind the scene is not seen straight on; alpha says how much
   float max_component;  // of a sample's light: brighter ones are scaled down to it; infinite: none are

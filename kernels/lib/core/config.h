@@ -166,10 +166,16 @@
 // Whether a sample needs random numbers beyond the camera's.
 #define HAS_RANDOM ANY_OF(HAS_AREA_LIGHTS, HAS_ROUGH)
 
-// Whether surfaces may test occlusion of lights by shafts (light/direct_light.cl). SceneInfo.shafts says
+// Whether surfaces may test occlusion of lights by shafts (whitted/shaft_light.cl). SceneInfo.shafts says
 // whether they do.
 #define HAS_SHAFTS \
   (HAS_AREA_LIGHTS && !HAS_SDF && !HAS_OBJECT_MOTION && !HAS_RELIEF && !HAS_PARALLAX && !HAS_LAYERS)
+
+// Whether paths are traced, which meet lights by chance as well.
+#ifndef HAS_PATHS
+#define HAS_PATHS 0
+#endif
+#define HAS_LAYERED_FILTERS (HAS_LAYERS && HAS_LAYER_FILTERS && HAS_PATHS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define HAS_CROSSINGS ANY_OF(HAS_MEDIA, ANY_OF(HAS_SHADOW_FILTERS, HAS_CATCHERS))

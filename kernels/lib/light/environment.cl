@@ -1,20 +1,11 @@
-// Light of the environment's picture. A direction a lane.
+// The picture of the environment, and the choice of its cells. A direction a lane.
 #pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/tables.h"
 #include "lib/path/camera.cl"
-#include "plain/light/light_sample.cl"
 
-// Where directions lie in the picture: shares of its width and, from the top, of its height.
-static inline void environment_place(__global const Environment* e, REAL3 d, REAL* x, REAL* y) {
-  const REAL right = dot3(d, all3(e->right.xyz)), ahead = dot3(d, all3(e->ahead.xyz));
-  const REAL up = real_clamp(dot3(d, all3(e->up.xyz)), (REAL)(-1.0f), (REAL)(1.0f));
-  const REAL turn = fma(atan2(right, ahead), (REAL)(0.5f / M_PI_F), (REAL)(0.5f));
-  *x = real_clamp(turn, (REAL)(0.0f), (REAL)(1.0f));
-  *y = real_acos(up) * (1.0f / M_PI_F);
-}
-
-// The picture there, blended between the middles of its pixels and round its seam.
+// The picture at shares of its width and height, blended between the middles of its pixels and round its
+// seam.
 NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes) {
   const int width = (int)scene->environments->width, height = (int)scene->environments->height;
   const REAL across = x * (float)width - 0.5f, down = y * (float)height - 0.5f;
@@ -134,115 +125,4 @@ NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lane
   if (blended) find_corners(scene, lanes, cells);
 }
 
-// The share of steps of running sums that begin at `first`.
-static inline REAL share_of_step(const Scene* scene, MASK first, MASK step, MASK lanes) {
-  return gather_floats(scene->environment_shares, first + step + 1, lanes) -
-         gather_floats(scene->environment_shares, first + step, lanes);
-}
-
-static inline REAL mix_lanes(REAL from, REAL to, REAL part) { return fma(part, to - from, from); }
-
-// The place in [0, 1] by the number u, where the density goes evenly from `from` to `to`.
-static inline REAL place_by_slope(REAL u, REAL from, REAL to) {
-  const REAL v = real_max(u, (REAL)(1e-7f)), sum = from + to;
-  const REAL root = real_sqrt(mix_lanes(from * from, to * to, v));
-  return select(v, real_min(v * sum / nonzero(from + root), (REAL)(1.0f)), MASK_OF(sum > 0.0f));
-}
-
-// Moves places in cells between pixels, even in [0, 1], to where luminance puts them.
-static inline void place_by_light(ChosenCells* cells) {
-  const REAL* c = cells->corner;
-  cells->down = place_by_slope(cells->down, c[0] + c[1], c[2] + c[3]);
-  cells->across =
-      place_by_slope(cells->across, mix_lanes(c[0], c[2], cells->down), mix_lanes(c[1], c[3], cells->down));
-}
-
-static inline REAL row_fact(const Scene* scene, MASK row, MASK lanes) {
-  return gather_floats(scene->environment_shares, row, lanes);
-}
-
-// The density, per steradian, of directions that rows of cells between pixels choose by their radiance.
-static inline REAL blended_pdf(const Scene* scene, REAL3 radiance, MASK row, REAL sine, MASK lanes) {
-  const REAL light =
-      fma((REAL)(0.0722f), radiance.z, fma((REAL)(0.7152f), radiance.y, (REAL)(0.2126f) * radiance.x));
-  return light * row_fact(scene, row, lanes) / real_max(sine, (REAL)(1e-6f));
-}
-
-// The density, per steradian, of the directions of cells with the share `share`, which are chosen evenly in
-// them; `height`: the difference of the cosines of their row's borders.
-static inline REAL even_pdf(__global const Environment* e, REAL share, REAL height) {
-  return share * (float)e->columns / (2.0f * M_PI_F * height);
-}
-
-// The environment's radiance along the directions of `lanes`, and the density with which
-// sample_environment() chooses them.
-static inline REAL3 environment_along(const Scene* scene, REAL3 d, MASK lanes, REAL* pdf) {
-  __global const Environment* e = scene->environments;
-  REAL x, y;
-  environment_place(e, d, &x, &y);
-  const REAL3 radiance = environment_at(scene, x, y, lanes);
-  if (e->up.w == CELLS_BETWEEN_PIXELS) {
-    REAL sine, cosine;
-    sincos_of_turn(0.5f * y, &sine, &cosine);
-    const MASK row = TO_MASK(fma(y, (REAL)((float)e->height), (REAL)(0.5f)));
-    *pdf = blended_pdf(scene, radiance, row, sine, lanes);
-    return radiance;
-  }
-  const MASK column = min(TO_MASK(x * (float)e->columns), (MASK)((int)e->columns - 1)),
-             row = min(TO_MASK(y * (float)e->rows), (MASK)((int)e->rows - 1));
-  const int above = (int)e->rows + 1;
-  const REAL row_share = share_of_step(scene, (MASK)(above), row, lanes),
-             share = share_of_step(scene, row * ((int)e->columns + 1) + 2 * above, column, lanes);
-  *pdf = even_pdf(e, share * row_share, row_fact(scene, row, lanes) - row_fact(scene, row + 1, lanes));
-  return radiance;
-}
-
-// Directions by two numbers in [0, 1): a row of cells by its share of the light, a cell in it, a place there.
-static inline LightSamples sample_environment(const Scene* scene, REAL u_x, REAL u_y, MASK lanes) {
-  __global const Environment* e = scene->environments;
-  const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
-  ChosenCells cells;
-  choose_cells(scene, u_x, u_y, lanes, &cells);
-  LightSamples sample;
-  sample.pdf = zero;
-  REAL x, y, up, side;
-  const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
-  if (blended) {
-    place_by_light(&cells);
-    const REAL height = (REAL)((float)e->height), row = TO_REAL(cells.row);
-    const REAL top = real_max(row - 0.5f, zero), bottom = real_min(row + 0.5f, height);
-    x = (TO_REAL(cells.column) + cells.across - 0.5f) / (float)e->width;
-    y = mix_lanes(top, bottom, cells.down) / height;
-    sincos_of_turn(0.5f * y, &side, &up);
-  } else {
-    const REAL top = row_fact(scene, cells.row, lanes), height = top - row_fact(scene, cells.row + 1, lanes);
-    x = (TO_REAL(cells.column) + cells.across) / (float)e->columns;
-    up = fma(-cells.down, height, top);
-    side = real_sqrt(real_max(fma(-up, up, one), zero));
-    y = real_acos(real_clamp(up, -one, one)) * (1.0f / M_PI_F);
-    sample.pdf = even_pdf(e, cells.share, height);
-  }
-  REAL sine, cosine;
-  sincos_of_turn(x - 0.5f, &sine, &cosine);
-  sample.wi = along3(along3(scale3(all3(e->up.xyz), up), side * sine, all3(e->right.xyz)), side * cosine,
-                     all3(e->ahead.xyz));
-  sample.distance = (REAL)(INFINITY);
-  sample.delta = NO_LANES;
-  sample.radiance = environment_at(scene, x, y, lanes);
-  if (blended) sample.pdf = blended_pdf(scene, sample.radiance, cells.row, side, lanes);
-  return sample;
-}
-
-// The environment where rays see it, with the density of choosing it, else the background.
-static inline bool sees_environment(const Scene* scene) {
-  return HAS_ENVIRONMENT && scene->info->sees_environment;
-}
-static inline REAL3 distant_along(const Scene* scene, REAL3 d, MASK lanes, REAL* pdf) {
-  return sees_environment(scene) ? environment_along(scene, d, lanes, pdf) : background_along(scene->info, d);
-}
-
-// The same, where the rays of `camera` do not see what is hidden from them.
-static inline REAL3 hide_environment(const Scene* scene, REAL3 d, REAL3 light, MASK camera) {
-  if (scene->info->sees_environment != SEEN_OFF_CAMERA) return light;
-  return select3(light, background_along(scene->info, d), camera);
-}
+#include "plain/light/environment.cl"

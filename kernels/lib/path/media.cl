@@ -40,41 +40,8 @@ static inline bool cross_boundary(MediaStack* stack, u32 medium, bool entering) 
   return false;
 }
 
-// Beer-Lambert: transmittance over `distance` in the medium of each lane of `lanes`, 1 elsewhere.
-static inline REAL3 absorb(__global const Medium* restrict media, MASK medium, REAL distance, MASK lanes) {
-  REAL3 kept = all3((float3)(1.0f));
-  u32 index;
-  for (u32 left = HAS_ABSORPTION ? lane_bits(lanes) : 0u; left;) {
-    const MASK mine = take_alike(medium, &left, &index);
-    const float3 a = media[index].absorption.xyz;
-    // Unabsorbed colours keep their bits, even over infinite distances.
-    if (a.x != 0.0f) kept.x = select(kept.x, real_exp(-a.x * distance), mine);
-    if (a.y != 0.0f) kept.y = select(kept.y, real_exp(-a.y * distance), mine);
-    if (a.z != 0.0f) kept.z = select(kept.z, real_exp(-a.z * distance), mine);
-  }
-  return kept;
-}
-
 // Whether an interface between these media refracts at no wavelength.
 static inline bool same_index(__global const Medium* a, __global const Medium* b) {
   if (HAS_DISPERSION && a->spectrum != b->spectrum) return false;
   return a->absorption.w == b->absorption.w;
-}
-
-// Refractive index of the medium of each lane of `lanes`, 1 elsewhere.
-static inline REAL refraction_index(__global const Medium* restrict media, MASK medium, MASK lanes) {
-  REAL index = (REAL)(1.0f);
-  u32 at;
-  for (u32 left = lane_bits(lanes); left;) {
-    const MASK mine = take_alike(medium, &left, &at);
-    index = select(index, (REAL)(media[at].absorption.w), mine);
-  }
-  return index;
-}
-
-// Refractive index behind the interfaces of `lanes` over that before them, 1 elsewhere.
-static inline REAL relative_index(__global const Medium* restrict media, MASK before, MASK after,
-                                  MASK lanes) {
-  if (!HAS_MEDIA) return (REAL)(1.0f);
-  return refraction_index(media, after, lanes) / refraction_index(media, before, lanes);
 }

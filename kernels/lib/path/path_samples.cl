@@ -3,8 +3,12 @@
 #include "lib/core/sampler_lanes.cl"
 #include "lib/path/ray_stack.cl"
 
-// The pixels of a work-item's tile, and their current sample.
+// The pixels of a work-item's tile: their current sample, the rays that wait, and the light that they
+// receive.
 typedef struct TileSamples {
+  RayStack* stack;
+  ShadowStack* shadows;
+  float4* radiance;  // xyz; from w is taken what of the background is seen straight on
   HAVING(HAS_RANDOM, MASK x; MASK y; u32 seed;)
   u32 sample;
   // Sums of the launch's pixels, see sample_sums(); the tile's place among them; the sign of its samples.
@@ -15,17 +19,12 @@ static inline void set_tile_pixels(TileSamples* tile, const LaneSamples* at) {
   HAVING(HAS_RANDOM, tile->x = at->x; tile->y = at->y; tile->seed = at->seed;)
 }
 
-static inline void start_branches(WaitingRays* paths) { HAVING(HAS_RANDOM, paths->branch = NO_LANES;) }
-
 // Position in the ray tree of a child of `branch` (0: the camera ray) by its kind: an offset of dimensions
 // that distinguishes surfaces of equal depth.
 static inline MASK child_branch(MASK branch, u32 kind) {
   return AS_MASK(hash_lanes(AS_UINTS(branch) + (kind + 1u)) & ~0xFFFu);
 }
 
-static inline void start_branch(const WaitingRays* parent, u32 kind, WaitingRays* child) {
-  HAVING(HAS_RANDOM, child->branch = child_branch(parent->branch, kind);)
-}
 #if HAS_RANDOM
 
 // The numbers of the surfaces hit by the rays of `lanes`: pixels, and dimensions from `offset` (BOUNCE_...)
@@ -45,7 +44,7 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
-  numbers->first = depth_of(paths) * (int)DIMENSIONS_A_BOUNCE + paths->branch +
+  numbers->first = depth_of(paths, lanes) * (int)DIMENSIONS_A_BOUNCE + paths->branch +
                    (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
   numbers->later = offset & 2u;
 }

@@ -3,17 +3,8 @@
 #pragma once
 #include "lib/path/scene_ray.cl"
 
-// Data of rays besides their geometry.
-typedef struct WaitingRays {
-  REAL3 throughput;                 // of a shadow ray: the light that it carries
-  MASK pixel;                       // in the work-item's tile
-  MASK depth;                       // 1 for a camera ray, 0 for a shadow ray; with TURNED
-  HAVING(HAS_RANDOM, MASK branch;)  // position in the ray tree, for random numbers; 0: the camera ray
-} WaitingRays;
-
-// Flag in the depth of rays that do not go straight on from the camera.
-#define TURNED 0x80
-static inline MASK depth_of(const WaitingRays* paths) { return paths->depth & (TURNED - 1); }
+#define HAS_ONE_RAY (BATCH == 1)
+#include "plain/path/waiting_ray.cl"
 
 // The members of a waiting ray, in order; this list generates their number, writing and reading.
 #if BATCH > 1

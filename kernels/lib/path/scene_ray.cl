@@ -29,3 +29,5 @@ static inline MASK current_media(__global const Medium* restrict media, const Sc
   EACH_LANE(i, somewhere) { MASK_LANE(current, i) = (int)current_medium(media, get_media(rays, i)); }
   return current;
 }
+
+#include "plain/path/media.cl"

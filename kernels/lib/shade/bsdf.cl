@@ -9,6 +9,12 @@
 #include "lib/shade/maps.cl"
 #include "plain/shade/bsdf.cl"
 
+// Surfaces that rays have met, and what they do to light.
+typedef struct Shading {
+  SurfaceInteractions s;
+  Bsdfs bsdf;
+} Shading;
+
 // The surfaces of `lanes` whose materials have any of the flags.
 static inline MASK of_kind(const Bsdfs* bsdf, u32 flags, MASK lanes) {
   return lanes & MASK_OF((bsdf->flags & (int)flags) != 0);

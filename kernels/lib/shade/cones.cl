@@ -1,9 +1,9 @@
-// Changes of pixel cones by reflection and refraction: by the curvature of surfaces (Akenine-Moeller and
-// others 2021, "Improved Shader and Texture Level of Detail Using Ray Cones") and, at interfaces, by the
-// refraction of neighbouring rays. Behind its focus a cone's width is negative.
+// Curvature of surfaces, by which reflection and refraction change pixel cones (Akenine-Moeller and others
+// 2021, "Improved Shader and Texture Level of Detail Using Ray Cones"). Behind its focus a cone's width is
+// negative.
 #pragma once
 #include "lib/shade/bsdf.cl"
-#include "plain/shade/specular.cl"
+#include "plain/shade/cones.cl"
 
 #if HAS_CONES && HAS_SECONDARY
 // Curvature at triangle hits of `lanes`: how their corners' normals turn along the edges, the mean of the
@@ -43,20 +43,5 @@ static inline REAL curvatures(const Scene* scene, const SurfaceInteractions* s, 
     curvature = select(curvature, own * (1.0f / size) / moved_size(scene, index, time_of(s)), mine);
   }
   return select(-curvature, curvature, s->entering);
-}
-
-// Cones of reflected rays: neighbouring rays diverge by twice the angle between their normals.
-static inline void spread_reflected(REAL curvature, SceneRays* child) {
-  child->cone_spread = fma(2.0f * curvature, child->cone_width, child->cone_spread);
-}
-
-// Cones of transmitted rays, from those of `rays`: Snell's law for neighbouring rays perpendicular to the
-// plane of incidence (Coddington's sagittal equation), where the index changes by split->eta.
-static inline void spread_transmitted(REAL curvature, const SpecularSplits* split, const SceneRays* rays,
-                                      SceneRays* child) {
-  const REAL inverse = 1.0f / split->eta, spread = rays->cone_spread;
-  const REAL bend = split->cos_t - split->cos_i * inverse;
-  const MASK straight = MASK_OF(split->eta == 1.0f);
-  child->cone_spread = select(fma(-curvature * bend, child->cone_width, spread * inverse), spread, straight);
 }
 #endif

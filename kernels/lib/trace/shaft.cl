@@ -6,6 +6,7 @@
 #include "lib/core/tables.h"
 #include "lib/core/transform.cl"
 #include "lib/solids/solids.cl"
+#include "lib/trace/hits.cl"
 
 #if HAS_SHAFTS
 // Relative enlargement of a solid's bounds, for rounding of rays that hit it.
@@ -122,4 +123,15 @@ NEVER_INLINE void cast_shafts(const Scene* scene, u32 light, const Shafts* shaft
   *soft &= ~*hard;
 }
 
+// The lanes of `lanes` whose ways (o, d) meet one of `solids` before `t_max`.
+static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, REAL t_max, MASK lanes) {
+  Hits hits = no_hits(t_max);
+  prepare_hits(scene, (REAL)(0.0f), &hits);  // shafts know nothing that moves
+  const REAL t_min = (REAL)(0.0f);
+  for (; HAS_SOLID && solids; solids &= solids - 1u) {
+    const u32 i = lowest_bit(solids);
+    hit_solids(scene->instances, i, i + 1u, &o, &d, &t_min, lanes, true, &hits);
+  }
+  return lanes & hit_anything(&hits);
+}
 #endif

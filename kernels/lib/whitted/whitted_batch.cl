@@ -1,16 +1,16 @@
 // Whitted's ray tree for a batch of pixels, which share a stack: the newest BATCH rays are taken together, a
 // ray a lane.
 #pragma once
-#include "lib/light/direct_light.cl"
-#include "lib/light/shadow.cl"
-#include "lib/whitted/steps.cl"
+#include "lib/whitted/lights.cl"
+#include "plain/whitted/steps.cl"
 
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to filters, behind which those that pass wait
 // again. `coherent`: the rays run close together.
 #if LISTS_HITS && HAS_SHADOW_FILTERS
-NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
-                                  float4* radiance, u32* counts) {
+NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u32 most, bool coherent,
+                                  u32* counts) {
+  ShadowStack* stack = tile->shadows;
   SceneRays rays;
   WaitingRays paths;
   HitList lists[BATCH];
@@ -26,19 +26,21 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
     MASK listed;
     const MASK again = next_listed(scene, lists, &rays.t_min, lanes, &last, &hits, &listed);
     if (any_lane(again)) push_shadows(stack, &rays, &paths, again);
-    const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes & ~again, radiance, counts);
+    lanes &= ~again;
+    const MASK passing = lanes & reach_filter(scene, tile, &rays, &paths, &hits, counts, lanes);
     push_shadows(stack, &rays, &paths, passing & ~listed);
     lanes = passing & listed;
   } while (any_lane(lanes));
 }
 #else
-NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 most, bool coherent,
-                                  float4* radiance, u32* counts) {
+NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u32 most, bool coherent,
+                                  u32* counts) {
+  ShadowStack* stack = tile->shadows;
   SceneRays rays;
   WaitingRays paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
   Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
-  const MASK passing = reach_filters(scene, &rays, &paths, &hits, lanes, radiance, counts);
+  const MASK passing = lanes & reach_filter(scene, tile, &rays, &paths, &hits, counts, lanes);
   push_shadows(stack, &rays, &paths, passing);
 }
 #endif
@@ -47,18 +49,18 @@ NEVER_INLINE void advance_shadows(const Scene* scene, ShadowStack* stack, u32 mo
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                               const WaitingRays* paths, MASK lanes, bool coherent, bool last,
-                              const Hits* hits, const Shading* at, ShadowStack* stack, float4* radiance,
-                              u32* counts) {
+                              const Encounters* met, const Shading* at, u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   MASK casting = lanes;
+  ShadowStack* stack = tile->shadows;
   for (;;) {
     u32 most = BATCH;
     bool together = false;
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
-        if (!sends_ray(scene, tile, rays, paths, lanes, at, &light, &casting, radiance, counts)) continue;
+        if (!sends_ray(scene, tile, rays, paths, lanes, at, &light, &casting, counts)) continue;
         const u32 before = stack->count;
-        cast_shadows(scene, light++, tile, rays, paths, casting, hits, at, stack, counts);
+        cast_shadow(scene, light++, tile, rays, paths, met, at, counts, casting);
         most = stack->count - before;
         together = coherent && most;
         if (!together) continue;
@@ -66,45 +68,42 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
         return;
     }
     // The only place where shadow rays are traced: some compilers copy all that is called.
-    advance_shadows(scene, stack, most, together, radiance, counts);
+    advance_shadows(scene, tile, most, together, counts);
   }
 }
 
 // Takes a batch to the next interfaces, adds what it sees there to the pixels and leaves the rays that come
 // of it on the stacks.
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
-                               WaitingRays* paths, MASK lanes, bool coherent, RayStack* stack,
-                               ShadowStack* shadows, float4* radiance, u32* counts) {
+                               WaitingRays* paths, MASK lanes, bool coherent, u32* counts) {
   Encounters met;
   Shading at;
-  REAL3 seen;
   MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
                                           : meet_listed(scene, rays, lanes, &met, counts);
-  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & MASK_OF(paths->depth == 1));
-  const MASK hit = meet_surfaces(scene, tile, rays, paths, lanes, unseen, ALL_LANES, &met, &at, &seen, stack,
-                                 radiance, counts);
-  add_lights(scene, tile, rays, paths, hit, coherent, stack->count == 0u, &met.hit, &at, shadows, radiance,
-             counts);
-  add_to_pixels(seen, paths->pixel, lanes, radiance);
+  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & is_from_camera(paths, lanes));
+  if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
+  const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, lanes);
+  const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
+  add_lights(scene, tile, rays, paths, hit, coherent, tile->stack->count == 0u, &met, &at, counts);
+  add_to_pixels(seen, paths->pixel, lanes, tile->radiance);
 }
 
-// The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them. radiance[i].xyz
-// receives the light of pixel i of the tile, from w is taken what of its background is seen straight on.
-static inline void trace_whitted(const Scene* scene, const TileSamples* tile, SceneRays* rays, MASK lanes,
-                                 RayStack* stack, float4* radiance, u32* counts) {
-  WaitingRays paths;
-  start_branches(&paths);
-  paths.throughput = all3((float3)(1.0f));
-  paths.depth = (MASK)(1);
-  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(paths.pixel, i) = (int)i;
+// The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them.
+static inline void trace_whitted(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes,
+                                 u32* counts) {
+  RayStack stack;
   ShadowStack shadows;
-  shadows.count = 0;
-  stack->count = 0;
+  stack.count = shadows.count = 0;
+  tile->stack = &stack;
+  tile->shadows = &shadows;
+  MASK pixels;
+  for (u32 i = 0; i < BATCH; ++i) MASK_LANE(pixels, i) = (int)i;
+  WaitingRays paths = camera_path(pixels, lanes);
   bool from_camera = true;
   do {
-    follow_batch(scene, tile, rays, &paths, lanes, from_camera, stack, &shadows, radiance, counts);
+    follow_batch(scene, tile, rays, &paths, lanes, from_camera, counts);
     from_camera = false;
-    lanes = stack->count ? pop_rays(stack, BATCH, rays, &paths) : NO_LANES;
+    lanes = stack.count ? pop_rays(&stack, BATCH, rays, &paths) : NO_LANES;
   } while (any_lane(lanes));
 }
 #endif

@@ -1,7 +1,8 @@
 // Ways to lights of every kind, and what is seen of them.
 #include "plain/light/emission.cl"
+#include "plain/light/environment.cl"
 
-LightSample sample_environment(UNIFORM const Scene* scene, float u_x, float u_y, HERE);
+int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
 
 static inline bool is_in_sky(UNIFORM __global const Light* light) {
   return (LIGHTS_OF_SKY >> light->kind & 1u) != 0u;
@@ -62,6 +63,19 @@ ENTRY static inline LightSample sample_light(UNIFORM const Scene* scene, UNIFORM
   SKY_LIGHTS(SAMPLE_SKY)
   if (HAS_AREA_LIGHTS && has_extent(light)) return sample_area_light(light, p, u_x, u_y);
   return way_to_lamp(light, p);
+}
+
+// A way from the point p to its light `chosen`; `seen`: rays may meet it.
+static inline LightSample sample_chosen(UNIFORM const Scene* scene, float3 p, float u_x, float u_y,
+                                        int chosen, bool* seen) {
+  LightSample light;
+  bool meets = false;
+  EACH_ALIKE(u32, index, (u32)chosen) {
+    light = sample_light(scene, index, p, u_x, u_y);
+    if (rays_meet(scene, index)) meets = true;
+  }
+  *seen = meets;
+  return light;
 }
 
 // The sky's lights: light from the direction d, and its density where the light is chosen with `chance`.

@@ -2,9 +2,23 @@
 #include "plain/light/light.cl"
 
 float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
-UNIFORM bool sees_environment(UNIFORM const Scene* scene);
-float3 distant_along(UNIFORM const Scene* scene, float3 d, HERE, float* pdf);
-float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera);
+
+// The environment where rays see it, with the density of choosing it, else the background.
+static inline bool sees_environment(UNIFORM const Scene* scene) {
+  if (HAS_ENVIRONMENT) return scene->info->sees_environment != 0u;
+  return false;
+}
+static inline float3 distant_along(UNIFORM const Scene* scene, float3 d, float* pdf) {
+  *pdf = 0.0f;
+  if (sees_environment(scene)) return environment_along(scene, d, pdf);
+  return background_along(scene->info, d);
+}
+
+// The same, where the rays of the camera do not see what is hidden from them.
+static inline float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera) {
+  if (scene->info->sees_environment == SEEN_OFF_CAMERA && camera) return background_along(scene->info, d);
+  return light;
+}
 
 // The radiance of rays that meet nothing: the environment or background, and the sky's lights before it.
 HAVING(HAS_SKY)

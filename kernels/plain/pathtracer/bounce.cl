@@ -130,7 +130,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
 static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, PathState* path, SceneRay* ray,
                           SampledSpectrum* light, UNIFORM u32* counts) {
   SurfaceShading at;
-  shade_hits(scene, ray, met, &at);
+  shade_hit(scene, ray, met, &at);
   follow_hero(&path->wavelengths, &at.bsdf);
   if (HAS_CATCHERS && path->straight && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
     pass_catcher(scene, met, &at, path, ray, counts);

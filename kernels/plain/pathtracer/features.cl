@@ -43,7 +43,7 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
     return false;
   }
   SurfaceShading at;
-  shade_hits(scene, ray, &met, &at);
+  shade_hit(scene, ray, &met, &at);
   follow_hero(&f->path.wavelengths, &at.bsdf);
   if (HAS_CATCHERS && first && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
     pass_straight(scene, &met, &at, ray);

@@ -17,19 +17,6 @@ static inline int choose_index(UNIFORM const Scene* scene, float3 p, float u, fl
   return chosen;
 }
 
-// A way from the point p to its light; `seen`: rays may meet it.
-static inline LightSample sample_chosen(UNIFORM const Scene* scene, float3 p, float u_x, float u_y,
-                                        int chosen, bool* seen) {
-  LightSample light;
-  bool meets = false;
-  EACH_ALIKE(u32, index, (u32)chosen) {
-    light = sample_light(scene, index, p, u_x, u_y);
-    if (rays_meet(scene, index)) meets = true;
-  }
-  *seen = meets;
-  return light;
-}
-
 // The group of a light.
 HAVING(HAS_LIGHT_GROUPS)
 static inline int group_of(UNIFORM const Scene* scene, int chosen) {

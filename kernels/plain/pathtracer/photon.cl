@@ -128,7 +128,7 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
   if (unseen || !hit_anything(&met.hit)) return unseen;
   if (HAS_FOG) photon->path.throughput *= clear_of_fog(scene, &met);
   SurfaceShading at;
-  shade_hits(scene, ray, &met, &at);
+  shade_hit(scene, ray, &met, &at);
   follow_hero(&photon->path.wavelengths, &at.bsdf);
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const Numbers u =

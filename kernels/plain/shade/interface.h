@@ -1,5 +1,5 @@
 // Hand-written surfaces, as plain text sees them.
-#include "plain/core.h"
+#include "plain/path/media.cl"
 #include "shared/layers.h"
 #include "shared/lobe_energy.h"
 #include "shared/lobes.h"
@@ -45,8 +45,6 @@ float refracted_cosine(float cos_i, float eta);
 float fresnel_reflectance(float cos_i, float cos_t, float eta);
 float3 reflect_direction(float3 d, float3 n);
 float3 refract_direction(float3 d, float3 n, float cos_i, float cos_t, float eta);
-float relative_index(UNIFORM __global const Medium* media, int before, int after, HERE);
-float relative_index_at(UNIFORM const Scene* scene, int before, int after, float row, HERE);
 
 // Facets.
 float lobe_energy_at(UNIFORM const Scene* scene, UNIFORM u32 first, float c, float alpha, HERE);

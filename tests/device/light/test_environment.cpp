@@ -49,9 +49,9 @@ __kernel void draw(__global const Environment* environments, __global const floa
   const REAL up = 1.0f - 2.0f * u_y, side = real_sqrt(real_max(1.0f - up * up, (REAL)(0.0f)));
   sincos_of_turn(u_x - 0.5f, &sine, &cosine);
   const REAL3 d = real3(side * cosine, up, side * sine);
-  const REAL seen = environment_along(&scene, d, ALL_LANES, &density).x;
+  const REAL seen = environment_along(&scene, d, &density, ALL_LANES).x;
   const LightSamples s = sample_environment(&scene, v_x, v_y, ALL_LANES);
-  environment_along(&scene, s.wi, ALL_LANES, &again);
+  environment_along(&scene, s.wi, &again, ALL_LANES);
   for (u32 i = 0; i < LANES; ++i) {
     out[2u * (first + i)] = (float4)(REAL_LANE(density, i), REAL_LANE(seen, i), REAL_LANE(d.y, i), 0.0f);
     out[2u * (first + i) + 1u] =

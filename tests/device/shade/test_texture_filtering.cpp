@@ -206,13 +206,14 @@ __kernel void run(__global const ConeIn* in, __global float4* out, u32 count) {
   rays.cone_width = (REAL)(in[i].width);
   rays.cone_spread = spread;
   SceneRays child = rays;
-  spread_reflected(curvature, &child);
+  spread_reflected(curvature, &child, ALL_LANES);
   const float reflected = REAL_LANE(child.cone_spread, 0);
   SpecularSplits split;
   split.eta = (REAL)(in[i].eta);
   split.cos_i = (REAL)(in[i].cos_i);
   split.cos_t = (REAL)(in[i].cos_t);
-  spread_transmitted(curvature, &split, &rays, &child);
+  child = rays;
+  spread_transmitted(curvature, &split, &child, ALL_LANES);
   out[i] = (float4)(reflected, REAL_LANE(child.cone_spread, 0), 0.0f, 0.0f);
 }
 )";

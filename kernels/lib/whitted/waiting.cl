@@ -1,0 +1,60 @@
+// What plain/whitted leaves in the tile: rays that wait, and what pixels show less of.
+#pragma once
+#include "lib/light/choose_light.cl"
+#include "lib/light/field_light.cl"
+#include "lib/light/field_openness.cl"
+#include "lib/light/light.cl"
+#include "lib/light/relief_shadow.cl"
+#include "lib/light/shadow.cl"
+#include "lib/path/mattes.cl"
+#include "lib/path/path_samples.cl"
+#include "lib/path/ray_counts.cl"
+#include "lib/shade/cones.cl"
+#include "lib/trace/shaft.cl"
+
+static inline void wait_again(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
+                              MASK lanes) {
+  if (BATCH > 1) push_rays(tile->stack, rays, paths, lanes);
+}
+
+// Returns the lanes for which there was room.
+#if HAS_SECONDARY
+NEVER_INLINE MASK push_child(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
+                             MASK lanes, u32 kind, u32* counts) {
+  u32 bits = lane_bits(lanes);
+  while (tile->stack->count + popcount(bits) > RAY_STACK) {
+    counts[COUNT_RAY_STACK_OVERFLOW] += 1u;
+    bits &= bits - 1u;
+  }
+  counts[kind] += popcount(bits);
+  note_rays(paths->pixel, lanes_of(bits), counts);
+  push_rays(tile->stack, rays, paths, lanes_of(bits));
+  return lanes_of(bits);
+}
+#endif
+
+static inline void push_shadow(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
+                               MASK lanes) {
+  push_shadows(tile->shadows, rays, paths, lanes);
+}
+
+static inline void add_light(const TileSamples* tile, MASK pixel, REAL3 light, MASK lanes) {
+  add_to_pixels(light, pixel, lanes, tile->radiance);
+}
+
+static inline void uncover(const TileSamples* tile, MASK pixel, REAL part, MASK lanes) {
+  EACH_LANE(i, lanes) { tile->radiance[MASK_LANE(pixel, i)].w -= REAL_LANE(part, i); }
+}
+
+// The surfaces of `lanes` cover such parts more of their pixels, or less.
+#if HAS_MATTES
+static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pixels,
+                            const SurfaceInteractions* s, MASK lanes, REAL part) {
+  EACH_LANE(i, lanes) {
+    const u32 pixel = (u32)MASK_LANE(pixels, i);
+    add_matte(scene, tile->sums + (u32)MASK_LANE(tile->place, pixel) * SAMPLE_VECTORS,
+              MASK_LANE(s->instance, i), MASK_LANE(s->material, i),
+              REAL_LANE(tile->sign, pixel) * REAL_LANE(part, i));
+  }
+}
+#endif

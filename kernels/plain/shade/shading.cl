@@ -1,0 +1,39 @@
+// Surfaces where rays meet them.
+#include "plain/shade/bsdf.cl"
+#include "plain/shade/encounter.h"
+
+void interact(UNIFORM const Scene* scene, float3 o, float3 d, const SurfaceHit* hit, const Face* face, HERE,
+              SurfaceInteraction* s);
+void locate(UNIFORM const Scene* scene, const SurfaceHit* hit, HERE, SurfaceInteraction* s);
+void set_footprints(UNIFORM const Scene* scene, const SceneRay* ray, float t, SurfaceInteraction* s);
+float offset_beyond(const Encounter* met, float offset);
+void note_depth(const Encounter* met, SurfaceInteraction* s);
+void add_parallax(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
+void add_relief(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
+
+// A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
+// the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
+// reflected_direction().
+static inline void bend_normal(float3 d, SurfaceInteraction* s) {
+  int glossy = (int)MATERIAL_LAYERED;
+  if (HAS_ROUGH) glossy = (int)(MATERIAL_LAYERED | MATERIAL_REFLECTS);
+  const float3 mirrored = reflect_direction(d, s->ns);
+  const float height = dot(s->side, mirrored), least = real_min(-0.9f * dot(s->side, d), 0.01f);
+  if ((s->flags & glossy) == 0 || !(height < least)) return;
+  const float3 flat = safe_unit3(along(mirrored, -height, s->side));
+  const float3 lifted = along(flat * real_sqrt(1.0f - least * least), least, s->side);
+  s->ns = safe_unit3(lifted - d);
+}
+
+// The surface that the ray has met, and what it does to light.
+ENTRY static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                                   SurfaceShading* at) {
+  interact(scene, ray->o, ray->d, &met->hit, &met->face, &at->s);
+  at->s.offset = offset_beyond(met, at->s.offset);
+  note_depth(met, &at->s);
+  set_footprints(scene, ray, met->hit.t, &at->s);
+  if (HAS_PARALLAX) add_parallax(scene, ray->d, &at->s);
+  if (HAS_RELIEF) add_relief(scene, ray->d, &at->s);
+  if (HAS_PATHS && (HAS_LAYERS || HAS_ROUGH)) bend_normal(ray->d, &at->s);
+  at->bsdf = make_bsdfs(scene, &at->s, met->before, met->after);
+}

@@ -1,0 +1,34 @@
+// The rays of a tile and what their pixels have received: hand-written, as plain text sees them.
+#include "plain/path/waiting_ray.cl"
+#include "plain/shade/leaving_ray.cl"
+
+typedef struct LANES(TileSamples) {
+} TileSamples;
+
+// Two random numbers at the surface that the ray meets: for the light `light`, for part `part` of `parts`.
+void bounce_numbers(UNIFORM const TileSamples* tile, const WaitingRay* path, UNIFORM u32 light,
+                    UNIFORM u32 offset, UNIFORM u32 part, UNIFORM u32 parts, HERE, float* u_x, float* u_y);
+int child_branch(int branch, UNIFORM u32 kind);
+
+// The ray waits, if there is room. Counts it as one of `kind`.
+bool push_child(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE,
+                UNIFORM u32 kind, UNIFORM u32* counts);
+
+// The ray waits to go on, where rays wait in batches.
+void wait_again(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
+
+// A shadow ray waits.
+void push_shadow(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
+CALLED(note_rays) void note_pixel_ray(int pixel, HERE, UNIFORM u32* counts);
+float soft_shadows(UNIFORM const Scene* scene, const SceneRay* ray, HERE, UNIFORM u32* counts);
+
+// Light that a pixel receives.
+void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
+
+// What pixels show less of: of the background, and where objects and materials cover them.
+void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
+void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,
+              const SurfaceInteraction* s, HERE, float part);
+
+float curvatures(UNIFORM const Scene* scene, const SurfaceInteraction* s, HERE);
+float field_openness(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit, HERE);
