@@ -119,6 +119,19 @@ TEST_CASE("highlights are about the blended normal, not the triangle's") {
   }
 }
 
+TEST_CASE("a surface whose blended normal faces away from a light has no highlight of it") {
+  const double tilt = 20 * pi / 180, light_angle = -75 * pi / 180;
+  const dvec3 normal{std::sin(tilt), 0, std::cos(tilt)};
+  SceneDescription scene = one_triangle({std::sin(light_angle), 0, std::cos(light_angle)});
+  scene.meshes.front().normals = {normal, normal, normal};
+  material_of(scene).specular = {1, 0.5, 0.25};
+  material_of(scene).exponent = 2;
+  material_of(scene).blinn = true;
+  for (const DeviceInfo& device : picture_devices()) DYNAMIC_SECTION(device.label()) {
+      check_color(device, scene, dvec3(0));
+    }
+}
+
 TEST_CASE("near and far clip by depth along the view, the same in every pixel") {
   struct Case {
     double depth, near, far;
