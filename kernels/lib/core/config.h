@@ -83,8 +83,7 @@
 #define BATCH (TILE_W * TILE_H)
 
 // Declares `name`, a pointer to a variable that stays in memory on GPUs, whose registers are for the ray on
-// its way. Compilers cannot take the variable apart, since they do not know its index. llvmpipe would lose
-// 6 % of a path's time by it.
+// its way. Compilers cannot take the variable apart, since they do not know its index.
 #ifdef DEVICE_INLINES_ALL
 #define KEEP_IN_MEMORY(type, name)   \
   type kept_##name[1];               \
