@@ -8,7 +8,7 @@
 typedef struct TileSamples {
   RayStack* stack;
   ShadowStack* shadows;
-  float4* radiance;  // xyz; from w is taken what of the background is seen straight on
+  float4* radiance;  // in xyz; w is the coverage: 1 less the background that is seen straight on
   HAVING(HAS_RANDOM, MASK x; MASK y; u32 seed;)
   u32 sample;
   // Sums of the launch's pixels, see sample_sums(); the tile's place among them; the sign of its samples.

@@ -46,7 +46,7 @@ static inline void uncover(const TileSamples* tile, MASK pixel, REAL part, MASK 
   EACH_LANE(i, lanes) { tile->radiance[MASK_LANE(pixel, i)].w -= REAL_LANE(part, i); }
 }
 
-// The surfaces of `lanes` cover such parts more of their pixels, or less.
+// Adds `part`, which may be negative, to what the surfaces of `lanes` cover of their pixels.
 #if HAS_MATTES
 static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pixels,
                             const SurfaceInteractions* s, MASK lanes, REAL part) {

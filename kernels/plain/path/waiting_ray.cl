@@ -30,7 +30,7 @@ ENTRY static inline bool is_from_camera(const WaitingRay* path) {
   return (path->depth & ((1 << DEPTH_BITS) - 1)) == 1;
 }
 
-// Devices that run a ray a lane: the light that the surface goes on with, 0 if the ray has not met it before.
+// The next light of a surface that the ray meets again, 0 at the first meeting (devices with one ray a lane).
 ENTRY static inline int next_light(const WaitingRay* path) {
   if (HAS_ONE_RAY) return path->depth >> DEPTH_BITS;
   return 0;

@@ -14,7 +14,7 @@ int child_branch(int branch, UNIFORM u32 kind);
 bool push_child(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE,
                 UNIFORM u32 kind, UNIFORM u32* counts);
 
-// The ray waits to go on, where rays wait in batches.
+// Puts the ray back on the stack, where rays are taken in batches.
 void wait_again(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
 
 // A shadow ray waits.
