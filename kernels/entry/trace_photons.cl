@@ -40,8 +40,8 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     const u32 light = (u32)MASK_LANE(starts.light, i);
     set_media(&rays, i, (MediaStack)light_media[2u * light + 1u] << 32 | light_media[2u * light]);
   }
-  Landings landings = {0};
   for (lanes = starts.lanes; any_lane(lanes);) {
+    Landings landings CLEARED_ON_GPUS;
     start_marching(counts);
     const MASK going = lanes & step_photon(scene, photons, &rays, &landings, counts, lanes);
     EACH_LANE(i, lanes & landings.is) {

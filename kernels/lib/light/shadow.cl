@@ -13,7 +13,7 @@ static inline void pass_interface(const Scene* scene, SceneRays* rays, Hits* hit
   const MASK touching = may_touch(scene->instances, hits, passing);
 #if HAS_TOUCHING
   EACH_LANE(i, touching) {
-    Seen seen = {0};
+    Seen seen CLEARED_ON_GPUS;
     float apart;
     REAL_LANE(hits->t, i) = meet_touching(scene, rays, i, opaque, hits, faces, &seen, &apart);
     set_media(rays, i, seen.behind);

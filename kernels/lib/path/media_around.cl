@@ -22,11 +22,11 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left;) {
-    const u32 inner = pick_face(scene, met, &changes, left, false);
+    const u32 inner = pick_face(scene, met, left, false);
     left &= ~(1u << inner);
-    leave_medium(scene->materials[changes.material[inner]].medium, entered, holding);
+    leave_medium(medium_inside(scene, &met->hits[inner]), entered, holding);
   }
-  enter_all(scene, met, &changes, entered);
+  enter_all(scene, met, changes.entered, entered);
   return touching.end;
 }
 #endif

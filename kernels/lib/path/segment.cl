@@ -89,7 +89,7 @@ static inline MASK cross_touching(const Scene* scene, SceneRays* rays, Encounter
                                   u32* counts) {
   MASK unseen = NO_LANES;
   EACH_LANE(i, lanes) {
-    Seen seen = {0};
+    Seen seen CLEARED_ON_GPUS;
     float apart;
     const float end = meet_touching(scene, rays, i, MATERIAL_TRANSMITS, &met->hit, &met->face, &seen, &apart);
     REAL_LANE(met->apart, i) = apart;

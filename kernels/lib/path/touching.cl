@@ -91,6 +91,10 @@ static inline u32 material_of(const Scene* scene, const Hit* hit) {
   return material != NO_MATERIAL ? material : scene->triangles[hit->prim].material;
 }
 
+static inline u32 medium_inside(const Scene* scene, const Hit* hit) {
+  return scene->materials[material_of(scene, hit)].medium;
+}
+
 // Whether two hits are the same, on an edge shared by two triangles of a mesh.
 static inline bool on_shared_edge(__global const Instance* restrict instances, const Hit* a, const Hit* b) {
   if (a->instance != b->instance || instances[a->instance].shape != SHAPE_MESH) return false;
@@ -103,20 +107,15 @@ static inline bool on_shared_edge(__global const Instance* restrict instances, c
 // and entered again is unchanged, and neither face is seen.
 typedef struct Changes {
   u32 entered, left, thin;
-  u32 material[MOST_TOUCHING];
 } Changes;
 
 static inline Changes faces_of(const Scene* scene, const Stretch* met) {
-  Changes changes;
-  changes.entered = 0;
-  changes.left = 0;
-  changes.thin = 0;
+  Changes changes = {0, 0, 0};
   for (u32 i = 0; i < met->count; ++i) {
     const Hit* hit = &met->hits[i];
-    changes.material[i] = material_of(scene, hit);
     bool again = false;
     for (u32 k = 0; k < i; ++k) again |= on_shared_edge(scene->instances, &met->hits[k], hit);
-    const u32 flags = scene->materials[changes.material[i]].flags;
+    const u32 flags = scene->materials[material_of(scene, hit)].flags;
     if (again || !(flags & MATERIAL_TRANSMITS)) continue;
     if (flags & MATERIAL_THIN)
       changes.thin |= 1u << i;
@@ -133,11 +132,11 @@ static inline Changes faces_of(const Scene* scene, const Stretch* met) {
 static inline void take_out_pairs(const Scene* scene, const Stretch* met, Changes* changes) {
   for (u32 facing = 2; facing-- > 0;)
     for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
-      const u32 i = lowest_bit(entered), medium = scene->materials[changes->material[i]].medium;
+      const u32 i = lowest_bit(entered), medium = medium_inside(scene, &met->hits[i]);
       const float3 normal = unit_normal(outward_of(scene, &met->hits[i], time_of_stretch(met)));
       for (u32 left = changes->left; left; left &= left - 1u) {
         const u32 k = lowest_bit(left);
-        if (scene->materials[changes->material[k]].medium != medium) continue;
+        if (medium_inside(scene, &met->hits[k]) != medium) continue;
         if (facing &&
             dot(normal, unit_normal(outward_of(scene, &met->hits[k], time_of_stretch(met)))) > -0.9f)
           continue;
@@ -159,11 +158,10 @@ static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, cons
 }
 
 // The face of `bits`, which is not 0, whose solid is outermost or, if not `outermost`, innermost.
-static inline u32 pick_face(const Scene* scene, const Stretch* met, const Changes* changes, u32 bits,
-                            bool outermost) {
-  u32 best = lowest_bit(bits), medium = scene->materials[changes->material[best]].medium;
+static inline u32 pick_face(const Scene* scene, const Stretch* met, u32 bits, bool outermost) {
+  u32 best = lowest_bit(bits), medium = medium_inside(scene, &met->hits[best]);
   for (bits &= bits - 1u; bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), other = scene->materials[changes->material[i]].medium;
+    const u32 i = lowest_bit(bits), other = medium_inside(scene, &met->hits[i]);
     if (is_outer(scene, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
     best = i;
     medium = other;
@@ -171,14 +169,13 @@ static inline u32 pick_face(const Scene* scene, const Stretch* met, const Change
   return best;
 }
 
-// Enters the media of `changes`, outer ones first. Returns how many did not fit.
-static inline u32 enter_all(const Scene* scene, const Stretch* met, const Changes* changes,
-                            MediaStack* stack) {
+// Enters the media of the faces `entered`, outer ones first. Returns how many did not fit.
+static inline u32 enter_all(const Scene* scene, const Stretch* met, u32 entered, MediaStack* stack) {
   u32 lost = 0;
-  for (u32 left = changes->entered; left;) {
-    const u32 outer = pick_face(scene, met, changes, left, true);
+  for (u32 left = entered; left;) {
+    const u32 outer = pick_face(scene, met, left, true);
     left &= ~(1u << outer);
-    if (!cross_boundary(stack, scene->materials[changes->material[outer]].medium, true)) ++lost;
+    if (!cross_boundary(stack, medium_inside(scene, &met->hits[outer]), true)) ++lost;
   }
   return lost;
 }
@@ -205,8 +202,9 @@ static inline u32 say_of(__global const Material* restrict material, u32 before,
 }
 
 // Whether face a is seen instead of b. With equal materials, the outer one: the first entered, the last left.
-static inline bool is_seen_before(const Scene* scene, const Hit* a, u32 material_a, const Hit* b,
-                                  u32 material_b, u32 before, u32 after, bool left) {
+static inline bool is_seen_before(const Scene* scene, const Hit* a, const Hit* b, u32 before, u32 after,
+                                  bool left) {
+  const u32 material_a = material_of(scene, a), material_b = material_of(scene, b);
   __global const Material *ma = scene->materials + material_a, *mb = scene->materials + material_b;
   const u32 say_a = say_of(ma, before, after), say_b = say_of(mb, before, after);
   if (say_a != say_b) return say_a > say_b;
@@ -241,20 +239,19 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_boundary(&seen->behind, scene->materials[changes.material[lowest_bit(left)]].medium, false))
+    if (!cross_boundary(&seen->behind, medium_inside(scene, &met->hits[lowest_bit(left)]), false))
       ++seen->strays;
-  seen->overflows = enter_all(scene, met, &changes, &seen->behind);
+  seen->overflows = enter_all(scene, met, changes.entered, &seen->behind);
   seen->after = current_medium(scene->media, seen->behind);
   const u32 some = changes.thin | changes.entered | changes.left;
   u32 best = some ? lowest_bit(some) : 0u;
   for (u32 bits = some; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (is_seen_before(scene, &met->hits[i], changes.material[i], &met->hits[best], changes.material[best],
-                       current, seen->after, changes.left >> i & 1u))
+    if (is_seen_before(scene, &met->hits[i], &met->hits[best], current, seen->after, changes.left >> i & 1u))
       best = i;
   }
   seen->hit = met->hits[best];
-  seen->material = changes.material[best];
+  seen->material = material_of(scene, &met->hits[best]);
 }
 
 // Resolves lane i of `rays`, which has hit an instance that may touch others: hit and face become those of

@@ -95,7 +95,7 @@ typedef struct PhotonSearches {
 
 static inline PhotonSearches search_photons(const Scene* scene, const LaneSamples* at, MASK depth,
                                             const SceneRays* rays, const SurfaceInteractions* s, MASK lanes) {
-  PhotonSearches searches = {0};
+  PhotonSearches searches CLEARED_ON_GPUS;
   const REAL time = time_of_rays(rays);
   searches.area = (REAL)(1.0f);
   EACH_LANE(i, lanes) {

@@ -198,7 +198,7 @@ NEVER_INLINE PhotonStarts start_photons(const Scene* scene, const PhotonLaunch* 
   starts.flux = all3((float3)(0.0f));
   starts.dimmed = (MASK)(NOT_DIMMED);
   starts.light = NO_LANES;
-  LightSamples sky = {0};
+  LightSamples sky CLEARED_ON_GPUS;
   const MASK of_sky = HAS_ENVIRONMENT ? lanes_of_sky(scene, u.w, lanes) : NO_LANES;
   if (any_lane(of_sky)) sky = sample_environment(scene, v.z, v.w, of_sky);
   EACH_LANE(i, lanes) {

@@ -39,7 +39,7 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 // Takes a ray to what it meets next. Returns whether it continues.
 static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                               WaitingRays* paths, u32* counts) {
-  Encounters met = {0};
+  Encounters met CLEARED_ON_GPUS;
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filter(scene, tile, rays, paths, &met.hit, counts, ALL_LANES);
@@ -49,7 +49,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const WaitingRays whole = *paths;
   const u32 light = (u32)next_light(paths, ALL_LANES);
   // Ways to lights ask for hits in reliefs while the surface waits.
-  EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(Shading, at);, Shading shading = {0}; Shading* at = &shading;)
+  EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(Shading, at);, Shading shading CLEARED_ON_GPUS; Shading* at = &shading;)
   const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, at, counts, ALL_LANES);
   add_to_pixels(seen, paths->pixel, MASK_OF(light == 0u), tile->radiance);
   forget_glow(rays, ALL_LANES);
