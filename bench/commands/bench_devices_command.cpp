@@ -1,6 +1,7 @@
 // `sundog bench devices`: which device, or which devices together, draw a scene fastest.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 #include <memory>

@@ -1,5 +1,6 @@
 // `sundog bench kernels`: what each device's compiler made of the kernels that a scene needs.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -1,5 +1,6 @@
 // `sundog bench quality`: error by time of samplers and integrators, against a reference.
 #include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <memory>

@@ -1,5 +1,6 @@
 // `sundog bench roofline`: what a device can do at most, and where the tracer's kernels lie below that.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -1,5 +1,6 @@
 // `sundog bench samples`: time and error by samples a pixel.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,5 +1,6 @@
 // `sundog bench textures`: a frame with textures and without, and the time that images take to load.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>

@@ -1,6 +1,7 @@
 // `sundog bench threads`: times against image size and number of threads.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
