@@ -1,16 +1,56 @@
 // `sundog bench kernels`: what each device's compiler made of the kernels that a scene needs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/options/option_helpers.h"
 #include "bench/commands/bench_run.h"
-#include "bench/frames/kernel_figures.h"
 #include "bench/report/machine.h"
+#include "compile/compiled_scene.h"
+#include "device/device.h"
 #include "render/device/kernel_config.h"
+#include "render/device/scene_programs.h"
 
 namespace sundog {
 namespace {
+
+struct KernelFigures {
+  std::string kernel;
+  KernelLimits limits;
+  std::size_t greatest_group =
+      0;                  // that sundog gives it: the kernel's limit, and room on a processor's stack
+  PtxasFigures compiler;  // by the build log, where the driver tells
+  std::optional<unsigned> resident_threads;  // on a multiprocessor, by its registers alone; NVIDIA's devices
+};
+
+/// Builds the kernels from their source: those of frames, with and without AOVs, and those of `bench rays`
+/// where something is traced. On NVIDIA's devices with -cl-nv-verbose. Throws DeviceError, BuildError.
+std::vector<KernelFigures> kernel_figures(Device& device, const CompiledScene& scene) {
+  const auto nvidia = device.nvidia();
+  device.build_with({nvidia ? "-cl-nv-verbose" : "", true});
+  const KernelConfig config = make_kernel_config(scene, device.info());
+  const std::size_t room = greatest_work_group(config, device.info());
+  std::vector<KernelFigures> result;
+  for (const auto& [entry, defines, generated] : scene_programs(scene, device.info())) {
+    BuildReport report;
+    const Program program = device.build(entry, defines, &report, generated);
+    auto compiler = read_ptxas_log(report.log);
+    for (const std::string& name : program.kernel_names()) {
+      KernelFigures& figures = result.emplace_back();
+      figures.kernel = name;
+      figures.limits = device.limits(program.kernel<>(name));
+      figures.greatest_group =
+          room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
+      figures.compiler = compiler[name];
+      if (nvidia && figures.compiler.registers)
+        figures.resident_threads = resident_threads(*figures.compiler.registers, *nvidia);
+    }
+  }
+  return result;
+}
 
 /// Nothing where it is not known: 0 would be a figure.
 template <class T>

@@ -1,11 +1,32 @@
 // How long `bench threads` will take, and what to leave out where that is too long. Pure arithmetic.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "bench/frames/thread_scaling.h"
+#include "compile/compiled_scene.h"
+#include "device/devices.h"
 
 namespace sundog {
+
+/// Seconds of a pixel, on one thread. Zeros: not known.
+struct PixelCost {
+  double device = 0, plain = 0;
+};
+
+struct ThreadScaling {
+  std::string scene;  // its name, for the report
+  /// The scene compiled for a square image of so many pixels a side.
+  std::function<CompiledScene(int size)> compile_for;
+  DeviceInfo device;  // splits into sub-devices
+  std::vector<int> sizes{128, 256, 352, 448, 512, 640};
+  std::vector<unsigned> counts{1, 2, 4, 8, 16};
+  int repeat = 6;
+  bool plain = true;  // time the plain C++ integrator too: one frame a size, up to this one
+  int greatest_plain_size = 1 << 16;
+  unsigned cores = 1;  // that the threads can have
+  PixelCost cost;      // by pixel_cost(), for estimates
+};
 
 /// Seconds that one frame of the size takes on so many threads, by what a pixel costs.
 double frame_seconds(const ThreadScaling& plan, int size, unsigned threads);

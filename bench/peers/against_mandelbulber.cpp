@@ -14,10 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/arguments.h"
-#include "base/clock.h"
 #include "base/file.h"
 #include "base/image_io.h"
-#include "bench/report/samples.h"
 #include "peer_program.h"
 
 using namespace sundog;

@@ -16,7 +16,6 @@
 #include "base/image_compare.h"
 #include "base/image_io.h"
 #include "bench/frames/frame_runner.h"
-#include "bench_scenes.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 #include "peer_program.h"

@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "bench/rays/check_hits.h"
-#include "bench_scenes.h"
 #include "embree_peer.h"
 #include "peer_rays.h"
 

@@ -43,4 +43,6 @@ int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& o
   });
 }
 
+nlohmann::json to_json(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
+
 }  // namespace sundog

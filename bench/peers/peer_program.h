@@ -1,5 +1,6 @@
-// The common frame of the programs that measure in turn with a peer. Those of models have MODEL... and the
-// same options on the command line, a result for each model, all of them as JSON.
+// The common frame of the programs that measure in turn with a peer: their command lines, clocks and figures.
+// Those of models have MODEL... and the same options on the command line, a result for each model, all of
+// them as JSON.
 #pragma once
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,8 @@
 #include <vector>
 
 #include "base/arguments.h"
+#include "base/clock.h"
+#include "bench/report/samples.h"
 
 namespace sundog {
 
@@ -28,5 +31,24 @@ int run_program(Arguments& app, int argc, char** argv, const std::function<void(
 /// run_program() that runs `measure` for each model and writes what it returned.
 int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure);
+
+/// Seconds by the wall clock, and by the processor's of all threads together.
+struct Elapsed {
+  double wall = 0, processor = 0;
+
+  /// Seconds per thread. The processor's clock is steadier on a machine that others use too.
+  double of_thread(unsigned threads, bool by_wall) const { return by_wall ? wall : processor / threads; }
+};
+
+template <class Work>
+Elapsed elapsed(const Work& work) {
+  const double start = processor_seconds();
+  const Stopwatch clock;
+  work();
+  return {clock.seconds(), processor_seconds() - start};
+}
+
+/// {"median", "min", "max"}.
+nlohmann::json to_json(const Spread& spread);
 
 }  // namespace sundog

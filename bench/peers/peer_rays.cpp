@@ -4,11 +4,30 @@
 #include <nlohmann/json.hpp>
 
 #include "base/environment.h"
-#include "bench_scenes.h"
+#include "models/model.h"
 #include "render/device/kernel_config.h"
+#include "scene/load.h"
 
 namespace sundog {
 namespace {
+
+/// One model's meshes where they lie, without lights; or a .json scene as it is.
+SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
+  if (path.ends_with(".json")) {
+    SceneDescription scene = load_scene(path, {}, {.outside_files = true});
+    if (spatial_splits) scene.render.spatial_splits = true;
+    return scene;
+  }
+  Model model = load_model(path);
+  SceneDescription scene;
+  scene.file = path;
+  scene.media.resize(1);
+  scene.render.spatial_splits = spatial_splits;
+  scene.materials = std::move(model.materials);
+  scene.meshes = std::move(model.meshes);
+  scene.objects = std::move(model.objects);
+  return scene;
+}
 
 CompiledScene compiled(const SceneDescription& description, const std::string& tracer) {
   CompiledScene scene = compile(description);

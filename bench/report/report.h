@@ -44,6 +44,9 @@ struct Table {
 /// "time [ms]" as a name that programs like: "time_ms".
 std::string plain_name(const Column& column);
 
+/// Whether the column has a word in some row.
+bool is_word_column(const Table& table, std::size_t column);
+
 /// A cell and its column.
 struct Field {
   std::string name, unit;

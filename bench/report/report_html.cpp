@@ -28,12 +28,6 @@ ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } sum
   details:not([open]) { display: none; } }
 )";
 
-bool is_word_column(const Table& table, std::size_t column) {
-  for (const auto& row : table.rows)
-    if (row[column].kind == Cell::Kind::word) return true;
-  return false;
-}
-
 /// `raw`: with every run below the median.
 std::string cell_html(const Cell& cell, bool raw) {
   std::string text = escape_html(cell_text(cell));

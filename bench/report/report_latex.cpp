@@ -44,8 +44,7 @@ std::string table_latex(const Table& table) {
   std::string columns, head, body;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
-    const auto is_word = [&](const auto& row) { return row[i].kind == Cell::Kind::word; };
-    columns += std::ranges::any_of(table.rows, is_word) ? 'l' : 'r';
+    columns += is_word_column(table, i) ? 'l' : 'r';
     head += i ? " & " : "";
     head += escaped(column.name) + (column.unit.empty() ? "" : " (" + escaped(column.unit) + ")");
   }

@@ -25,8 +25,6 @@ std::string head_text(const Column& column) {
   return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
 }
 
-bool is_word(const Cell& cell) { return cell.kind == Cell::Kind::word; }
-
 /// Words to the left, numbers to the right.
 std::string padded(const std::string& text, std::size_t width, bool left) {
   const std::string space(width - std::min(width, width_of(text)), ' ');
@@ -38,7 +36,7 @@ std::string table_text(const Table& table) {
   std::vector<bool> left;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     widths.push_back(width_of(head_text(table.columns[i])));
-    left.push_back(std::ranges::any_of(table.rows, [&](const auto& row) { return is_word(row[i]); }));
+    left.push_back(is_word_column(table, i));
     for (const auto& row : table.rows) widths[i] = std::max(widths[i], width_of(cell_text(row[i])));
   }
   std::string text = table.title.empty() ? "" : table.title + "\n";
@@ -162,6 +160,11 @@ std::string ratios_text(const BarPlot& plot) {
 }
 
 }  // namespace
+
+bool is_word_column(const Table& table, std::size_t column) {
+  return std::ranges::any_of(table.rows,
+                             [&](const auto& row) { return row[column].kind == Cell::Kind::word; });
+}
 
 std::string plain_name(const Column& column) {
   std::string name = column.unit.empty() ? column.name : column.name + "_" + column.unit;

@@ -53,6 +53,17 @@ Interval median_interval(const Spread& spread) {
   return {values[k], values[values.size() - 1 - k]};
 }
 
+double cost_of_error(const std::vector<ErrorCost>& measured, double error) {
+  for (std::size_t i = 0; i + 1 < measured.size(); ++i) {
+    const ErrorCost &a = measured[i], &b = measured[i + 1];
+    if (!(a.error > 0) || !(b.error > 0) || error > a.error || error < b.error || a.error == b.error)
+      continue;
+    const double share = std::log(error / a.error) / std::log(b.error / a.error);
+    return a.cost * std::pow(b.cost / a.cost, share);
+  }
+  return 0;
+}
+
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -26,6 +26,15 @@ struct Interval {
 };
 Interval median_interval(const Spread& spread);
 
+/// A way with so many samples: its error, and what it costs in seconds or rays.
+struct ErrorCost {
+  double error = 0, cost = 0;
+};
+
+/// The cost of reaching `error`, between two neighbours of `measured` as a power of the error; 0: none was
+/// measured on one of its sides.
+double cost_of_error(const std::vector<ErrorCost>& measured, double error);
+
 /// Seconds of processor time that this process has used, all threads together.
 double processor_seconds();
 

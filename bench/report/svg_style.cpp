@@ -8,7 +8,7 @@ namespace {
 
 // The curves' colours are those of Okabe and Ito's palette, which people with colour blindness can tell
 // apart, darkened for white paper and lightened for dark screens.
-constexpr const char* style = R"(
+constexpr const char* plot_rules = R"(
 :root { color-scheme: light dark;
   --paper: #ffffff; --ink: #1c2126; --soft: #59636e; --line: #d8dde2; --fill: #f3f5f7; --accent: #0072b2;
   --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #1c2126; --c7: #8b3a3a; }
@@ -29,7 +29,7 @@ svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; 
 }  // namespace
 
 std::string plot_style() {
-  std::string text = style;
+  std::string text = plot_rules;
   for (int i = 0; i < 8; ++i)
     text += fmt::format("svg .l.c{0} {{ stroke: var(--c{0}); }} svg .m.c{0} {{ fill: var(--c{0}); }}\n", i);
   return text;

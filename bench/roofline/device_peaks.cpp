@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t group = 64, reads = 16, steps = 8;  // as in peaks.cl
 constexpr std::size_t widest = 16, part_bytes = group * reads * widest * sizeof(float);
 constexpr std::array<unsigned, 5> widths{1, 2, 4, 8, 16};
-constexpr double least_seconds = 0.01;  // of a run, so that the time of a launch does not matter
+constexpr double least_run_seconds = 0.01;  // of a run, so that the time of a launch does not matter
 
-double number(std::size_t n) { return static_cast<double>(n); }
+double as_double(std::size_t n) { return static_cast<double>(n); }
 
 /// Whole numbers from 0 to 7 without an order.
 std::vector<float> made_values(std::size_t count) {
@@ -126,8 +126,8 @@ void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& mak
     work->run(1);
     // Long enough for the time of a launch not to matter.
     peak->times = 1;
-    while (work->run(peak->times) < least_seconds && peak->times < (1u << 20)) peak->times *= 2;
-    peak->amount = amount * number(peak->times);
+    while (work->run(peak->times) < least_run_seconds && peak->times < (1u << 20)) peak->times *= 2;
+    peak->amount = amount * as_double(peak->times);
     peak->queued.clear();
   };
   subject.run = [work, peak = shared] { return work->run(peak->times); };
@@ -135,7 +135,7 @@ void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& mak
 }
 
 void DevicePeaks::add_reads(const char* what, unsigned width, bool cached) {
-  const double bytes = number(opened_->values.size()) * sizeof(float);
+  const double bytes = as_double(opened_->values.size()) * sizeof(float);
   add({what, "GB/s", width}, bytes, [o = opened_, width, cached] {
     auto kernel = o->build("float", width, 1).kernel<Buffer<float>, Buffer<i32>, u32, i32>("read_values");
     const std::size_t parts = cached ? 2 * widest / width : o->values.size() / (width * group * reads);
@@ -155,7 +155,7 @@ void DevicePeaks::add_reads(const char* what, unsigned width, bool cached) {
 }
 
 void DevicePeaks::add_copies(unsigned width) {
-  const double bytes = 2 * number(opened_->values.size()) * sizeof(float);
+  const double bytes = 2 * as_double(opened_->values.size()) * sizeof(float);
   add({"copy memory", "GB/s", width}, bytes, [o = opened_, width] {
     auto kernel = o->build("float", width, 1).kernel<Buffer<float>, Buffer<float>, i32>("copy_values");
     const LaunchSize size{o->values.size() / width, 1, group, 1};
@@ -173,7 +173,7 @@ void DevicePeaks::add_copies(unsigned width) {
 }
 
 void DevicePeaks::add_operations(const std::string& type, unsigned width, unsigned chains) {
-  const double operations = number(steps * 4 * width * chains * opened_->items());
+  const double operations = as_double(steps * 4 * width * chains * opened_->items());
   add({type, "Gop/s", width, chains}, operations, [o = opened_, type, width, chains] {
     auto kernel = o->build(type, width, chains).kernel<Buffer<i32>, i32, u32, i32>("multiply_and_add");
     const LaunchSize size{o->items(), 1, group, 1};
@@ -203,7 +203,7 @@ void DevicePeaks::add_launches() {
                    end = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
         if (end > begin + 100) queued += 1e-3 * static_cast<double>(end - begin);
       }
-      peak->queued.push_back(queued / number(times));
+      peak->queued.push_back(queued / as_double(times));
       return seconds;
     };
     return Work{run, [=](std::size_t) { return o->read_sums(1)[0] == o->run; }};

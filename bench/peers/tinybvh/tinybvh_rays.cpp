@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "bench_scenes.h"
 #include "peer_rays.h"
 #include "tinybvh_peer.h"
 

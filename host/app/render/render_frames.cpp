@@ -110,21 +110,187 @@ class FrameRun {
   FrameRun(const RenderCommand& command, Setup& setup)
       : command_(command), setup_(setup), frames_(open_frames(command)), log_(frame_list(command)) {}
 
-  int render();
+  int render() {
+    print_warnings(log_.warnings());
+    setup_.run.total = command_.frames.size();
+    try {
+      render_all();
+    } catch (...) {
+      settle();  // what is drawn is not lost
+      throw;
+    }
+    if (status_ == exit_done) tell_end();
+    return status_;
+  }
 
  private:
-  void render_all();
-  Outcome take(int number, std::optional<int> next);
-  FramePointer loaded(int number);
-  FramePointer load_frame(int number);
-  void settle();
-  LoadedScene load(const RenderCommand& one, int frame, TimeLedger& times);
-  LoadedScene load_at(const RenderCommand& one, int frame, int time, std::int64_t* seed, TimeLedger& times);
-  NextShot next_of(const LoadedScene& scene, int frame);
-  bool is_kept(const RenderCommand& one) const;
-  bool fits_twice(const Frame& frame) const;
-  void tell_waiting(const std::vector<int>& frames) const;
-  void tell_end() const;
+  void render_all() {
+    bool waits = false;
+    for (std::vector<int> to_do = command_.frames; !to_do.empty();) {
+      std::vector<int> elsewhere;
+      for (std::size_t i = 0; i < to_do.size(); ++i) {
+        const Outcome outcome =
+            take(to_do[i], i + 1 < to_do.size() ? std::optional(to_do[i + 1]) : std::nullopt);
+        if (status_ != exit_done) return;
+        if (outcome == Outcome::elsewhere) elsewhere.push_back(to_do[i]);
+        if (outcome != Outcome::kept) continue;
+        ++kept_, ++setup_.run.over;
+        settled_ = clock_.seconds();
+      }
+      settle();
+      if (status_ != exit_done) return;
+      if (elsewhere.size() == to_do.size()) {
+        if (setup_.stop.flag().load()) status_ = exit_interrupted;
+        if (status_ != exit_done) return;
+        if (!std::exchange(waits, true)) tell_waiting(elsewhere);
+        std::this_thread::sleep_for(look_again);
+      }
+      to_do = std::move(elsewhere);
+    }
+  }
+
+  Outcome take(int number, std::optional<int> next) {
+    FrameLock lock = log_.lock(number);
+    if (!lock) return Outcome::elsewhere;
+    const RenderCommand one = frame_command(command_, number);
+    if (!saving_.valid()) stop_loses_nothing(one, setup_);
+    if (is_kept(one)) return Outcome::kept;
+    FramePointer frame = loaded(number);
+    frame->lock = std::move(lock);
+    if (next && fits_twice(*frame) && !is_kept(frame_command(command_, *next))) {
+      ahead_number_ = *next;
+      ahead_ = std::async(std::launch::async, [this, next] { return load_frame(*next); });
+    }
+    if (log_.done(frame->picture)) return Outcome::kept;
+    log_.begin(number, frame->picture);
+    frame->times.waited += frame->from_step.seconds();
+    const Stopwatch drawing;
+    frame->drawn = draw_frame(frame->one, frame->scene, setup_, frame->times);
+    const bool overlaps = next && fits_twice(*frame) && frame->drawn.result.complete &&
+                          drawing.seconds() < long_frame * saving_time_;
+    frame->run = setup_.run;
+    ++setup_.run.over;
+    frame->scene = {};
+    frame->from_step = {};
+    settle();
+    frame->times.waited += frame->from_step.seconds();
+    saving_ = std::async(overlaps ? std::launch::async : std::launch::deferred,
+                         [drawn = std::move(frame)]() mutable {
+                           save_frame(drawn->drawn, drawn->clock, drawn->times);
+                           return std::move(drawn);
+                         });
+    if (!overlaps) settle();
+    return Outcome::rendered;
+  }
+
+  FramePointer loaded(int number) {
+    if (ahead_.valid() && ahead_number_ == number) return ahead_.get();
+    ahead_ = {};  // of a frame that another process has
+    return load_frame(number);
+  }
+
+  FramePointer load_frame(int number) {
+    auto frame = std::make_unique<Frame>(frame_command(command_, number));
+    const RenderCommand& one = frame->one;
+    frame->scene = load(one, number, frame->times);
+    if (std::ranges::count(one.aovs, motion_aov) > 0) frame->scene.next = next_of(frame->scene, number);
+    const auto [width, height] = picture_size(one, *frame->scene.flat);
+    frame->picture = {one.out, log_.keeps() ? frame_key(one, frame->scene) : "", width, height};
+    frame->from_step = {};
+    return frame;
+  }
+
+  /// Waits for the frame that is being saved, and reports it.
+  void settle() {
+    if (!saving_.valid()) return;
+    const FramePointer frame = saving_.get();
+    saving_time_ = frame->times.write;
+    status_ = end_frame(frame->drawn, frame->times);
+    if (status_ != exit_done) return;
+    const int number = static_cast<int>(*frame->one.frame);
+    if (frame->drawn.result.complete)
+      log_.add(number, frame->picture);
+    else
+      unfinished_.push_back(number);
+    ++setup_.run.rendered;
+    setup_.run.seconds += clock_.seconds() - std::exchange(settled_, clock_.seconds());
+    if (!command_.quiet && frame->run.over + 1 < setup_.run.total)
+      fmt::print("  frame {} of {}, about {} left\n", frame->run.over + 1, setup_.run.total,
+                 duration_text(setup_.run.seconds_left(0, 0)));
+  }
+
+  LoadedScene load(const RenderCommand& one, int frame, TimeLedger& times) {
+    if (shutter_.open == 0) {
+      const std::scoped_lock one_at_a_time(loading_);
+      return load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
+    }
+    std::int64_t seed = 0;
+    LoadedScene scene = load_at(one, frame, 0, &seed, times);
+    scene.times = shutter_.steps;
+    scene.at_time = [this, one, frame, seed, &times](int time) mutable {
+      return load_at(one, frame, time, &seed, times);
+    };
+    return scene;
+  }
+
+  /// The scene at one of the times while the shutter is open, with its share of the samples and a seed of its
+  /// own. `seed`: the frame's, set at the first time.
+  LoadedScene load_at(const RenderCommand& one, int frame, int time, std::int64_t* seed, TimeLedger& times) {
+    Moment moment;
+    const auto read = [&] {
+      const auto& [open, steps] = shutter_;
+      moment.frame = frame + open * (time + 0.5) / steps;
+      const auto scene = frames_->read(moment.frame);
+      if (time == 0) *seed = scene->render.seed;
+      moment.seed = static_cast<int>((*seed * steps + time) & 0x7fffffff);
+      moment.samples = (scene->render.samples + steps - 1) / steps;
+      return at_moment(*scene, moment);
+    };
+    const std::scoped_lock one_at_a_time(loading_);
+    LoadedScene scene = load_and_compile(one, read, setup_, times);
+    scene.moment = moment;
+    return scene;
+  }
+
+  /// The scene a frame later. Where it cannot be read, such as behind the last file of a sequence, nothing
+  /// moves.
+  NextShot next_of(const LoadedScene& scene, int frame) {
+    const std::scoped_lock one_at_a_time(loading_);
+    try {
+      const auto next = frames_->read((scene.moment ? scene.moment->frame : frame) + 1);
+      return next_shot(*scene.description, next.get());
+    } catch (const SceneError&) {
+      return next_shot(*scene.description, scene.description.get());
+    }
+  }
+
+  bool is_kept(const RenderCommand& one) const {
+    return command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume);
+  }
+
+  /// Whether two such frames, with their scenes, are little memory. A job compiles for all its processes.
+  bool fits_twice(const Frame& frame) const {
+    const auto pixels =
+        static_cast<std::uint64_t>(frame.picture.width) * static_cast<unsigned>(frame.picture.height);
+    const FrameOutput output = frame_output(frame.one, frame.scene.description->image, true);
+    return !setup_.job && !command_.denoise &&
+           pixels * bytes_a_pixel(output) + table_bytes(*frame.scene.flat) < most_ahead;
+  }
+
+  void tell_waiting(const std::vector<int>& frames) const {
+    if (command_.quiet) return;
+    fmt::print("waiting for another process with the same --resume, which renders {}\n", frames_text(frames));
+    std::fflush(stdout);
+  }
+
+  void tell_end() const {
+    if (command_.quiet || setup_.run.total < 2) return;
+    fmt::print("{} frames in {}: {} rendered, {} were done\n", setup_.run.total,
+               duration_text(clock_.seconds()), setup_.run.rendered, kept_);
+    if (!unfinished_.empty())
+      fmt::print("  unfinished, ended by the time limit: {}{}\n", frames_text(unfinished_),
+                 command_.resume.empty() ? "" : "; the same command continues them");
+  }
 
   const RenderCommand& command_;
   Setup& setup_;
@@ -141,188 +307,6 @@ class FrameRun {
   std::future<FramePointer> ahead_, saving_;  // threads end before what they use
   int ahead_number_ = 0;
 };
-
-int FrameRun::render() {
-  print_warnings(log_.warnings());
-  setup_.run.total = command_.frames.size();
-  try {
-    render_all();
-  } catch (...) {
-    settle();  // what is drawn is not lost
-    throw;
-  }
-  if (status_ == exit_done) tell_end();
-  return status_;
-}
-
-void FrameRun::render_all() {
-  bool waits = false;
-  for (std::vector<int> to_do = command_.frames; !to_do.empty();) {
-    std::vector<int> elsewhere;
-    for (std::size_t i = 0; i < to_do.size(); ++i) {
-      const Outcome outcome =
-          take(to_do[i], i + 1 < to_do.size() ? std::optional(to_do[i + 1]) : std::nullopt);
-      if (status_ != exit_done) return;
-      if (outcome == Outcome::elsewhere) elsewhere.push_back(to_do[i]);
-      if (outcome != Outcome::kept) continue;
-      ++kept_, ++setup_.run.over;
-      settled_ = clock_.seconds();
-    }
-    settle();
-    if (status_ != exit_done) return;
-    if (elsewhere.size() == to_do.size()) {
-      if (setup_.stop.flag().load()) status_ = exit_interrupted;
-      if (status_ != exit_done) return;
-      if (!std::exchange(waits, true)) tell_waiting(elsewhere);
-      std::this_thread::sleep_for(look_again);
-    }
-    to_do = std::move(elsewhere);
-  }
-}
-
-Outcome FrameRun::take(int number, std::optional<int> next) {
-  FrameLock lock = log_.lock(number);
-  if (!lock) return Outcome::elsewhere;
-  const RenderCommand one = frame_command(command_, number);
-  if (!saving_.valid()) stop_loses_nothing(one, setup_);
-  if (is_kept(one)) return Outcome::kept;
-  FramePointer frame = loaded(number);
-  frame->lock = std::move(lock);
-  if (next && fits_twice(*frame) && !is_kept(frame_command(command_, *next))) {
-    ahead_number_ = *next;
-    ahead_ = std::async(std::launch::async, [this, next] { return load_frame(*next); });
-  }
-  if (log_.done(frame->picture)) return Outcome::kept;
-  log_.begin(number, frame->picture);
-  frame->times.waited += frame->from_step.seconds();
-  const Stopwatch drawing;
-  frame->drawn = draw_frame(frame->one, frame->scene, setup_, frame->times);
-  const bool overlaps = next && fits_twice(*frame) && frame->drawn.result.complete &&
-                        drawing.seconds() < long_frame * saving_time_;
-  frame->run = setup_.run;
-  ++setup_.run.over;
-  frame->scene = {};
-  frame->from_step = {};
-  settle();
-  frame->times.waited += frame->from_step.seconds();
-  saving_ =
-      std::async(overlaps ? std::launch::async : std::launch::deferred, [drawn = std::move(frame)]() mutable {
-        save_frame(drawn->drawn, drawn->clock, drawn->times);
-        return std::move(drawn);
-      });
-  if (!overlaps) settle();
-  return Outcome::rendered;
-}
-
-FramePointer FrameRun::loaded(int number) {
-  if (ahead_.valid() && ahead_number_ == number) return ahead_.get();
-  ahead_ = {};  // of a frame that another process has
-  return load_frame(number);
-}
-
-FramePointer FrameRun::load_frame(int number) {
-  auto frame = std::make_unique<Frame>(frame_command(command_, number));
-  const RenderCommand& one = frame->one;
-  frame->scene = load(one, number, frame->times);
-  if (std::ranges::count(one.aovs, motion_aov) > 0) frame->scene.next = next_of(frame->scene, number);
-  const auto [width, height] = picture_size(one, *frame->scene.flat);
-  frame->picture = {one.out, log_.keeps() ? frame_key(one, frame->scene) : "", width, height};
-  frame->from_step = {};
-  return frame;
-}
-
-/// Waits for the frame that is being saved, and reports it.
-void FrameRun::settle() {
-  if (!saving_.valid()) return;
-  const FramePointer frame = saving_.get();
-  saving_time_ = frame->times.write;
-  status_ = end_frame(frame->drawn, frame->times);
-  if (status_ != exit_done) return;
-  const int number = static_cast<int>(*frame->one.frame);
-  if (frame->drawn.result.complete)
-    log_.add(number, frame->picture);
-  else
-    unfinished_.push_back(number);
-  ++setup_.run.rendered;
-  setup_.run.seconds += clock_.seconds() - std::exchange(settled_, clock_.seconds());
-  if (!command_.quiet && frame->run.over + 1 < setup_.run.total)
-    fmt::print("  frame {} of {}, about {} left\n", frame->run.over + 1, setup_.run.total,
-               duration_text(setup_.run.seconds_left(0, 0)));
-}
-
-/// The scene at one of the times while the shutter is open, with its share of the samples and a seed of its
-/// own. `seed`: the frame's, set at the first time.
-LoadedScene FrameRun::load_at(const RenderCommand& one, int frame, int time, std::int64_t* seed,
-                              TimeLedger& times) {
-  Moment moment;
-  const auto read = [&] {
-    const auto& [open, steps] = shutter_;
-    moment.frame = frame + open * (time + 0.5) / steps;
-    const auto scene = frames_->read(moment.frame);
-    if (time == 0) *seed = scene->render.seed;
-    moment.seed = static_cast<int>((*seed * steps + time) & 0x7fffffff);
-    moment.samples = (scene->render.samples + steps - 1) / steps;
-    return at_moment(*scene, moment);
-  };
-  const std::scoped_lock one_at_a_time(loading_);
-  LoadedScene scene = load_and_compile(one, read, setup_, times);
-  scene.moment = moment;
-  return scene;
-}
-
-LoadedScene FrameRun::load(const RenderCommand& one, int frame, TimeLedger& times) {
-  if (shutter_.open == 0) {
-    const std::scoped_lock one_at_a_time(loading_);
-    return load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
-  }
-  std::int64_t seed = 0;
-  LoadedScene scene = load_at(one, frame, 0, &seed, times);
-  scene.times = shutter_.steps;
-  scene.at_time = [this, one, frame, seed, &times](int time) mutable {
-    return load_at(one, frame, time, &seed, times);
-  };
-  return scene;
-}
-
-/// The scene a frame later. Where it cannot be read, such as behind the last file of a sequence, nothing
-/// moves.
-NextShot FrameRun::next_of(const LoadedScene& scene, int frame) {
-  const std::scoped_lock one_at_a_time(loading_);
-  try {
-    const auto next = frames_->read((scene.moment ? scene.moment->frame : frame) + 1);
-    return next_shot(*scene.description, next.get());
-  } catch (const SceneError&) {
-    return next_shot(*scene.description, scene.description.get());
-  }
-}
-
-bool FrameRun::is_kept(const RenderCommand& one) const {
-  return command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume);
-}
-
-/// Whether two such frames, with their scenes, are little memory. A job compiles for all its processes.
-bool FrameRun::fits_twice(const Frame& frame) const {
-  const auto pixels =
-      static_cast<std::uint64_t>(frame.picture.width) * static_cast<unsigned>(frame.picture.height);
-  const FrameOutput output = frame_output(frame.one, frame.scene.description->image, true);
-  return !setup_.job && !command_.denoise &&
-         pixels * bytes_a_pixel(output) + table_bytes(*frame.scene.flat) < most_ahead;
-}
-
-void FrameRun::tell_waiting(const std::vector<int>& frames) const {
-  if (command_.quiet) return;
-  fmt::print("waiting for another process with the same --resume, which renders {}\n", frames_text(frames));
-  std::fflush(stdout);
-}
-
-void FrameRun::tell_end() const {
-  if (command_.quiet || setup_.run.total < 2) return;
-  fmt::print("{} frames in {}: {} rendered, {} were done\n", setup_.run.total,
-             duration_text(clock_.seconds()), setup_.run.rendered, kept_);
-  if (!unfinished_.empty())
-    fmt::print("  unfinished, ended by the time limit: {}{}\n", frames_text(unfinished_),
-               command_.resume.empty() ? "" : "; the same command continues them");
-}
 
 }  // namespace
 

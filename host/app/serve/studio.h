@@ -34,7 +34,6 @@ class Studio {
   WebHandlers handlers();
 
  private:
-  friend class StudioCalls;
   void begin_drawing();
   void take_message(ClientId client, const std::string& text);
   void dispatch(ClientId client, const nlohmann::json& message);

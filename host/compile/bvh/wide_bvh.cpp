@@ -1,13 +1,146 @@
-// Converts the collapsed tree to Bvh8Nodes and leaf blocks; see wide_bvh.h.
+// See wide_bvh.h. A binary tree with each node's minimum cost of becoming 1 to 7 wide children is built, then
+// converted to Bvh8Nodes and leaf blocks.
 #include "compile/bvh/wide_bvh.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
 
-#include "compile/bvh/binary_bvh.h"
+#include "compile/bvh/split.h"
 
 namespace sundog {
 namespace {
+
+constexpr std::size_t task_size = 1u << 12;  // smaller subtrees are one task
+constexpr int depth_limit = 64;              // deeper sets are halved, which bounds the recursion
+
+struct BinaryNode {
+  Bounds box;
+  const Ref* refs = nullptr;   // of a leaf: its members, sorted by index
+  u32 count = 0;               // members of the subtree; the parts of a split triangle count separately
+  BinaryNode* left = nullptr;  // both or neither
+  BinaryNode* right = nullptr;
+  /// cost[i]: minimum expected cost of this subtree as at most i children of a wide node (i = 1..7).
+  std::array<float, 8> cost{};
+  /// share[i]: how many of i children `left` becomes; 0: i - 1 children are as good. share[8]: as a wide
+  /// node.
+  std::array<std::uint8_t, 9> share{};
+  bool leaf = false;  // as a single child: a leaf of blocks, else a wide node
+};
+
+/// Allocates nodes from chunks; one pool per thread.
+class NodePool {
+ public:
+  BinaryNode* make() {
+    if (used_ == chunk) {
+      chunks_.push_back(std::make_unique<std::array<BinaryNode, chunk>>());
+      used_ = 0;
+    }
+    return &(*chunks_.back())[used_++];
+  }
+
+ private:
+  static constexpr std::size_t chunk = 256;
+  std::vector<std::unique_ptr<std::array<BinaryNode, chunk>>> chunks_;
+  std::size_t used_ = chunk;
+};
+
+/// The recursive build, one task per subtree, and the dynamic program of the collapse on the way back up.
+/// Owns the nodes; their addresses are stable.
+class BinaryTree {
+ public:
+  /// Reorders `refs`, which must outlive this; `spare` free places follow them. `balanced`: split by count,
+  /// not by area.
+  BinaryTree(std::span<Ref> refs, std::size_t spare, const WideBvhSettings& settings, bool balanced)
+      : settings_(settings), balanced_(balanced) {
+    const RefSet all = make_ref_set(refs, spare);
+    const auto scratch = std::make_unique_for_overwrite<Ref[]>(refs.size() + spare);
+    split_.block_width = settings.block_width;
+    const Lanes extent = all.box.upper - all.box.lower;
+    const float longest = std::max({extent[0], extent[1], extent[2]});
+    if (longest > 0) split_.area_scale = std::min(1 / longest, std::numeric_limits<float>::max());
+    split_.root_area = half_area(all.box, split_.area_scale);
+    split_.all = {refs.data(), refs.size() + spare};
+    split_.scratch = scratch.get();
+    split_.mesh = settings.cut;
+    root_ = build(all, 0, pools_.local());
+  }
+  const BinaryNode& root() const { return *root_; }
+
+ private:
+  BinaryNode* build(const RefSet& set, int depth, NodePool& pool) {
+    BinaryNode* node = pool.make();
+    node->box = set.box;
+    node->count = static_cast<u32>(set.refs.size());
+    if (set.refs.size() <= settings_.block_width) {
+      make_leaf(*node, set.refs);
+      return node;
+    }
+    const RefSplit parts =
+        balanced_ || depth >= depth_limit ? split_by_median(set) : split_by_area(set, split_);
+    if (set.refs.size() < task_size) {
+      node->left = build(parts.left, depth + 1, pool);
+      node->right = build(parts.right, depth + 1, pool);
+    } else {
+      tbb::parallel_invoke([&] { node->left = build(parts.left, depth + 1, pools_.local()); },
+                           [&] { node->right = build(parts.right, depth + 1, pools_.local()); });
+    }
+    node->count = node->left->count + node->right->count;
+    collapse(*node);
+    return node;
+  }
+
+  void make_leaf(BinaryNode& node, std::span<Ref> refs) const {
+    std::sort(refs.begin(), refs.end(), [](const Ref& a, const Ref& b) { return a.prim() < b.prim(); });
+    node.refs = refs.data();
+    node.leaf = true;
+    node.cost.fill(half_area(node.box, split_.area_scale) * settings_.block_cost * blocks(node.count));
+  }
+
+  void collapse(BinaryNode& node) const {
+    const BinaryNode &left = *node.left, &right = *node.right;
+    std::array<float, 9> shared;
+    for (std::size_t i = 2; i <= 8; ++i) {
+      shared[i] = std::numeric_limits<float>::infinity();
+      for (std::size_t k = 1; k < i; ++k)
+        if (const float cost = left.cost[k] + right.cost[i - k]; cost < shared[i]) {
+          shared[i] = cost;
+          node.share[i] = static_cast<std::uint8_t>(k);
+        }
+    }
+    const float area = half_area(node.box, split_.area_scale);
+    node.cost[1] = shared[8] + area * settings_.node_cost;
+    if (node.count <= settings_.block_width * settings_.max_leaf_blocks) {
+      const float as_leaf = area * settings_.block_cost * blocks(node.count);
+      if (as_leaf <= node.cost[1]) {
+        node.cost[1] = as_leaf;
+        node.leaf = true;
+      }
+    }
+    for (std::size_t i = 2; i < 8; ++i) {
+      node.cost[i] = shared[i];
+      if (node.cost[i - 1] <= shared[i]) {
+        node.cost[i] = node.cost[i - 1];
+        node.share[i] = 0;
+      }
+    }
+  }
+
+  float blocks(u32 count) const {
+    const u32 filled = (count + settings_.block_width - 1) / settings_.block_width;
+    return static_cast<float>(filled);
+  }
+
+  const WideBvhSettings& settings_;
+  const bool balanced_;
+  SplitSettings split_;
+  tbb::enumerable_thread_specific<NodePool> pools_;
+  BinaryNode* root_ = nullptr;
+};
 
 void set_bounds(Bvh8Node& node, u32 slot, const Bounds& box) {
   node.lower_x[slot] = box.lower[0];

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "bench/quality/perceived_difference.h"
-#include "bench/quality/quality.h"
+#include "bench/report/samples.h"
 #include "catch.h"
 
 using namespace sundog;
@@ -55,16 +55,10 @@ TEST_CASE("fine noise is seen less than the same difference in one piece, and co
   CHECK(perceived_difference(grey, stripes(2)) < perceived_difference(grey, stripes(1)));
 }
 
-TEST_CASE("the time to an error lies between those measured, as a power of the error") {
-  const auto at = [](double seconds, double rms) {
-    QualityTime time;
-    time.seconds = {seconds, seconds, seconds};
-    time.rms = rms;
-    return time;
-  };
-  const std::vector<QualityTime> times{at(1, 0.4), at(4, 0.2), at(16, 0.1)};
-  CHECK(std::abs(seconds_to(times, 0.2) - 4) < 1e-9);
-  CHECK(std::abs(seconds_to(times, 0.4 / 3) - 9) < 1e-9);
-  CHECK(seconds_to(times, 0.5) == 0);
-  CHECK(seconds_to(times, 0.05) == 0);
+TEST_CASE("the cost of an error lies between those measured, as a power of the error") {
+  const std::vector<ErrorCost> measured{{0.4, 1}, {0.2, 4}, {0.1, 16}};
+  CHECK(std::abs(cost_of_error(measured, 0.2) - 4) < 1e-9);
+  CHECK(std::abs(cost_of_error(measured, 0.4 / 3) - 9) < 1e-9);
+  CHECK(cost_of_error(measured, 0.5) == 0);
+  CHECK(cost_of_error(measured, 0.05) == 0);
 }
