@@ -55,7 +55,7 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
 // The vectors behind the first five, of the pixels about (x, y) whose first surfaces are `s`, where `hit`.
 NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes, MASK hit,
                              const SurfaceInteractions* s, u32* counts, __global float4* aovs) {
-  const Rays camera = camera_rays(scene->info, x, y);
+  const CameraRays camera = camera_rays(scene->info, x, y, (REAL)(0.0f), lanes);
   const SceneRays middle = scene_rays(&camera, stack);
   const REAL steps = steps_alone(scene, &middle, lanes);
   EACH_LANE(i, lanes) {
@@ -98,7 +98,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   u32 counts[COUNTERS];
   for (u32 k = 0; k < COUNTERS; ++k) counts[k] = 0;
   start_marching(counts);
-  const MediaStack stack = (MediaStack)camera_media[1] << 32 | camera_media[0];
+  const MediaStack stack = read_media(camera_media);
   MASK lanes = lanes_of((1u << min((u32)BATCH, pixel_count - first)) - 1u);
   REAL x = (REAL)(0.0f), y = (REAL)(0.0f);
   for (u32 i = 0; i < BATCH; ++i) {
@@ -112,7 +112,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
     REAL_LANE(y, i) = (float)pixel.y + 0.5f;
   }
   if (!any_lane(lanes)) return;
-  const Rays camera = camera_rays(scene->info, x, y);
+  const CameraRays camera = camera_rays(scene->info, x, y, (REAL)(0.0f), lanes);
   SceneRays rays = scene_rays(&camera, stack);
   Encounters met;
   SurfaceInteractions s;

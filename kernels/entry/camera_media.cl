@@ -5,7 +5,5 @@
 __kernel void find_camera_media(SCENE_PARAMETERS, __global u32* restrict camera_media) {
   const Scene scene = SCENE_OF_PARAMETERS;
   if (get_global_id(0) > 0) return;
-  const MediaStack around = media_around(&scene, scene.info->camera_position.xyz);
-  camera_media[0] = (u32)around;
-  camera_media[1] = (u32)(around >> 32);
+  write_media(media_around(&scene, scene.info->camera_position.xyz), camera_media);
 }

@@ -10,8 +10,7 @@ __kernel void find_light_media(SCENE_PARAMETERS, __global u32* restrict light_me
   const u32 index = get_global_id(0);
   if (index >= scene.info->table_lights) return;
   __global const Light* light = scene.lights + index;
-  MediaStack around = 0;
+  MediaStack around = {0, 0};
   if (has_place(light)) around = media_around(&scene, middle_of_light(light).xyz);
-  light_media[2u * index] = (u32)around;
-  light_media[2u * index + 1u] = (u32)(around >> 32);
+  write_media(around, light_media + 2u * index);
 }

@@ -69,7 +69,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   take_pixel(launch, pixels, lane, scene->info->seed, work, ray_counts);
   const BegunSamples begun = {paths->at, idle & MASK_OF(work->place != NO_PLACE)};
   if (!any_lane(begun.lanes)) return NO_LANES;
-  const MediaStack around = (MediaStack)camera_media[1] << 32 | camera_media[0];
+  const MediaStack around = read_media(camera_media);
   const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
   work->rays = select_SceneRay(work->rays, first, begun.lanes);
   *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);

@@ -91,6 +91,6 @@ __kernel FOR_WAVES void render_whitted(SCENE_PARAMETERS, __global const u32* res
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);
   if (get_global_id(0) >= launch.row_items || item >= launch.last_item) return;
-  render_item(&scene, (MediaStack)camera_media[1] << 32 | camera_media[0], &launch, item, pixels, film,
-              weights, counters_of(counters, item), ray_counts);
+  render_item(&scene, read_media(camera_media), &launch, item, pixels, film, weights,
+              counters_of(counters, item), ray_counts);
 }

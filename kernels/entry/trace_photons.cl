@@ -29,17 +29,10 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
   KEEP_IN_MEMORY(Photons, photons);
   *photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
-  Rays begun = camera_rays(scene->info, (REAL)(0.0f), (REAL)(0.0f));
-  begun.o = starts.o;
-  begun.d = starts.d;
-  begun.t_min = (REAL)(0.0f);
-  begun.t_max = (REAL)(INFINITY);
-  set_ray_times(starts.time, &begun);
-  SceneRays rays = scene_rays(&begun, 0);
-  EACH_LANE(i, starts.lanes) {
-    const u32 light = (u32)MASK_LANE(starts.light, i);
-    set_media(&rays, i, (MediaStack)light_media[2u * light + 1u] << 32 | light_media[2u * light]);
-  }
+  const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, starts.lanes);
+  const MediaStack outside = {0, 0};
+  SceneRays rays = scene_rays(&begun, outside);
+  EACH_LANE(i, starts.lanes) set_media(&rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
   for (lanes = starts.lanes; any_lane(lanes);) {
     Landings landings CLEARED_ON_GPUS;
     start_marching(counts);

@@ -11,7 +11,7 @@ struct DeviceScene {
 #define SUNDOG_TABLE_BUFFER(type, host_type, name, label) Buffer<type> name;
   SCENE_TABLES(SUNDOG_TABLE_BUFFER)
 #undef SUNDOG_TABLE_BUFFER
-  Buffer<u32> camera_media;  // MediaStack at the camera (kernels/lib/path/media.cl), low word first
+  Buffer<u32> camera_media;  // MediaStack at the camera (kernels/plain/path/media.cl), low word first
 
   SceneTables held;       // the rows on the device
   SceneInfo held_info{};  // the SceneInfo on the device

@@ -1,8 +1,7 @@
 // The picture of the environment, and the choice of its cells. A direction a lane.
 #pragma once
 #include "lib/core/directions.cl"
-#include "lib/core/tables.h"
-#include "lib/path/camera.cl"
+#include "lib/path/scene_ray.cl"
 
 // The picture at shares of its width and height, blended between the middles of its pixels and round its
 // seam.

@@ -1,9 +1,11 @@
 // Starts samples of pixels, one pixel per lane: positions in the image, and camera rays.
 #pragma once
+#include "lib/core/directions.cl"
 #include "lib/core/filter.cl"
-#include "lib/path/lens.cl"
+#include "lib/core/sampler_lanes.cl"
 #include "lib/path/scene_ray.cl"
 #include "lib/path/tile.cl"
+#include "plain/path/lens.cl"
 
 typedef struct BegunSamples {
   LaneSamples at;
@@ -18,10 +20,7 @@ static inline SceneRays begun_rays(const Scene* scene, const BegunSamples* begun
   EACH_LANE(lane, begun->lanes) {
     signs[lane] = filter_place(scene->filter, samples, &REAL_LANE(u_x, lane), &REAL_LANE(u_y, lane));
   }
-  CameraSamples places;
-  places.x = TO_REAL(begun->at.x) + u_x;
-  places.y = TO_REAL(begun->at.y) + u_y;
-  set_camera_samples(&begun->at, &places);
-  const Rays camera = sampled_camera_rays(scene->info, &places);
+  const CameraRays camera = sampled_camera_rays(scene->info, &begun->at, TO_REAL(begun->at.x) + u_x,
+                                                TO_REAL(begun->at.y) + u_y, begun->lanes);
   return scene_rays(&camera, around);
 }

@@ -5,10 +5,7 @@
 // The line leaves `medium`: one that it entered, or one that contains the camera. Of the latter, media left
 // later were entered earlier, so they go to the far end.
 static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
-  if (cross_boundary(entered, medium, false)) return;
-  u32 shift = 0;
-  while (shift < 64u && *holding >> shift) shift += 8u;
-  if (shift < 64u) *holding |= (MediaStack)(medium + 1u) << shift;
+  if (!cross_one(entered, (int)medium, false, ALL_LANES)) put_below(holding, (int)medium, ALL_LANES);
 }
 
 #if HAS_TOUCHING
@@ -36,25 +33,20 @@ static inline float cross_faces(const Scene* scene, const SceneRays* rays, const
 NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
   const float3 d =
       (float3)(0.3141f, 0.8660f, 0.3890f);  // not along an axis that a scene is likely to be aligned with
-  Rays line;
-  line.o = all3(p);
-  line.d = renormalized3(all3(d));
-  line.t_min = (REAL)(0.0f);
-  line.t_max = (REAL)(INFINITY);
-  start_cones(scene->info, &line);
-  set_ray_times((REAL)(0.0f), &line);
-  SceneRays rays = scene_rays(&line, 0);  // one ray, in lane 0
   const MASK lane = lanes_of(1u);
-  u32 counts[COUNTERS];  // required by marching, unused here
+  const CameraRays line = endless_ray(scene->info, all3(p), renormalized3(all3(d)), (REAL)(0.0f), lane);
+  const MediaStack none = {0, 0};
+  SceneRays rays = scene_rays(&line, none);  // one ray, in lane 0
+  u32 counts[COUNTERS];                      // required by marching, unused here
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
   start_marching(counts);
-  MediaStack entered = 0, holding = 0;
+  MediaStack entered = none, holding = none;
   for (u32 i = 0; i < 4096u; ++i) {
     Hits hits;
     nearest_hits(scene, &rays, lane, false, &hits, counts);
     if (MASK_LANE(hits.instance, 0) == (int)NO_INSTANCE) break;
     const Faces faces = hit_faces(scene, rays.d, &hits, lane);
-    const MASK touching = may_touch(scene->instances, &hits, lane);
+    const MASK touching = may_touch_others(scene->instances, &hits, lane);
     HAVING(HAS_TOUCHING, if (any_lane(touching)) REAL_LANE(hits.t, 0) =
                              cross_faces(scene, &rays, &hits, &entered, &holding);)
     continue_behind(scene->info, &rays, &hits, faces.entering, lane);
@@ -62,7 +54,7 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
     __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (MASK_LANE(faces.entering, 0))
-      cross_boundary(&entered, material->medium, true);
+      cross_one(&entered, (int)material->medium, true, ALL_LANES);
     else
       leave_medium(material->medium, &entered, &holding);
   }

@@ -19,7 +19,7 @@
   REALS(rays->t_min) REALS(rays->t_max)                                                                     \
   REALS(paths->throughput.x) REALS(paths->throughput.y) REALS(paths->throughput.z) MASKS(paths->depth)      \
   STACKED_PIXEL(REALS, MASKS) HAVING(HAS_CROSSINGS, MASKS(rays->crossings))                                 \
-  HAVING(HAS_MEDIA, MASKS(rays->media_low) MASKS(rays->media_high) REALS(rays->since))                      \
+  HAVING(HAS_MEDIA, MASKS(rays->media.low) MASKS(rays->media.high) REALS(rays->since))                      \
   HAVING(HAS_SDF, MASKS(rays->from) REALS(rays->footprint))                                                 \
   HAVING(HAS_RANDOM, MASKS(paths->branch))                                                                   \
   HAVING(HAS_CONES, REALS(rays->cone_width) REALS(rays->cone_spread))                                       \
@@ -59,8 +59,7 @@ NEVER_INLINE void write_rays(float* to, u32 stride, const SceneRays* rays, const
 // Reads a ray for every lane.
 NEVER_INLINE void read_rays(const float* from, u32 stride, SceneRays* rays, WaitingRays* paths) {
   paths->pixel = NO_LANES;
-  rays->media_low = NO_LANES;
-  rays->media_high = NO_LANES;
+  rays->media.low = rays->media.high = NO_LANES;
   forget_glow(rays, ALL_LANES);
 #define READ_REALS(member)   \
   member = read_lanes(from); \

@@ -3,10 +3,10 @@
 // next ray would start beyond faces that it has not hit yet, or be reflected by a nonexistent gap. The host
 // marks the instances that may touch others.
 #pragma once
-#include "lib/core/config.h"
-#include "lib/path/faces.cl"
-#include "lib/path/media.cl"
+#include "lib/core/motion.cl"
+#include "lib/core/transform.cl"
 #include "lib/path/scene_ray.cl"
+#include "plain/path/face.cl"
 #if HAS_TOUCHING
 #include "lib/trace/stretch.cl"
 
@@ -175,7 +175,7 @@ static inline u32 enter_all(const Scene* scene, const Stretch* met, u32 entered,
   for (u32 left = entered; left;) {
     const u32 outer = pick_face(scene, met, left, true);
     left &= ~(1u << outer);
-    if (!cross_boundary(stack, medium_inside(scene, &met->hits[outer]), true)) ++lost;
+    if (!cross_one(stack, (int)medium_inside(scene, &met->hits[outer]), true, ALL_LANES)) ++lost;
   }
   return lost;
 }
@@ -221,7 +221,7 @@ static inline bool is_seen_before(const Scene* scene, const Hit* a, const Hit* b
 static inline void join_faces(const Scene* scene, const Touching* touching, u32 mask, MediaStack before,
                               Seen* seen) {
   const Stretch* met = &touching->met;
-  const u32 current = current_medium(scene->media, before);
+  const u32 current = (u32)current_of_one(scene->media, &before);
   seen->behind = before;
   seen->after = current;
   seen->overflows = 0;
@@ -239,10 +239,10 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_boundary(&seen->behind, medium_inside(scene, &met->hits[lowest_bit(left)]), false))
+    if (!cross_one(&seen->behind, (int)medium_inside(scene, &met->hits[lowest_bit(left)]), false, ALL_LANES))
       ++seen->strays;
   seen->overflows = enter_all(scene, met, changes.entered, &seen->behind);
-  seen->after = current_medium(scene->media, seen->behind);
+  seen->after = (u32)current_of_one(scene->media, &seen->behind);
   const u32 some = changes.thin | changes.entered | changes.left;
   u32 best = some ? lowest_bit(some) : 0u;
   for (u32 bits = some; bits; bits &= bits - 1u) {
@@ -254,41 +254,48 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   seen->material = material_of(scene, &met->hits[best]);
 }
 
-// Resolves lane i of `rays`, which has hit an instance that may touch others: hit and face become those of
-// the face seen, `behind` and `after` the media behind all touching faces. `mask`: as above. The distance of
-// the hit remains that of the first face; returns that of the last, and in `apart` how far the faces may be
-// apart.
-NEVER_INLINE float meet_touching(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
-                                 Faces* faces, Seen* seen, float* apart) {
+// What a ray passes that has hit faces which touch each other: the media behind them all, the distance of the
+// last, how far apart they may be; media for which the stack has no room, and exits from media not entered.
+typedef struct Passages {
+  MediaStacks behind;
+  REAL end, apart;
+  MASK overflows, strays;
+} Passages;
+
+// Resolves the lanes of `lanes`, which have hit instances that may touch others: hit and face become those of
+// the face seen, but the hit's distance remains that of the first. `mask`: as above.
+static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
+                                      Faces* faces, Passages* passages) {
   Touching touching;
+  Seen seen CLEARED_ON_GPUS;
   const Hit first = get_hit(hits, i);
   const REAL time = time_of_rays(rays);
+  const MediaStack before = {MASK_LANE(rays->media.low, i), MASK_LANE(rays->media.high, i)};
   HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
   find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
-  join_faces(scene, &touching, mask, get_media(rays, i), seen);
-  *apart = touching.apart;
-  seen->hit.t = first.t;
-  set_hit(hits, i, &seen->hit);
-  const float3 outward = outward_of(scene, &seen->hit, REAL_LANE(time, i));
+  join_faces(scene, &touching, mask, before, &seen);
+  seen.hit.t = first.t;
+  set_hit(hits, i, &seen.hit);
+  const float3 outward = outward_of(scene, &seen.hit, REAL_LANE(time, i));
   set3(&faces->outward, i, outward);
   MASK_LANE(faces->entering, i) = dot(outward, get3(&rays->d, i)) < 0.0f ? -1 : 0;
-  MASK_LANE(faces->material, i) = (int)seen->material;
-  u32 flags = scene->materials[seen->material].flags;
+  MASK_LANE(faces->material, i) = (int)seen.material;
+  u32 flags = scene->materials[seen.material].flags;
   // A thin surface on an interface refracts like it.
-  if (seen->after != current_medium(scene->media, get_media(rays, i))) flags &= ~MATERIAL_THIN;
+  if (seen.after != (u32)current_of_one(scene->media, &before)) flags &= ~MATERIAL_THIN;
   MASK_LANE(faces->flags, i) = (int)flags;
-  MASK_LANE(faces->medium, i) = (int)scene->materials[seen->material].medium;
-  return touching.end;
+  MASK_LANE(faces->medium, i) = (int)scene->materials[seen.material].medium;
+  MASK_LANE(passages->behind.low, i) = seen.behind.low;
+  MASK_LANE(passages->behind.high, i) = seen.behind.high;
+  REAL_LANE(passages->end, i) = touching.end;
+  REAL_LANE(passages->apart, i) = touching.apart;
+  MASK_LANE(passages->overflows, i) = (int)seen.overflows;
+  MASK_LANE(passages->strays, i) = (int)seen.strays;
+}
+NEVER_INLINE Passages meet_touching(const Scene* scene, const SceneRays* rays, u32 mask, Hits* hits,
+                                    Faces* faces, MASK lanes) {
+  Passages passages = {0};
+  EACH_LANE(i, lanes) meet_touching_lane(scene, rays, i, mask, hits, faces, &passages);
+  return passages;
 }
 #endif
-
-// The lanes of `lanes` whose hits are on instances that may touch others.
-static inline MASK may_touch(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
-  MASK found = NO_LANES;
-  u32 index;
-  for (u32 left = HAS_TOUCHING ? lane_bits(lanes) : 0u; left;) {
-    const MASK mine = take_alike(hits->instance, &left, &index);
-    if (instances[index].touch > 0.0f) found |= mine;
-  }
-  return found;
-}

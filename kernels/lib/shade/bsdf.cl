@@ -2,7 +2,7 @@
 #pragma once
 #include "lib/core/directions.cl"
 #include "lib/core/optics.cl"
-#include "lib/path/media.cl"
+#include "lib/path/scene_ray.cl"
 #include "lib/shade/dispersion.cl"
 #include "lib/shade/interaction.cl"
 #include "lib/shade/lobe_energy.cl"

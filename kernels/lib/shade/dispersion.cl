@@ -1,6 +1,7 @@
 // Spectra; a wavelength is a (fractional) row of the table `spectra`.
 #pragma once
-#include "lib/path/media.cl"
+#include "lib/core/lanes.h"
+#include "lib/core/tables.h"
 #include "shared/spectra.h"
 
 #if HAS_DISPERSION

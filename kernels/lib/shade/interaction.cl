@@ -1,7 +1,6 @@
 // Converts raw hits to shading data: position, surface, side, and surface coordinates. One ray per lane.
 #pragma once
-#include "lib/path/faces.cl"
-#include "lib/path/scene_ray.cl"
+#include "lib/path/segment.cl"
 #include "lib/shade/parametrize.cl"
 #if HAS_SDF
 #include "lib/path/fields.cl"

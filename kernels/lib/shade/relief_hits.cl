@@ -35,31 +35,12 @@ static inline MASK meet_in_reliefs(const Scene* scene, const SceneRays* rays, co
     nearest_hits(scene, &below, lanes, false, &next, counts);
     lanes &= hit_anything(&next);
     const MASK same = MASK_OF(next.instance == hits->instance);
-    *others = select_hits(others, &next, lanes & ~same);
+    join_hits(others, &next, lanes & ~same);
     found |= lanes & ~same;
     lanes &= same;
     below.t_min = select(below.t_min, next.t, lanes);
   }
   return found;
-}
-
-// The lanes of `lanes` whose rays see the surfaces that they have hit. Parts of an interface between touching
-// solids count as unseen: what is there belongs to neither.
-static inline MASK see_interfaces(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                  const Faces* faces, MASK lanes) {
-  if (!HAS_MEDIA) return lanes;
-  const MASK transmit = MASK_OF((faces->flags & (int)INTERFACE) == (int)MATERIAL_TRANSMITS);
-  MASK seen = lanes & ~(transmit & may_touch(scene->instances, hits, lanes & transmit));
-  EACH_LANE(i, seen & transmit) {
-    MediaStack crossed = get_media(rays, i);
-    const u32 before = current_medium(scene->media, crossed);
-    cross_boundary(&crossed, (u32)MASK_LANE(faces->medium, i), true);
-    const u32 after = current_medium(scene->media, crossed);
-    const bool clear = (u32)MASK_LANE(faces->flags, i) & MATERIAL_CLEAR;
-    if (after == before || (clear && same_index(scene->media + after, scene->media + before)))
-      MASK_LANE(seen, i) = 0;
-  }
-  return seen;
 }
 
 // The length of rays of the directions d through reliefs of the depth `depth`.
@@ -81,7 +62,7 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   SurfaceInteractions s;
   s.material = faces.material;
   lanes = has_parallax(scene, &s, lanes);
-  lanes = see_interfaces(scene, rays, &met->hit, &faces, lanes);
+  lanes &= sees_interface(scene, rays, &met->hit, &faces, lanes);
   if (!any_lane(lanes)) return;
   s.instance = met->hit.instance;
   s.ng = safe_unit3(faces.outward);
@@ -100,7 +81,7 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   found &= MASK_OF(passed < s.sunk * length);
   met->below = select(met->below, passed * rise, found);
   met->top = select3(met->top, s.ng, found);
-  met->hit = select_hits(&met->hit, &others, found);
+  join_hits(&met->hit, &others, found);
 }
 #endif
 
@@ -145,7 +126,7 @@ static inline MASK meet_interfaces(const Scene* scene, SceneRays* rays, MASK act
                                    Encounters* met, u32* counts) {
   nearest_hits(scene, rays, active, coherent, &met->hit, counts);
   HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, active, met, counts);)
-  return reach_interfaces(scene, rays, active, met, counts);
+  return active & reach_interfaces(scene, rays, met, counts, active);
 }
 
 // Moves rays that wait behind surfaces which they do not see to their next visible ones. Those of `camera`
@@ -158,9 +139,10 @@ static inline void see_behind(const Scene* scene, SceneRays* rays, MASK waiting,
     HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, waiting, &next, counts);)
     HAVING(HAS_PARALLAX, met->below = select(met->below, next.below, waiting);)
     HAVING(HAS_PARALLAX, met->top = select3(met->top, next.top, waiting);)
-    met->hit = select_hits(&met->hit, &next.hit, waiting);
-    const MASK unseen = cross_unseen(scene, rays, met, waiting, counts);
-    waiting = unseen | pass_hidden(scene, rays, met, waiting & ~unseen & camera);
+    join_hits(&met->hit, &next.hit, waiting);
+    const MASK unseen = waiting & cross_unseen(scene, rays, met, counts, waiting);
+    const MASK straight = waiting & ~unseen & camera;
+    waiting = unseen | (straight & pass_hidden(scene, rays, met, straight));
   }
 }
 
@@ -168,6 +150,7 @@ static inline void see_behind(const Scene* scene, SceneRays* rays, MASK waiting,
 static inline void see_surfaces(const Scene* scene, SceneRays* rays, MASK active, MASK camera, bool coherent,
                                 Encounters* met, u32* counts) {
   MASK waiting = meet_interfaces(scene, rays, active, coherent, met, counts);
-  waiting |= pass_hidden(scene, rays, met, active & ~waiting & camera);
+  const MASK straight = active & ~waiting & camera;
+  waiting |= straight & pass_hidden(scene, rays, met, straight);
   if (HAS_MEDIA || HAS_EMISSION) see_behind(scene, rays, waiting, camera, met, counts);
 }

@@ -69,12 +69,6 @@ static inline REAL3 solids_directions(const Hits* hits, const u32* solids, u32 b
   }
   return still;
 }
-static inline void join_tables(const Hits* a, const Hits* b, MASK m, Hits* hits) {
-  HAVING(HAS_OBJECT_MOTION, hits->time = select(a->time, b->time, m); hits->moves = b->moves;)
-  HAVING(HAS_TURNS, hits->turns = b->turns;)
-  HAVING(HAS_LATHE, hits->profiles = b->profiles;)
-}
-
 static inline MASK hit_anything(const Hits* hits) { return MASK_OF(hits->instance != (int)NO_INSTANCE); }
 
 static inline Hit get_hit(const Hits* hits, u32 i) {
@@ -98,15 +92,17 @@ static inline void set_hit(Hits* hits, u32 i, const Hit* hit) {
   set3(&hits->ng, i, (float3)(hit->ng_x, hit->ng_y, hit->ng_z));
 }
 
-static inline Hits select_hits(const Hits* a, const Hits* b, MASK m) {
-  Hits hits = {.t = select(a->t, b->t, m),
-               .u = select(a->u, b->u, m),
-               .v = select(a->v, b->v, m),
-               .prim = select(a->prim, b->prim, m),
-               .instance = select(a->instance, b->instance, m),
-               .ng = select3(a->ng, b->ng, m)};
-  join_tables(a, b, m, &hits);
-  return hits;
+// The lanes of `m` become those of `other`.
+static inline void join_hits(Hits* hits, const Hits* other, MASK m) {
+  hits->t = select(hits->t, other->t, m);
+  hits->u = select(hits->u, other->u, m);
+  hits->v = select(hits->v, other->v, m);
+  hits->prim = select(hits->prim, other->prim, m);
+  hits->instance = select(hits->instance, other->instance, m);
+  hits->ng = select3(hits->ng, other->ng, m);
+  HAVING(HAS_OBJECT_MOTION, hits->time = select(hits->time, other->time, m); hits->moves = other->moves;)
+  HAVING(HAS_TURNS, hits->turns = other->turns;)
+  HAVING(HAS_LATHE, hits->profiles = other->profiles;)
 }
 
 // Solids offer hits in (t_min, t], where t is the distance of the hit so far; at equal distances the lower

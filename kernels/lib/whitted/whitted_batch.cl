@@ -80,7 +80,8 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
   Shading at;
   MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
                                           : meet_listed(scene, rays, lanes, &met, counts);
-  unseen |= pass_hidden(scene, rays, &met, lanes & ~unseen & is_from_camera(paths, lanes));
+  const MASK straight = lanes & ~unseen & is_from_camera(paths, lanes);
+  unseen |= straight & pass_hidden(scene, rays, &met, straight);
   if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
   const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, lanes);
   const MASK hit = lanes & ~unseen & hit_anything(&met.hit);

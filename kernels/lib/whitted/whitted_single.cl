@@ -44,8 +44,9 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filter(scene, tile, rays, paths, &met.hit, counts, ALL_LANES);
   HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, ALL_LANES, &met, counts);)
-  MASK unseen = reach_interfaces(scene, rays, ALL_LANES, &met, counts);
-  unseen |= pass_hidden(scene, rays, &met, ~unseen & is_from_camera(paths, ALL_LANES));
+  MASK unseen = reach_interfaces(scene, rays, &met, counts, ALL_LANES);
+  const MASK straight = ~unseen & is_from_camera(paths, ALL_LANES);
+  unseen |= straight & pass_hidden(scene, rays, &met, straight);
   const WaitingRays whole = *paths;
   const u32 light = (u32)next_light(paths, ALL_LANES);
   // Ways to lights ask for hits in reliefs while the surface waits.

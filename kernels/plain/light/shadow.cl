@@ -1,7 +1,7 @@
 // How much of a light arrives. Media absorb. Opaque scenes end at the first occluder; else transmissive
 // things are filters: each interface lets its transmission through (1 - F of a dielectric, on the straight
 // line).
-#include "plain/path/media.cl"
+#include "plain/path/segment.cl"
 #include "plain/shade/layers.cl"
 #include "plain/shade/shading.cl"
 #include "plain/shade/specular.cl"
@@ -11,11 +11,6 @@
 bool any_hits(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, UNIFORM u32* counts);
 void nearest_to_light(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, SurfaceHit* hit,
                       UNIFORM u32* counts);
-Face hit_faces(UNIFORM const Scene* scene, float3 d, const SurfaceHit* hit, HERE);
-
-// The ray goes behind an interface that lets light pass, into its media. Of touching ones, hit and face
-// become those that are seen.
-void pass_interface(UNIFORM const Scene* scene, SceneRay* ray, SurfaceHit* hit, Face* face, HERE);
 
 // A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
 // bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing

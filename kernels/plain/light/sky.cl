@@ -1,7 +1,7 @@
 // Light from infinitely far away.
 #include "plain/light/light.cl"
+#include "plain/path/camera.cl"
 
-float3 background_along(UNIFORM __global const SceneInfo* info, float3 d);
 
 // The environment where rays see it, with the density of choosing it, else the background.
 static inline bool sees_environment(UNIFORM const Scene* scene) {

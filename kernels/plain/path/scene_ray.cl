@@ -1,23 +1,26 @@
 // Rays on their way through the scene, with what travels along, and how they start again from what they met.
-#include "plain/core.h"
+#include "plain/path/camera.cl"
 
-typedef struct LANES(Rays) {
-  float3 o, d;
-  float t_min, t_max, spread, time;
-} CameraRay;
-typedef struct LANES(Hits) {
+typedef struct LANES(Hits, join_hits) {
   float t;
   int instance, prim;
+  float3 ng;
 } SurfaceHit;
-UNIFORM float pixel_spread(UNIFORM __global const SceneInfo* info);
 
 #define FROM_NOWHERE (-1)
+
+// Up to eight media in order of entry, the last in the lowest byte of `low`; a byte holds the medium's index
+// plus one, 0 is empty: small, as waiting rays keep it. The host rejects scenes with more than MAX_MEDIA
+// media.
+typedef struct MediaStack {
+  int low, high;
+} MediaStack;
 
 // A ray in world space with what travels along.
 typedef struct SceneRay {
   float3 o, d;  // d unit
   float t_min, t_max;
-  int media_low, media_high;             // the words of the MediaStack at t_min
+  MediaStack media;                      // at t_min
   HAVING(HAS_MEDIA) float since;         // distance from which on it is in its medium
   HAVING(HAS_CROSSINGS) int crossings;   // unseen interfaces or filters behind it
   HAVING(HAS_SDF) int from;              // the field that it starts on: instance * 2, plus 1 inside of it
@@ -28,15 +31,13 @@ typedef struct SceneRay {
   HAVING(HAS_OBJECT_MOTION) float time;  // one for a whole path
 } SceneRay;
 
-ENTRY static inline SceneRay begun_ray(const CameraRay* camera, UNIFORM int media_low,
-                                       UNIFORM int media_high) {
+ENTRY static inline SceneRay begun_ray(const CameraRay* camera, UNIFORM const MediaStack* media) {
   SceneRay ray;
   ray.o = camera->o;
   ray.d = camera->d;
   ray.t_min = camera->t_min;
   ray.t_max = camera->t_max;
-  ray.media_low = media_low;
-  ray.media_high = media_high;
+  ray.media = *media;
   if (HAS_MEDIA) ray.since = 0.0f;
   if (HAS_CROSSINGS) ray.crossings = 0;
   if (HAS_SDF) {

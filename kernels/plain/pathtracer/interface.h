@@ -12,7 +12,6 @@ typedef struct LANES(PhotonSearches) {
 // The way to the next interface.
 bool meet_interfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, Encounter* met,
                      UNIFORM u32* counts);
-bool pass_hidden(UNIFORM const Scene* scene, SceneRay* ray, const Encounter* met, HERE);
 CALLED(no_hits) SurfaceHit hit_nothing(float t_max);
 
 // Lights.

@@ -29,8 +29,7 @@ static inline SceneRay ray_from_stretch(UNIFORM const Scene* scene, const BegunR
   made.d = d;
   made.t_min = 0.0f;
   made.t_max = t_max;
-  made.media_low = begun->media_low;
-  made.media_high = begun->media_high;
+  made.media = begun->media;
   return made;
 }
 

@@ -5,7 +5,8 @@
 typedef struct BegunRay {
   float t_min;
   HAVING(HAS_SCATTERING) float since;
-  HAVING(HAS_SCATTERING) int media_low, media_high, crossings;
+  HAVING(HAS_SCATTERING) MediaStack media;
+  HAVING(HAS_SCATTERING) int crossings;
 } BegunRay;
 
 static inline BegunRay begun_ray_of(const SceneRay* ray) {
@@ -13,8 +14,7 @@ static inline BegunRay begun_ray_of(const SceneRay* ray) {
   begun.t_min = ray->t_min;
   if (HAS_SCATTERING) {
     begun.since = ray->since;
-    begun.media_low = ray->media_low;
-    begun.media_high = ray->media_high;
+    begun.media = ray->media;
     begun.crossings = ray->crossings;
   }
   return begun;

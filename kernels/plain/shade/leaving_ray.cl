@@ -14,7 +14,7 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
   if (below) {
     child.o = points_behind(scene, s, ray->d);
     start_on_hits(scene->info, &child, &met->hit, s->entering);
-    enter_behind(met, ray, &child);
+    enter_behind(met, &child);
   }
   return child;
 }

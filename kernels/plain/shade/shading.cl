@@ -6,7 +6,6 @@ void interact(UNIFORM const Scene* scene, float3 o, float3 d, const SurfaceHit* 
               SurfaceInteraction* s);
 void locate(UNIFORM const Scene* scene, const SurfaceHit* hit, HERE, SurfaceInteraction* s);
 void set_footprints(UNIFORM const Scene* scene, const SceneRay* ray, float t, SurfaceInteraction* s);
-float offset_beyond(const Encounter* met, float offset);
 void note_depth(const Encounter* met, SurfaceInteraction* s);
 void add_parallax(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
 void add_relief(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
