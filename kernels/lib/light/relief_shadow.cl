@@ -12,8 +12,7 @@ NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteraction
   const MASK deep = lanes & MASK_OF(s->sunk > 0.0f) & MASK_OF(dot3(s->ng, wi) > 0.0f);
   MASK dark = NO_LANES;
   if (!any_lane(deep)) return (REAL)(1.0f);
-  TexturePoints at;
-  texture_points(scene, s, deep, &at);
+  const TexturePoints at = texture_points(scene, s, deep);
   u32 index;
   for (u32 left = lane_bits(deep); left;) {
     const MASK mine = take_alike(s->material, &left, &index);

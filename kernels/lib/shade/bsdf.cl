@@ -5,9 +5,9 @@
 #include "lib/path/media.cl"
 #include "lib/shade/dispersion.cl"
 #include "lib/shade/interaction.cl"
-#include "lib/shade/lobe_energy.cl"
 #include "lib/shade/maps.cl"
 #include "plain/shade/bsdf.cl"
+#include "shared/lobe_energy.h"
 
 // Surfaces that rays have met, and what they do to light.
 typedef struct Shading {

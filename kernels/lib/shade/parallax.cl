@@ -61,7 +61,7 @@ static inline REAL height_above(const Scene* scene, __global const MaterialMaps*
   there.u = fma(t, ways->u, at->u);
   there.v = fma(t, ways->v, at->v);
   there.p = along3(at->p, t, ways->p);
-  return slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x - 1.0f +
+  return map_value(scene, maps, MAP_HEIGHT, &there, lanes).x - 1.0f +
          fma(t, ways->end - ways->begin, ways->begin);
 }
 
@@ -130,8 +130,7 @@ static inline MASK has_parallax(const Scene* scene, const SurfaceInteractions* s
 NEVER_INLINE void add_parallax(const Scene* scene, REAL3 d, MASK lanes, SurfaceInteractions* s) {
   const MASK deep = has_parallax(scene, s, lanes & s->entering);
   if (!any_lane(deep)) return;
-  TexturePoints at;
-  texture_points(scene, s, deep, &at);
+  const TexturePoints at = texture_points(scene, s, deep);
   const REAL zero = (REAL)(0.0f), one = (REAL)(1.0f);
   u32 index;
   for (u32 left = lane_bits(deep); left;) {

@@ -74,7 +74,7 @@ static inline TangentFrames tangent_frames(const Scene* scene, const SurfaceInte
 static inline REAL3 mapped_normals(const Scene* scene, __global const MaterialMaps* maps,
                                    const TexturePoints* at, const TangentFrames* frame, MASK lanes,
                                    REAL* even) {
-  const REAL4 value = slot_values(scene, maps, MAP_NORMAL, at, lanes);
+  const REAL4 value = map_value(scene, maps, MAP_NORMAL, at, lanes);
   const REAL scale = (REAL)(2.0f * maps->normal_scale), half_scale = (REAL)(maps->normal_scale);
   const REAL x = fma(value.x, scale, -half_scale), y = fma(value.y, scale, -half_scale);
   const REAL z = fma(value.z, (REAL)(2.0f), (REAL)(-1.0f));
@@ -106,7 +106,7 @@ static inline REAL3 bumped_normals(const Scene* scene, __global const MaterialMa
       const REAL3 way = multiply3(vectors_of(scene, index, s, along), all3(instance->pattern_scale.xyz));
       there.p = select3(there.p, along3(at->p, part, way), mine);
     }
-    const REAL height = slot_values(scene, maps, MAP_HEIGHT, &there, lanes).x;
+    const REAL height = map_value(scene, maps, MAP_HEIGHT, &there, lanes).x;
     if (k == 0u)
       here = height;
     else
@@ -134,8 +134,7 @@ NEVER_INLINE void add_relief(const Scene* scene, REAL3 d, MASK lanes, SurfaceInt
       mapped |= mine;
   }
   if (!any_lane(mapped)) return;
-  TexturePoints at;
-  texture_points(scene, s, mapped, &at);
+  const TexturePoints at = texture_points(scene, s, mapped);
   const TangentFrames frame = tangent_frames(scene, s, mapped);
   REAL3 normal = frame.normal;
   for (u32 left = lane_bits(mapped); left;) {

@@ -87,8 +87,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
     out[7u * (first + i) + 6u] = (float4)(REAL_LANE(s.sunk, i), REAL_LANE(s.at.u, i), REAL_LANE(s.shift.x, i), REAL_LANE(seen, i));
 #else
-  TexturePoints at;
-  texture_points(&scene, &s, lanes, &at);
+  const TexturePoints at = texture_points(&scene, &s, lanes);
 #if PART == 0 || PART == 4
   const REAL4 value = value_of_texture(&scene, first_texture(&scene), &at, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
@@ -98,7 +97,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   Bsdfs terms;
   terms.ambient = terms.diffuse = terms.specular = terms.reflection = none;
   SlotValues values;
-  read_slots(&scene, scene.material_maps + 1, ~0u, &at, lanes, &values);
+  read_slots(&scene, scene.material_maps + 1, ~0u, &at, &values, lanes);
   metal_rough_terms(scene.material_maps + 1, &values, s.color, &terms, lanes);
   if (scene.material_maps[1].coat > 0.0f) map_coat((REAL)(scene.material_maps[1].coat), &terms, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {

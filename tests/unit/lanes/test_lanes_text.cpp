@@ -99,11 +99,14 @@ TEST_CASE("a row of a table is read at a place of each lane: members, parts, ele
       "ENTRY static float f(int k, UNIFORM __global const Row* rows) {\n"
       "  __global const Row* row = &rows[k];\n"
       "  const float3 v = row->v;\n"
-      "  return rows[k].a + (float)rows[k].k + (float)row->list[1] + rows[k].v.zy.x + row[1].a * v.x;\n}\n");
+      "  return rows[k].a + (float)rows[k].k + (float)row->list[1] + rows[k].v.zy.x + row[1].a * v.x\n"
+      "         + (float)row->list[k];\n}\n");
   CHECK_THAT(made, ContainsSubstring("__global const Row* table_1 = rows;\n  const MASK row = k;"));
   CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12, m_)"));
   CHECK_THAT(made, ContainsSubstring("AS_UINTS(gather_words((__global const u32*)(rows), k * 12 + 1, m_))"));
   CHECK_THAT(made, ContainsSubstring("gather_words((__global const u32*)(table_1), row * 12 + 9, m_)"));
+  CHECK_THAT(made,
+             ContainsSubstring("gather_words((__global const u32*)(table_1), row * 12 + k * 1 + 8, m_)"));
   CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12 + 6, m_)"));
   CHECK_THAT(made, ContainsSubstring("(row + (MASK)((int)(1))) * 12, m_)"));
   CHECK_THAT(made, ContainsSubstring(
