@@ -3,7 +3,6 @@
 #include "lib/path/ray_counts.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
 
 #if HAS_MEDIA

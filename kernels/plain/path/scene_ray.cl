@@ -6,8 +6,9 @@ typedef struct LANES(Rays) {
   float t_min, t_max, spread, time;
 } CameraRay;
 typedef struct LANES(Hits) {
-  float t;
+  float t, u, v;
   int instance, prim;
+  float3 ng;
 } SurfaceHit;
 UNIFORM float pixel_spread(UNIFORM __global const SceneInfo* info);
 

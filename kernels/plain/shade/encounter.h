@@ -22,7 +22,6 @@ bool hit_anything(const SurfaceHit* hit);
 float clear_of_fog(UNIFORM const Scene* scene, const Encounter* met, HERE);
 
 // Light on reliefs.
-float terminator(const SurfaceInteraction* s, float3 wi);
 float relief_visibility(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 wi, HERE);
 float walls_visibility(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceInteraction* s,
                        float3 wi, HERE, UNIFORM u32* counts);

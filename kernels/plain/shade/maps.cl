@@ -1,6 +1,7 @@
 // Applies textures to materials: multiplies the surface's terms by texture values. Opacity shows what is
 // behind a surface: it attenuates all terms and adds straight transmission.
 #include "plain/shade/bsdf.h"
+#include "plain/shade/interaction.cl"
 #include "plain/shade/texture.cl"
 
 // The values of a material's textures, by MAP_*.
@@ -35,8 +36,8 @@ ENTRY static inline TexturePoint texture_points(UNIFORM const Scene* scene, cons
   if (HAS_RELIEF) placed = true;
   if (placed) EACH_ALIKE(u32, index, (u32)s->instance) {
       const float4 scale = scene->instances[index].pattern_scale;
-      at.p = points_of(scene, index, s, at.p) * scale.xyz;
-      at.n = vectors_of(scene, index, s, s->ng) * scale.xyz;
+      at.p = points_at(scene, index, at.p, time_of(s)) * scale.xyz;
+      at.n = vectors_at(scene, index, s->ng, time_of(s)) * scale.xyz;
       at.scale = scale.w / moved_size(scene, index, time_of(s));
     }
   return at;

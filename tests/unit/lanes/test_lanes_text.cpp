@@ -113,6 +113,16 @@ TEST_CASE("a row of a table is read at a place of each lane: members, parts, ele
                        "v = real3(gather_floats((__global const float*)(table_1), row * 12 + 4, m_), "));
 }
 
+TEST_CASE("what is set through an OUT pointer is set without a mask, unless lanes have parted") {
+  const std::string made = in_lanes(
+      "typedef struct Two { float a, b; } Two;\n"
+      "static void set(float x, OUT Two* two) {\n  two->a = x;\n  if (x > 0.0f) two->b = x;\n}\n"
+      "ENTRY static float f(float x) {\n  Two two;\n  set(x, &two);\n  return two.a;\n}\n");
+  CHECK_THAT(made, ContainsSubstring("  two->a = x;"));
+  CHECK_THAT(made, ContainsSubstring("two->b = select(two->b, x, "));
+  CHECK_THAT(made, ContainsSubstring("  Twos two;"));
+}
+
 TEST_CASE("lines are those of the plain file, and the explanation names them") {
   const std::string text = function("const float y = x * 2.0f;\nreturn y;");
   CHECK_THAT(in_lanes(text, true), ContainsSubstring("#line 1 \"plain/t.cl\"\nNEVER_INLINE REAL f("));
