@@ -236,6 +236,7 @@ void Parser::parameter(Function& f) {
   v.here = take("HERE");
   if (!v.here) {
     v.uniform = take("UNIFORM");
+    v.out = take("OUT");
     const Type type = pointed(base_type());
     v.name = name("a parameter");
     v.type = lengthened(type);

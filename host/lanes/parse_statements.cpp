@@ -47,7 +47,7 @@ const Variable* Parser::declare(const std::string& named, const Type& type, cons
     fail(where, "'{}': names that end in _ and a number are the translator's", named);
   if (std::ranges::find(known_, named, &Variable::name) != known_.end())
     fail(where, "'{}' hides another one", named);
-  return known_.emplace_back(&out_.variables.emplace_back(Variable{named, type, false, false, where}));
+  return known_.emplace_back(&out_.variables.emplace_back(Variable{named, type, false, false, false, where}));
 }
 
 bool Parser::begins_declaration() const {

@@ -42,6 +42,10 @@ void Specialisation::number(const Statement& s, int& at) {
     if (e)
       any_within(*e, [&](const Expression& part) {
         ++at;
+        for (std::size_t i = 0; part.function && i < part.of.size(); ++i)
+          if (part.function->taken[i]->out && part.of[i]->is_unary("&") && part.of[i]->of[0]->variable &&
+              !last_use_.contains(part.of[i]->of[0]->variable))
+            set_by_call.insert(part.of[i]->of[0]->variable);
         if (part.variable) last_use_[part.variable] = at;
         return false;
       });

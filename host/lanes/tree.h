@@ -75,6 +75,7 @@ struct Variable {
   std::string name;
   Type type;
   bool uniform = false, here = false;  // here: the place of the mask in a hand-written function's parameters
+  bool out = false;                    // what it points to becomes undefined in lanes that are off
   Place place;
 };
 

@@ -34,10 +34,10 @@ std::string Writer::index_of(const Expression& e) {
   return e.type.is_natural() ? fmt::format("AS_MASK({})", text) : text;
 }
 
-/// table[index].member.x: words at a place of each lane; the given part of a vector.
+/// table[index].member[place].x: words at a place of each lane; the given part of a vector.
 std::string Writer::gather(const Expression& e, std::size_t part) {
   int offset = 0, stride = 0;
-  std::string table, index;
+  std::string table, index, places;
   for (const Expression* at = &e; stride == 0; at = at->of[0].get()) {
     const Expression& base = *at->of[0];
     if (at->kind == Kind::component) part = std::string_view("xyzw").find(at->text[part]);
@@ -53,11 +53,11 @@ std::string Writer::gather(const Expression& e, std::size_t part) {
     } else if (at->of[1]->kind == Kind::number) {
       offset += std::stoi(at->of[1]->digits, nullptr, 0) * size_of(at->type);
     } else {
-      fail(at->place, "a table is read at a place that varies by an index of the table alone");
+      places += fmt::format(" + {} * {}", index_of(*at->of[1]), size_of(at->type) / 4);
     }
   }
   offset += 4 * static_cast<int>(part);
-  std::string words = stride == 4 ? index : fmt::format("{} * {}", index, stride / 4);
+  std::string words = (stride == 4 ? index : fmt::format("{} * {}", index, stride / 4)) + places;
   if (offset != 0) words = fmt::format("{} + {}", words, offset / 4);
   const Type::Kind kind = e.type.is_vector() ? e.type.part : e.type.kind;
   if (kind < Type::Kind::integer || kind > Type::Kind::real || e.type.is_by_hand())

@@ -158,7 +158,7 @@ void Writer::declaration(const Variable& v, const Expression* first) {
   std::string value;
   if (first)
     value = " = " + (vary ? lanes(*first) : plain(*first));
-  else if (vary && !(type.is_structure() && type.is_by_hand()))
+  else if (vary && !(type.is_structure() && (type.is_by_hand() || s_.set_by_call.contains(&v))))
     value = " = " + nothing(type);
   line("{}{} {}{}{};", constant ? "const " : "", type_text(is_array ? *type.of : type, vary), v.name,
        is_array ? fmt::format("[{}]", type.length) : "", value);
@@ -189,6 +189,8 @@ std::string Writer::store(const Expression& to, const std::string& value) {
   const std::vector<const Frame*> divergent = s_.between(root, frames_);
   std::string mask = mask_;
   const bool is_result = root == s_.only_result && s_.divergent_return && (returned_ || comes_again());
+  const bool is_out = root->out && divergent.empty() && !returned_ && !comes_again();
+  if (is_out) return fmt::format("{} = {}", place, value);
   if (!through && !is_result) {
     if (divergent.empty()) return fmt::format("{} = {}", place, value);
     if (divergent.size() == 1 && divergent[0] == &frames_.back() && !divergent[0]->only.empty())

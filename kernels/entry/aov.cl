@@ -4,7 +4,6 @@
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/relief.cl"
 #include "lib/shade/relief_hits.cl"
 #include "plain/shade/lobes.cl"
 #include "plain/shade/specular.cl"
@@ -45,7 +44,6 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
     start_marching(counts);
     SceneRays rays = *camera;
     Encounters met;
-    SurfaceInteractions s;
     see_surfaces(scene, &rays, lanes_of(1u << i), ALL_LANES, true, &met, counts);
     REAL_LANE(steps, i) = (float)counts[COUNT_MARCH_STEPS];
   }
@@ -75,11 +73,11 @@ static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, 
   see_surfaces(scene, rays, lanes, ALL_LANES, true, met, counts);
   for (;;) {
     const MASK hit = lanes & hit_anything(&met->hit);
-    interact(scene, rays->o, rays->d, &met->hit, &met->face, hit, s);
-    set_footprints(scene, rays, met->hit.t, s);
+    interact(scene, rays->o, rays->d, &met->hit, &met->face, s, hit);
+    set_footprints(scene, rays, met->hit.t, s, hit);
     note_depth(met, s);
-    HAVING(HAS_PARALLAX, add_parallax(scene, rays->d, hit, s);)
-    HAVING(HAS_RELIEF, add_relief(scene, rays->d, hit, s);)
+    HAVING(HAS_PARALLAX, add_parallax(scene, rays->d, s, hit);)
+    HAVING(HAS_RELIEF, add_relief(scene, rays->d, s, hit);)
     *bsdf = make_bsdfs(scene, s, met->before, met->after, hit);
     if (!HAS_SHADOW_FILTERS) return hit;
     const SpecularSplits split = bsdf_specular(scene, bsdf, negate3(rays->d), hit);

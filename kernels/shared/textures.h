@@ -59,8 +59,8 @@ typedef enum TextureKind SUNDOG_ENUM_OF_U32 { TEXTURES(TEXTURE_CONSTANT) TEXTURE
 #define TEXEL_RGBA_HALF (TEXEL_HALVES | 3u)
 
 // Sources of texture coordinates. Bit i of the feature TEXTURE_MAPPINGS is set if a scene has mapping i.
-#define MAPPING_UV 0u  // the surface's u and v (lib/shade/parametrize.cl); the set is above MAPPING_SET_SHIFT
-#define MAPPING_OBJECT 1u       // the point in object units; u and v are x and y
+#define MAPPING_UV 0u      // the surface's u and v (shade/parametrize.cl); the set is above MAPPING_SET_SHIFT
+#define MAPPING_OBJECT 1u  // the point in object units; u and v are x and y
 #define MAPPING_SPHERICAL 2u    // longitude about y from +x to -z, and latitude, both in [0, 1]
 #define MAPPING_CYLINDRICAL 3u  // longitude and y
 #define MAPPING_BOX 4u          // along the three axes, blended by the normal

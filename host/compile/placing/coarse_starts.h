@@ -8,7 +8,7 @@
 namespace sundog {
 
 /// Secondary rays start `away` from the object's surface, the bound of a hit's rounding
-/// (kernels/lib/shade/interaction.cl); `distance`, less than a hundred times that, is the camera's.
+/// (kernels/plain/shade/interaction.cl); `distance`, less than a hundred times that, is the camera's.
 struct CoarseStart {
   std::string object;
   double away = 0, distance = 0;

@@ -191,7 +191,7 @@ class Search {
   }
 
  private:
-  // Secondary rays start this far off a surface: offset_distance() in kernels/lib/shade/interaction.cl.
+  // Secondary rays start this far off a surface: offset_distance() in kernels/plain/shade/interaction.cl.
   double tolerance(const Body& a, const Body& b) const {
     return 0x1p-19 * std::max({a.size, b.size, camera_, 1e-30});
   }

@@ -1,5 +1,5 @@
-// Shadows of reliefs below surfaces: on themselves (Brawley and Tatarchuk 2004, as in lib/shade/parallax.cl),
-// and on what stands among them. A surface a lane.
+// Shadows of reliefs below surfaces: on themselves (Brawley and Tatarchuk 2004, as in shade/parallax.cl), and
+// on what stands among them. A surface a lane.
 #pragma once
 #include "lib/shade/relief_hits.cl"
 
@@ -12,14 +12,12 @@ NEVER_INLINE REAL relief_visibility(const Scene* scene, const SurfaceInteraction
   const MASK deep = lanes & MASK_OF(s->sunk > 0.0f) & MASK_OF(dot3(s->ng, wi) > 0.0f);
   MASK dark = NO_LANES;
   if (!any_lane(deep)) return (REAL)(1.0f);
-  TexturePoints at;
-  texture_points(scene, s, deep, &at);
+  const TexturePoints at = texture_points(scene, s, deep);
   u32 index;
   for (u32 left = lane_bits(deep); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;
-    REAL3 along;
-    const ReliefWays ways = relief_ways(scene, maps, s, &at, wi, s->sunk, zero, mine, &along);
+    const ReliefWays ways = relief_ways(scene, maps, s, &at, wi, s->sunk, zero, mine);
     const REAL inverse = 1.0f / TO_REAL(ways.steps);
     MASK open = mine;
     for (int k = 1; k < PARALLAX_STEPS && any_lane(open); ++k) {
@@ -59,11 +57,11 @@ NEVER_INLINE REAL walls_visibility(const Scene* scene, const SceneRays* rays, co
   lanes &= faces.entering & MASK_OF((faces.flags & (int)MATERIAL_TRANSMITS) == 0);
   SurfaceInteractions top;
   top.material = faces.material;
-  lanes = has_parallax(scene, &top, lanes);
+  lanes &= has_parallax(scene, top.material, lanes);
   if (!any_lane(lanes)) return one;
-  interact(scene, from_light.o, from_light.d, &hits, &faces, lanes, &top);
+  interact(scene, from_light.o, from_light.d, &hits, &faces, &top, lanes);
   top.footprint = s->footprint;
-  add_parallax(scene, from_light.d, lanes, &top);
+  add_parallax(scene, from_light.d, &top, lanes);
   const REAL depth = relief_depths(scene, &top, lanes);
   const REAL reached = (top.sunk + PARALLAX_BIAS) * ways_through(&top, wi, depth);
   return select(one, zero, lanes & MASK_OF(reached < way));

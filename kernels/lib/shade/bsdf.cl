@@ -5,9 +5,23 @@
 #include "lib/path/scene_ray.cl"
 #include "lib/shade/dispersion.cl"
 #include "lib/shade/interaction.cl"
-#include "lib/shade/lobe_energy.cl"
-#include "lib/shade/maps.cl"
+#include "lib/shade/parallax.h"
+#include "lib/shade/texels.cl"
+#include "shared/lobe_energy.h"
+#include "shared/metal_rough.h"
+#if HAS_CONES
+#include "generated/patterns.cl"
+#endif
+
+typedef struct ValueStack {
+  REAL4 value[TEXTURE_STACK > 1 ? TEXTURE_STACK : 1];
+} ValueStack;
+typedef struct SlotValues {
+  REAL4 of[MAP_COUNT];
+} SlotValues;
 #include "plain/shade/bsdf.cl"
+#include "plain/shade/parallax.cl"
+#include "plain/shade/relief.cl"
 
 // Surfaces that rays have met, and what they do to light.
 typedef struct Shading {

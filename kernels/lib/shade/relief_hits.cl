@@ -2,7 +2,7 @@
 // these heights, and hits on the way come first. One ray per lane.
 #pragma once
 #include "lib/path/segment.cl"
-#include "lib/shade/parallax.cl"
+#include "lib/shade/bsdf.cl"
 
 #if HAS_PARALLAX
 #define RELIEF_FACES 4  // of the surface's own object that a ray passes below it
@@ -11,7 +11,7 @@
 static inline REAL relief_depths(const Scene* scene, const SurfaceInteractions* s, MASK lanes) {
   REAL depth = (REAL)(0.0f);
   u32 index;
-  for (u32 left = lane_bits(has_parallax(scene, s, lanes)); left;) {
+  for (u32 left = lane_bits(lanes & has_parallax(scene, s->material, lanes)); left;) {
     const MASK mine = take_alike(s->material, &left, &index);
     depth = select(depth, (REAL)(scene->material_maps[scene->materials[index].maps].parallax), mine);
   }
@@ -61,7 +61,7 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   if (!any_lane(lanes)) return;
   SurfaceInteractions s;
   s.material = faces.material;
-  lanes = has_parallax(scene, &s, lanes);
+  lanes &= has_parallax(scene, s.material, lanes);
   lanes &= sees_interface(scene, rays, &met->hit, &faces, lanes);
   if (!any_lane(lanes)) return;
   s.instance = met->hit.instance;
@@ -74,9 +74,9 @@ NEVER_INLINE void enter_reliefs(const Scene* scene, const SceneRays* rays, MASK 
   if (!any_lane(found)) return;
   const Faces things = hit_faces(scene, rays->d, &others, found);
   found &= MASK_OF(((faces.flags & things.flags) & (int)MATERIAL_TRANSMITS) == 0);
-  interact(scene, rays->o, rays->d, &met->hit, &faces, found, &s);
-  set_footprints(scene, rays, met->hit.t, &s);
-  add_parallax(scene, rays->d, found, &s);
+  interact(scene, rays->o, rays->d, &met->hit, &faces, &s, found);
+  set_footprints(scene, rays, met->hit.t, &s, found);
+  add_parallax(scene, rays->d, &s, found);
   const REAL passed = others.t - met->hit.t;
   found &= MASK_OF(passed < s.sunk * length);
   met->below = select(met->below, passed * rise, found);

@@ -9,7 +9,6 @@
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
-#include "lib/shade/cones.cl"
 #include "lib/trace/shaft.cl"
 
 static inline void wait_again(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,

@@ -25,13 +25,12 @@ HAVING(HAS_MAPS)
 static float3 textured_filter(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit,
                               const Face* face, float3 plain) {
   SurfaceInteraction s;
-  s.p = along(ray->o, hit->t, ray->d);
+  locate(scene, hit, along(ray->o, hit->t, ray->d), &s);
   s.ng = safe_unit3(face->outward);
   s.ns = s.ng;
   s.side = s.ng;
   s.instance = hit->instance;
   s.material = face->material;
-  locate(scene, hit, &s);
   set_footprints(scene, ray, hit->t, &s);
   // Of a surface of one side: where paths meet lights by chance as well, a shadow ray sees the side that it
   // comes to, as those do; else the one that the light comes to.

@@ -2,7 +2,7 @@
 #include "plain/path/camera.cl"
 
 typedef struct LANES(Hits, join_hits) {
-  float t;
+  float t, u, v;
   int instance, prim;
   float3 ng;
 } SurfaceHit;

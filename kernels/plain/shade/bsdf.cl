@@ -9,8 +9,8 @@ static inline float odd_cells(UNIFORM const Scene* scene, UNIFORM float frequenc
   float odd = 0.0f;
   EACH_ALIKE(u32, index, (u32)s->instance) {
     const float4 scale = scene->instances[index].pattern_scale;
-    const float3 q = points_of(scene, index, s, s->p) * scale.xyz * frequency;
-    const float3 n = safe_unit3(vectors_of(scene, index, s, s->ng) * scale.xyz);
+    const float3 q = points_at(scene, index, s->p, time_of(s)) * scale.xyz * frequency;
+    const float3 n = safe_unit3(vectors_at(scene, index, s->ng, time_of(s)) * scale.xyz);
     const float width = s->camera_footprint * (frequency * scale.w) / moved_size(scene, index, time_of(s));
     odd = checker_pattern(q, sines_to_axes(n) * width);
   }

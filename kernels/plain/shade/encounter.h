@@ -9,7 +9,6 @@ typedef struct LANES(Shading) {
 
 
 // Light on reliefs.
-float terminator(const SurfaceInteraction* s, float3 wi);
 float relief_visibility(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 wi, HERE);
 float walls_visibility(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceInteraction* s,
                        float3 wi, HERE, UNIFORM u32* counts);

@@ -1,5 +1,6 @@
 // GGX microfacets (Walter and others 2007), each a perfect mirror or interface, and rough reflection and
 // transmission by one of them, for integrators that send both rays.
+#include "plain/shade/lobe_energy.cl"
 #include "plain/shade/specular.cl"
 
 // The facet width of the surface, 0: none.

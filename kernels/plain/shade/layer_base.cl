@@ -2,6 +2,7 @@
 // metalness or coat weight, values interpolated in the grid of shared/layers.h.
 #include "plain/shade/bsdf.h"
 #include "plain/shade/layer_lobes.cl"
+#include "plain/shade/lobe_energy.cl"
 
 HAVING(HAS_LAYERS);
 

@@ -1,8 +1,68 @@
 // Applies textures to materials: multiplies the surface's terms by texture values. Opacity shows what is
 // behind a surface: it attenuates all terms and adds straight transmission.
 #include "plain/shade/bsdf.h"
+#include "plain/shade/interaction.cl"
+#include "plain/shade/texture.cl"
+
+// The values of a material's textures, by MAP_*.
+typedef struct LANES(SlotValues) {
+  float4 of[20];
+} SlotValues;
 
 HAVING(HAS_MAPS);
+
+// The texture inputs of a surface. Some need the position on an object, not only u and v; heights need its
+// size.
+ENTRY static inline TexturePoint texture_points(UNIFORM const Scene* scene, const SurfaceInteraction* s) {
+  TexturePoint at;
+  at.u = 0.0f;
+  at.v = 0.0f;
+  at.uv_length = 0.0f;
+  if (HAS_UV) {
+    at.u = s->at.u;
+    at.v = s->at.v;
+    at.uv_length = s->at.length;
+  }
+  at.p = s->p;
+  if (HAS_PARALLAX) at.p += s->shift;
+  at.n = s->ns;
+  at.scale = 1.0f;
+  at.footprint = s->footprint;
+  at.instance = s->instance;
+  at.prim = s->prim;
+  at.b = s->b;
+  at.c = s->c;
+  bool placed = (TEXTURE_MAPPINGS & ~1u) != 0u;
+  if (HAS_RELIEF) placed = true;
+  if (placed) EACH_ALIKE(u32, index, (u32)s->instance) {
+      const float4 scale = scene->instances[index].pattern_scale;
+      at.p = points_at(scene, index, at.p, time_of(s)) * scale.xyz;
+      at.n = vectors_at(scene, index, s->ng, time_of(s)) * scale.xyz;
+      at.scale = scale.w / moved_size(scene, index, time_of(s));
+    }
+  return at;
+}
+
+static inline bool has_slot(UNIFORM __global const MaterialMaps* maps, UNIFORM u32 slot) {
+  return TEXTURE_KINDS != 0u && maps->slot[slot] != NO_TEXTURE;
+}
+
+// The value of one slot, 1 without a texture.
+ENTRY static inline float4 map_value(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                     UNIFORM u32 slot, const TexturePoint* at) {
+  if (HAS_CONES && has_slot(maps, slot)) return value_of_texture(scene, maps->slot[slot], at);
+  return (float4)(1.0f);
+}
+
+// The values of the slots in the bits of `wanted` that have textures. A single loop, because compilers
+// duplicate a texture's code at each call.
+ENTRY static inline void read_slots(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                    UNIFORM u32 wanted, const TexturePoint* at, SlotValues* values) {
+  if (HAS_CONES)
+    for (u32 slot = 0; slot < MAP_COUNT; ++slot)
+      if ((wanted >> slot & 1u) != 0u && has_slot(maps, slot))
+        values->of[slot] = value_of_texture(scene, maps->slot[slot], at);
+}
 
 static inline float part_of_one(float x) { return real_clamp(x, 0.0f, 1.0f); }
 static inline float3 parts_of_one(float4 a) {
@@ -145,8 +205,7 @@ static inline void map_material(UNIFORM const Scene* scene, UNIFORM u32 index, c
   map_opacity(one_sided && !s->entering ? 0.0f : opacity_of(maps, &values), bsdf);
 }
 static void map_bsdf(UNIFORM const Scene* scene, const SurfaceInteraction* s, Bsdf* bsdf) {
-  TexturePoint at;
-  texture_points(scene, s, &at);
+  const TexturePoint at = texture_points(scene, s);
   EACH_ALIKE(u32, index, (u32)s->material) map_material(scene, index, &at, s, bsdf);
 }
 
@@ -163,8 +222,7 @@ ENTRY static inline void widen_highlight(float even, float* exponent, float3* sp
 // The surface's transmittance for a shadow ray; `own`: without its textures.
 ENTRY static inline float3 mapped_filter(UNIFORM const Scene* scene, const SurfaceInteraction* s, bool hidden,
                                          float3 own) {
-  TexturePoint at;
-  texture_points(scene, s, &at);
+  const TexturePoint at = texture_points(scene, s);
   float3 passed = own;
   EACH_ALIKE(u32, index, (u32)s->material) {
     __global const MaterialMaps* maps = scene->material_maps + scene->materials[index].maps;

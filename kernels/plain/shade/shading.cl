@@ -1,14 +1,10 @@
 // Surfaces where rays meet them.
 #include "plain/shade/bsdf.cl"
 #include "plain/shade/encounter.h"
+#include "plain/shade/parallax.cl"
+#include "plain/shade/relief.cl"
 
-void interact(UNIFORM const Scene* scene, float3 o, float3 d, const SurfaceHit* hit, const Face* face, HERE,
-              SurfaceInteraction* s);
-void locate(UNIFORM const Scene* scene, const SurfaceHit* hit, HERE, SurfaceInteraction* s);
-void set_footprints(UNIFORM const Scene* scene, const SceneRay* ray, float t, SurfaceInteraction* s);
 void note_depth(const Encounter* met, SurfaceInteraction* s);
-void add_parallax(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
-void add_relief(UNIFORM const Scene* scene, float3 d, HERE, SurfaceInteraction* s);
 
 // A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
@@ -26,7 +22,7 @@ static inline void bend_normal(float3 d, SurfaceInteraction* s) {
 
 // The surface that the ray has met, and what it does to light.
 ENTRY static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
-                                   SurfaceShading* at) {
+                                   OUT SurfaceShading* at) {
   interact(scene, ray->o, ray->d, &met->hit, &met->face, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
   note_depth(met, &at->s);

@@ -44,7 +44,7 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   if (!split.branches) return false;
   mirror_layers(scene, &at->bsdf, wo, &split);
   float curvature = 0.0f;
-  if (HAS_CONES) curvature = curvatures(scene, &at->s);
+  if (HAS_CONES) curvature = curvature_at(scene, &at->s);
   WaitingRay next = *path;
   next.depth = (path->depth + 1) | TURNED;
   SceneRay child = leaving_ray(scene, ray, met, at, reflected_by(&facet, wo), false, &way);

@@ -30,5 +30,4 @@ void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
 void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,
               const SurfaceInteraction* s, HERE, float part);
 
-float curvatures(UNIFORM const Scene* scene, const SurfaceInteraction* s, HERE);
 float field_openness(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit, HERE);

@@ -68,12 +68,12 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   s.flags = (MASK)((int)scene.materials[0].flags);
   Hits hits = no_hits(zero);
   hits.instance = NO_LANES; hits.prim = NO_LANES; hits.ng = n;
-  locate(&scene, &hits, lanes, &s);
+  locate(&scene, &hits, s.p, &s, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
     for (u32 k = 0; k < 7u; ++k) out[7u * (first + i) + k] = (float4)(0.0f);
 #if PART == 1
-  add_relief(&scene, d, lanes, &s);
-  const REAL kept = terminator(&s, wi);
+  add_relief(&scene, d, &s, lanes);
+  const REAL kept = terminator(&s, wi, lanes);
   REAL exponent = (REAL)(50.0f);
   REAL3 shine = all3((float3)(1.0f));
   widen_highlight(s.even, &exponent, &shine, lanes);
@@ -82,13 +82,12 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
     out[7u * (first + i) + 1u] = lane4(&s.ns, kept, i);
   }
 #elif PART == 3
-  add_parallax(&scene, d, lanes, &s);
+  add_parallax(&scene, d, &s, lanes);
   const REAL seen = relief_visibility(&scene, &s, wi, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
     out[7u * (first + i) + 6u] = (float4)(REAL_LANE(s.sunk, i), REAL_LANE(s.at.u, i), REAL_LANE(s.shift.x, i), REAL_LANE(seen, i));
 #else
-  TexturePoints at;
-  texture_points(&scene, &s, lanes, &at);
+  const TexturePoints at = texture_points(&scene, &s, lanes);
 #if PART == 0 || PART == 4
   const REAL4 value = value_of_texture(&scene, first_texture(&scene), &at, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i)
@@ -98,7 +97,7 @@ __kernel void shade_points(SCENE_PARAMETERS, __global const float4* points, __gl
   Bsdfs terms;
   terms.ambient = terms.diffuse = terms.specular = terms.reflection = none;
   SlotValues values;
-  read_slots(&scene, scene.material_maps + 1, ~0u, &at, lanes, &values);
+  read_slots(&scene, scene.material_maps + 1, ~0u, &at, &values, lanes);
   metal_rough_terms(scene.material_maps + 1, &values, s.color, &terms, lanes);
   if (scene.material_maps[1].coat > 0.0f) map_coat((REAL)(scene.material_maps[1].coat), &terms, lanes);
   for (u32 i = 0; i < BATCH && first + i < count; ++i) {
@@ -145,11 +144,8 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
 
 /// The part's includes stand under no #if: there each would be expanded wherever it is met, to 36 MB of text.
 inline std::string text_of(Part part) {
-  const char* file = part == Part::relief     ? "lib/shade/relief.cl"
-                     : part == Part::parallax ? "lib/light/relief_shadow.cl"
-                                              : "lib/shade/parallax.cl";
-  const bool shades = part == Part::relief || part == Part::metal_rough;
-  return fmt::format("#include \"{}\"\n{}{}", file, shades ? "#include \"lib/shade/bsdf.cl\"\n" : "",
+  return fmt::format("#include \"{}\"\n{}",
+                     part == Part::parallax ? "lib/light/relief_shadow.cl" : "lib/shade/bsdf.cl",
                      kernel_text);
 }
 

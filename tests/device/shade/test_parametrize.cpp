@@ -83,7 +83,7 @@ std::vector<Chart> charts() {
 }
 
 const char* const chart_kernel = R"(
-#include "lib/shade/parametrize.cl"
+#include "lib/solids/solids.cl"
 __kernel void locate(__global const float4* points, __global float* out, u32 shape, u32 part, float4 parameters, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
@@ -113,7 +113,7 @@ __kernel void look(SCENE_PARAMETERS, __global const Ray* rays, __global float* o
   trace_batch(&scene, &o, &d, &t_min, 1e30f, 0.0f, ALL_LANES, false, &hits);
   const Faces faces = hit_faces(&scene, d, &hits, hit_anything(&hits));
   SurfaceInteractions s;
-  interact(&scene, o, d, &hits, &faces, hit_anything(&hits), &s);
+  interact(&scene, o, d, &hits, &faces, &s, hit_anything(&hits));
   __global float* to = out + 8u * i;
   to[0] = s.p.x; to[1] = s.p.y; to[2] = s.p.z; to[3] = s.at.u;
   to[4] = s.at.dpdu.x; to[5] = s.at.dpdu.y; to[6] = s.at.dpdu.z; to[7] = s.at.v;

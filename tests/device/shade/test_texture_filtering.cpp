@@ -196,7 +196,8 @@ TEST_CASE("a zone plate shows no moire: what is finer than the pixels is grey") 
 namespace {
 
 const char* const cone_text = R"(
-#include "lib/shade/cones.cl"
+#include "lib/shade/bsdf.cl"
+#include "plain/shade/cones.cl"
 typedef struct ConeIn { float curvature, width, spread, eta, cos_i, cos_t; } ConeIn;
 __kernel void run(__global const ConeIn* in, __global float4* out, u32 count) {
   const u32 i = get_global_id(0);

@@ -99,15 +99,29 @@ TEST_CASE("a row of a table is read at a place of each lane: members, parts, ele
       "ENTRY static float f(int k, UNIFORM __global const Row* rows) {\n"
       "  __global const Row* row = &rows[k];\n"
       "  const float3 v = row->v;\n"
-      "  return rows[k].a + (float)rows[k].k + (float)row->list[1] + rows[k].v.zy.x + row[1].a * v.x;\n}\n");
+      "  return rows[k].a + (float)rows[k].k + (float)row->list[1] + rows[k].v.zy.x + row[1].a * v.x\n"
+      "         + (float)row->list[k];\n}\n");
   CHECK_THAT(made, ContainsSubstring("__global const Row* table_1 = rows;\n  const MASK row = k;"));
   CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12, m_)"));
   CHECK_THAT(made, ContainsSubstring("AS_UINTS(gather_words((__global const u32*)(rows), k * 12 + 1, m_))"));
   CHECK_THAT(made, ContainsSubstring("gather_words((__global const u32*)(table_1), row * 12 + 9, m_)"));
+  CHECK_THAT(made,
+             ContainsSubstring("gather_words((__global const u32*)(table_1), row * 12 + k * 1 + 8, m_)"));
   CHECK_THAT(made, ContainsSubstring("gather_floats((__global const float*)(rows), k * 12 + 6, m_)"));
   CHECK_THAT(made, ContainsSubstring("(row + (MASK)((int)(1))) * 12, m_)"));
   CHECK_THAT(made, ContainsSubstring(
                        "v = real3(gather_floats((__global const float*)(table_1), row * 12 + 4, m_), "));
+}
+
+TEST_CASE("what is set through an OUT pointer is set without a mask, unless lanes have parted") {
+  const std::string made = in_lanes(
+      "typedef struct Two { float a, b; } Two;\n"
+      "static void set(float x, OUT Two* two) {\n  two->a = x;\n  two->b = 0.0f;\n  if (x > 0.0f) two->b = "
+      "x;\n}\n"
+      "ENTRY static float f(float x) {\n  Two two;\n  set(x, &two);\n  return two.a;\n}\n");
+  CHECK_THAT(made, ContainsSubstring("  two->a = x;"));
+  CHECK_THAT(made, ContainsSubstring("two->b = select(two->b, x, "));
+  CHECK_THAT(made, ContainsSubstring("  Twos two;"));
 }
 
 TEST_CASE("lines are those of the plain file, and the explanation names them") {
