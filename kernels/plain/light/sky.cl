@@ -2,7 +2,6 @@
 #include "plain/light/light.cl"
 #include "plain/path/camera.cl"
 
-
 // The environment where rays see it, with the density of choosing it, else the background.
 static inline bool sees_environment(UNIFORM const Scene* scene) {
   if (HAS_ENVIRONMENT) return scene->info->sees_environment != 0u;

@@ -7,7 +7,6 @@ typedef struct LANES(Shading) {
   Bsdf bsdf;
 } SurfaceShading;
 
-
 // Light on reliefs.
 float relief_visibility(UNIFORM const Scene* scene, const SurfaceInteraction* s, float3 wi, HERE);
 float walls_visibility(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceInteraction* s,

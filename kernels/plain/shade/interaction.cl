@@ -115,13 +115,13 @@ ENTRY static inline void interact(UNIFORM const Scene* scene, float3 o, float3 d
   const float3 outward = safe_unit3(face->outward), ng = face->entering ? outward : -outward;
   float3 p = along(o, hit->t, d), ns = ng, side = ng, color = (float3)(1.0f);
   float extent = 0.0f, turned = 0.0f, rounding = 0.0f, lift = 0.0f;
-  const float time = time_of_hits(hit);
   bool colored = (face->flags & (int)MATERIAL_VERTEX_COLOR) != 0;  // by vertices; fields always are
   EACH_ALIKE(u32, index, (u32)hit->instance) {
     __global const Instance* instance = scene->instances + index;
     turned = moved_extent(scene, index);
     if (instance->shape != SHAPE_SDF) rounding = space_rounding(instance, hit->ng);
-    if (HAS_SPHERE && instance->shape == SHAPE_SPHERE) p = settle_on_sphere(scene, index, p, time);
+    if (HAS_SPHERE && instance->shape == SHAPE_SPHERE)
+      p = settle_on_sphere(scene, index, p, time_of_hits(hit));
     if (HAS_MESH && instance->shape == SHAPE_MESH) {
       const MeshPoint mesh = point_on_mesh(scene, index, hit, face->entering);
       extent = mesh.extent;
@@ -147,18 +147,21 @@ ENTRY static inline void interact(UNIFORM const Scene* scene, float3 o, float3 d
   s->flags = face->flags;
   s->medium = face->medium;
   s->entering = face->entering;
-  if (HAS_OBJECT_MOTION) s->time = time;
+  if (HAS_OBJECT_MOTION) s->time = time_of_hits(hit);
   s->color = colored ? color : (float3)(1.0f);
   s->offset = real_max(rounding_offset(rounding, face->outward), offset_distance(o, p, turned));
   locate(scene, hit, p, s);
+}
+
+static inline float steepness(const SurfaceInteraction* s, float3 d) {
+  return real_max(fabs(dot(s->ng, d)), 0.01f);
 }
 
 // Sets the surface's footprints: the longer axis of the ellipse in which the pixel's cone meets the surface
 // (Akenine-Moeller and others 2019, "Texture Level of Detail Strategies for Real-Time Ray Tracing").
 ENTRY static inline void set_footprints(UNIFORM const Scene* scene, const SceneRay* ray, float t,
                                         OUT SurfaceInteraction* s) {
-  const float cosine = real_max(fabs(dot(s->ng, ray->d)), 0.01f);
   if (HAS_MAPS) s->footprint = 0.0f;
-  if (HAS_CONES) s->footprint = fabs(fma(t, ray->cone_spread, ray->cone_width)) / cosine;
-  if (HAS_CHECKER) s->camera_footprint = t * sample_spread(scene->info) / cosine;
+  if (HAS_CONES) s->footprint = fabs(fma(t, ray->cone_spread, ray->cone_width)) / steepness(s, ray->d);
+  if (HAS_CHECKER) s->camera_footprint = t * sample_spread(scene->info) / steepness(s, ray->d);
 }
