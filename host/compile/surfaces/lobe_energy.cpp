@@ -31,7 +31,7 @@ constexpr double gain_margin = 0.0015, glass_margin = 0.005;
 /// Facet normals about +z, sampled by their visible area for a viewer in the plane y = 0.
 using Normals = std::array<dvec3, draws>;
 
-/// As in kernels/lib/shade/rough.cl.
+/// As visible_normal() in kernels/plain/shade/facets.cl.
 Normals visible_normals(const dvec3& wo, double alpha) {
   const auto& turns = lattice_turns<draws, lattice_turn>();
   const dvec3 stretched = glm::normalize(dvec3(alpha * wo.x, 0, wo.z));

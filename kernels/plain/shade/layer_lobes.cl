@@ -23,7 +23,7 @@ static inline float facets_at(float3 h, float alpha_x, float alpha_y) {
   return 1.0f / (M_PI_F * alpha_x * alpha_y * real_max(width * width, 1e-30f));
 }
 
-// Samples a facet seen by wo, by visible area (visible_normal() of lib/shade/rough.cl, anisotropic).
+// Samples a facet seen by wo, by visible area (visible_normal() of facets.cl, anisotropic).
 static inline float3 seen_facet(float3 wo, float alpha_x, float alpha_y, float u_x, float u_y) {
   const float3 stretched = safe_unit3((float3)(alpha_x * wo.x, alpha_y * wo.y, real_max(wo.z, LEAST_COSINE)));
   const float z = fma(1.0f - u_y, 1.0f + stretched.z, -stretched.z), angle = 2.0f * M_PI_F * u_x;
