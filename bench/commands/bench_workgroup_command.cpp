@@ -114,15 +114,26 @@ std::vector<WorkGroup> parse_sizes(const std::string& text) {
   return sizes;
 }
 
-int bench_workgroup(const WorkgroupOptions& options) {
-  std::vector<std::string> kernels = options.kernels;
-  for (const std::string& name : kernels)
+/// The kernels to time. Both names of the frame stand for one.
+std::vector<std::string> timed_kernels(const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return {"render_whitted", "trace_rays", "occluded_rays"};
+  std::vector<std::string> kernels;
+  for (const std::string& name : wanted) {
     if (std::ranges::count(kernel_names, name) == 0)
       throw UsageError(
           fmt::format("--kernel {}: {}", name,
                       did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
                                    fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
-  if (kernels.empty()) kernels = {"render_whitted", "trace_rays", "occluded_rays"};
+    const auto is_same = [&](const std::string& other) {
+      return other == name || (is_frame(other) && is_frame(name));
+    };
+    if (std::ranges::none_of(kernels, is_same)) kernels.push_back(name);
+  }
+  return kernels;
+}
+
+int bench_workgroup(const WorkgroupOptions& options) {
+  const std::vector<std::string> kernels = timed_kernels(options.kernels);
   TimedKernel head;
   head.sizes = parse_sizes(options.sizes);
   BenchRun run("workgroup", "Times by work-group size", options);

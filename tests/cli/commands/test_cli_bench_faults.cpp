@@ -1,5 +1,6 @@
 // `sundog bench` where something goes wrong: spoiled results, devices that fail, interrupts; and what its
 // reports hold for whoever continues or recomputes them.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -175,4 +176,22 @@ TEST_CASE("bench workgroup takes sizes of one's own and ends about when its budg
   const CommandResult wrong = run_bench({"workgroup", folder.scene}, {"--sizes", "2,big"});
   CHECK(wrong.status == 2);
   CHECK_THAT(wrong.err, ContainsSubstring("--sizes big"));
+}
+
+TEST_CASE("bench workgroup times a frame once, by whichever names it is asked for") {
+  const CliFolder folder;
+  const std::string file = folder.file("w.json");
+  const CommandResult result =
+      run_bench({"workgroup", folder.scene, "--device", "0:0", "--kernel", "render_path", "--kernel",
+                 "render_whitted", "--kernel", "render_whitted"},
+                {"--sizes", "2", "--repeat", "1", "--json", file});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  std::vector<std::string> swept;
+  const json rows = json::parse(sundog::read_file(file)).at("measurements");
+  for (const json& row : rows) {
+    CHECK(row.at("kernel") == "render_whitted");
+    if (row.at("round") == "sweep") swept.push_back(row.at("work-group"));
+  }
+  CHECK(std::ranges::count(swept, "2") == 1);
 }
