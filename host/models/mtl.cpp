@@ -135,6 +135,9 @@ void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& tex
     }
 }
 
+// Illumination models 0 and 1 have none. Exporters write "Ns 0" for dull materials, whatever Ks they write.
+bool has_highlight(const MtlStatements& m) { return m.illumination >= 2 && m.exponent > 0; }
+
 /// The textures of a material; a term with a texture and no colour is white.
 void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, MaterialDescription& out) {
   const auto use = [&](const char* key) {
@@ -144,7 +147,7 @@ void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, 
   MaterialTextures& to = out.textures;
   to.diffuse = use("map_kd");
   to.ambient = m.maps.contains("map_ka") ? use("map_ka") : to.diffuse;
-  to.specular = use("map_ks");
+  if (has_highlight(m)) to.specular = use("map_ks");
   to.emission = use("map_ke");
   if (to.diffuse >= 0 && !m.diffuse) out.diffuse = dvec3(1);
   if (to.specular >= 0 && !m.specular) out.specular = dvec3(1);
@@ -177,6 +180,7 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
   out.exponent = m.exponent;
   out.emission = m.emission.value_or(out.emission);
   if (illum >= 3 && illum <= 8) out.reflection = glm::min(out.specular, dvec3(1));
+  if (!has_highlight(m)) out.specular = dvec3(0);
   if (glass) {
     const dvec3 filter = glm::min(m.filter.value_or(dvec3(1)), dvec3(1));
     out.transmission = opacity < 1 && !(fresnel && m.filter) ? (1 - opacity) * filter : filter;

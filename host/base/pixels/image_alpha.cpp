@@ -2,6 +2,7 @@
 #include <webp/decode.h>
 
 #include "base/pixels/image_codecs.h"
+#include "base/pixels/stored_image.h"
 
 namespace sundog {
 namespace {
@@ -19,8 +20,8 @@ bool has_alpha(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return png_has_alpha(bytes);
   if (bytes.starts_with("\x76\x2f\x31\x01")) return exr_has_alpha(bytes);
   WebPBitstreamFeatures features{};
-  return bytes.starts_with("RIFF") &&
-         WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &features) ==
+  if (!bytes.starts_with("RIFF")) return channels_of_bmp_or_tga(bytes) == 4;
+  return WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &features) ==
              VP8_STATUS_OK &&
          features.has_alpha != 0;
 }

@@ -23,8 +23,7 @@ void check_jpeg(void* handle, int result) {
   if (result == 0) return;
   const std::string_view reason = tjGetErrorStr2(handle);
   if (tjGetErrorCode(handle) == TJERR_WARNING && reason.find("extraneous bytes") != reason.npos) return;
-  throw std::runtime_error(
-      fmt::format("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found a bad JPEG: {}", reason));
+  throw std::runtime_error(fmt::format("a bad JPEG image: {}", reason));
 }
 
 /// Adobe stores inks inverted: 255 is no ink.

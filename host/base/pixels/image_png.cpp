@@ -27,9 +27,7 @@ constexpr std::int64_t png_pixels_a_byte = std::int64_t{1032} * 8;
 constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
 
 void check_png(int error) {
-  if (error)
-    throw std::runtime_error(fmt::format(
-        "wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found a bad PNG: {}", spng_strerror(error)));
+  if (error) throw std::runtime_error(fmt::format("a bad PNG image: {}", spng_strerror(error)));
 }
 
 std::uint32_t big_endian(std::string_view four) {

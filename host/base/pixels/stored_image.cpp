@@ -64,7 +64,8 @@ StoredImage decode_stored(std::string_view bytes, bool colors) {
   if (bytes.starts_with("\x76\x2f\x31\x01")) return stored_halves(decode_exr(bytes, colors));
   if (bytes.starts_with("#?")) return stored_halves(decode_hdr(bytes));
   if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return stored_halves(decode_pfm(bytes));
-  throw std::runtime_error("wanted a PNG, JPEG, WebP, EXR, HDR or PFM image, found another file");
+  if (channels_of_bmp_or_tga(bytes) > 0) return decode_bmp_or_tga(bytes);
+  throw std::runtime_error("wanted a PNG, JPEG, WebP, BMP, TGA, EXR, HDR or PFM image, found another file");
 }
 
 Image linear_image(const StoredImage& stored) {

@@ -28,7 +28,8 @@ struct StoredImage {
   }
 };
 
-/// PNG, JPEG, WebP, Radiance HDR, EXR and PFM, by the content; samples of the latter three become halves.
+/// PNG, JPEG, WebP, BMP, TGA, Radiance HDR, EXR and PFM, by the content; samples of the latter three become
+/// halves.
 /// An EXR's primaries are those of sRGB then, unless its numbers are no `colors`. Throws std::runtime_error
 /// with the reason alone.
 StoredImage decode_stored(std::string_view bytes, bool colors = true);
@@ -41,6 +42,9 @@ std::string encode_png(const StoredImage& image);
 StoredImage decode_png(std::string_view bytes);
 StoredImage decode_jpeg(std::string_view bytes);
 StoredImage decode_webp(std::string_view bytes);
+StoredImage decode_bmp_or_tga(std::string_view bytes);
+/// 0 for other files.
+int channels_of_bmp_or_tga(std::string_view bytes);
 
 /// Throws for sizes beyond a frame's, for more pixels than `file_bytes` can encode, and for images that do
 /// not fit into the available memory.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "models/values/material.h"
+#include "shared/metal_rough.h"
 
 namespace sundog {
 
@@ -22,11 +23,18 @@ void change_all(MaterialDescription& material, const Change& change) {
   material.by_paths = std::move(other);
 }
 
+/// The part of uniform white light that a highlight of white sends to a viewer along the normal, its maximum;
+/// with a texture of exponents an estimate.
+inline double highlight_albedo(const MaterialDescription& m) {
+  if (m.textures.exponent >= 0) return 1;
+  return m.blinn ? highlight_energy(m.exponent) : 2 / (m.exponent + 1);
+}
+
 /// Gives a Phong material that returns more light than it gets, as many files say, a dimmer one for paths:
 /// between such surfaces light would grow.
 inline void conserve_light(MaterialDescription& m) {
   if (m.type != MaterialType::phong || m.metal_rough || m.layers || m.by_paths) return;
-  const dvec3 returned = m.diffuse + m.specular + m.reflection + m.transmission;
+  const dvec3 returned = m.diffuse + highlight_albedo(m) * m.specular + m.reflection + m.transmission;
   const double most = std::max({returned.x, returned.y, returned.z});
   if (most <= 1) return;
   auto dimmer = std::make_shared<MaterialDescription>(m);

@@ -1,5 +1,5 @@
-// Damaged PNG, JPEG, WebP, EXR and HDR files: each prefix, and each byte changed. Each is an image within the
-// limits or an error; none crashes or takes long.
+// Damaged PNG, JPEG, WebP, BMP, TGA, EXR and HDR files: each prefix, and each byte changed. Each is an image
+// within the limits or an error; none crashes or takes long.
 #include <base/limits.h>
 #include <base/pixels/image_codecs.h>
 #include <base/pixels/stored_image.h>
@@ -141,4 +141,32 @@ TEST_CASE("a JPEG or WebP header that lies about the size is an error") {
   std::string webp = from_hex(webp_lossless);
   for (std::size_t i = 21; i < 24; ++i) webp[i] = '\xff';  // 16384 x 16384
   CHECK_FALSE(decodes(webp));
+}
+
+TEST_CASE("BMP and TGA files are read, the first row above, and damaged ones are images or errors") {
+  // 2x2 pixels: red, green; blue, white. A BMP row of 24 bits ends at a multiple of four bytes.
+  const std::string bmp = from_hex(
+      "424d46000000000000003600000028000000020000000200000001001800000000001000000000000000000000000000"
+      "000000000000ff0000ffffff00000000ff00ff000000");
+  // The same from below, and as runs from above with alpha: two red pixels, then green and blue.
+  const std::string tga = from_hex(
+      "0000020000000000000000000200020018"
+      "00"
+      "ff0000ffffff0000ff00ff00");
+  const std::string runs = from_hex(
+      "00000a0000000000000000000200020020"
+      "28"
+      "810000ff80"
+      "0100ff00ffff0000ff");
+  const std::vector<std::uint8_t> colors{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255};
+  CHECK(decode_stored(bmp).data == colors);
+  CHECK(decode_stored(tga).data == colors);
+  CHECK(decode_stored(runs).data ==
+        std::vector<std::uint8_t>{255, 0, 0, 128, 255, 0, 0, 128, 0, 255, 0, 255, 0, 0, 255, 255});
+  CHECK_FALSE(has_alpha(bmp));
+  CHECK_FALSE(has_alpha(tga));
+  CHECK(has_alpha(runs));
+  CHECK_FALSE(has_alpha("any other file"));
+  CHECK_THROWS_WITH(decode_stored(tga.substr(0, tga.size() - 3)), "the BMP or TGA image is cut short");
+  for (const std::string& good : {bmp, tga, runs}) damage(good, true);
 }

@@ -229,6 +229,16 @@ TEST_CASE("MTL's opaque materials become phong", "[models]") {
   CHECK(m.transmission == dvec3(0));
 }
 
+TEST_CASE("MTL's illumination 0 and 1 have no highlight, nor has Ns 0, as exporters write", "[models]") {
+  for (const char* dull : {"illum 0", "illum 1", "Ns 0", "Ns 0.0\nillum 2"}) {
+    const MaterialDescription m = material_of(std::string("Kd .2 .2 .2\nKs .9 .9 .9\n") + dull);
+    CAPTURE(dull);
+    CHECK(m.diffuse == dvec3(.2));
+    CHECK(m.specular == dvec3(0));
+  }
+  CHECK(material_of("Ks .9\nNs 0\nillum 3").reflection == dvec3(.9));
+}
+
 TEST_CASE("a material without Ka reflects ambient light in the colour of Kd", "[models]") {
   CHECK(material_of("Kd .8 0 .4").ambient == dvec3(.1, 0, .05));
   CHECK(material_of("Ks .5").ambient == MaterialDescription().ambient);

@@ -108,17 +108,22 @@ TEST_CASE("made-up lights leave no matte material white, and dark ones not black
 }
 
 TEST_CASE("for paths a bare model's materials return no more light than they get") {
-  const SceneDescription fine = lit(dvec3(0), dvec3(0.8), 0.2), bright = lit(dvec3(0), dvec3(0.8), 0.5);
-  CHECK(bright.render.integrator == "path");
-  const auto material_of = [](const SceneDescription& scene) {
+  const auto material_of = [](double diffuse, double specular, double exponent) {
+    const SceneDescription scene = lit(dvec3(0), dvec3(diffuse), specular, exponent);
+    CHECK(scene.render.integrator == "path");
     return scene.materials.at(static_cast<std::size_t>(scene.objects[0].material));
   };
-  CHECK(!material_of(fine).by_paths);
-  const MaterialDescription m = material_of(bright);  // as Blender's usual MTL
-  CHECK(m.diffuse.x == 0.8);
-  REQUIRE(m.by_paths);
-  CHECK(m.by_paths->diffuse.x == Approx(0.8 / 1.3));
-  CHECK(m.by_paths->specular.x == Approx(0.5 / 1.3));
+  CHECK(!material_of(0.8, 0.2, 32).by_paths);
+  CHECK(!material_of(0.8, 0.5, 96).by_paths);  // as Blender's usual MTL: a narrow highlight takes little
+  CHECK(!material_of(0.4, 0.6, 1).by_paths);
+  // Phong's max(r.v, 0)^e returns 2 / (e + 1) of uniform light: its integral over the hemisphere, over pi.
+  const MaterialDescription broad = material_of(0.8, 0.5, 1), uniform = material_of(0.2, 0.9, 0);
+  CHECK(broad.diffuse.x == 0.8);
+  REQUIRE(broad.by_paths);
+  CHECK(broad.by_paths->diffuse.x == Approx(0.8 / 1.3));
+  CHECK(broad.by_paths->specular.x == Approx(0.5 / 1.3));
+  REQUIRE(uniform.by_paths);
+  CHECK(uniform.by_paths->diffuse.x == Approx(0.2 / 2));
 }
 
 TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
