@@ -93,8 +93,13 @@ void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
+/// MeshLab writes Tr 1 for opaque materials; nobody defines one that is not seen.
+bool is_opaque_by_tr(const MtlStatements& m) { return !m.opacity && m.transparency == 1; }
+
 /// Some programs write Tr for d, the format's own keyword.
-double opacity_of(const MtlStatements& m) { return m.opacity.value_or(1 - m.transparency.value_or(0)); }
+double opacity_of(const MtlStatements& m) {
+  return is_opaque_by_tr(m) ? 1 : m.opacity.value_or(1 - m.transparency.value_or(0));
+}
 
 /// With -bm, true displacement by that many model units; otherwise a bump map, because files rarely give a
 /// height.
@@ -285,6 +290,9 @@ int MaterialLibrary::find(const Source& obj, std::string_view name) {
 
 int MaterialLibrary::add(const Source& obj, const MtlStatements& stated) {
   for (const auto& [key, feature] : stated.unread) leave_unread(model_, feature);
+  if (is_opaque_by_tr(stated))
+    model_.warnings.push_back(fmt::format("{}: the material '{}' has Tr 1 and no d: it is taken as opaque",
+                                          stated.library.string(), stated.name));
   if (stated.opacity && stated.transparency && std::abs(*stated.opacity + *stated.transparency - 1) > 1e-6)
     model_.warnings.push_back(
         fmt::format("{}: the material '{}' has d {:g} and Tr {:g}, which differ: d counts",

@@ -52,7 +52,10 @@ class ObjReader {
   void read() {
     while (text_.next_line()) read_statement(text_.keyword());
     if (positions_.empty()) text_.fail("no vertices: not an OBJ file");
-    settle_lost_normals();
+    warn_of_no_numbers("normals", "made up", normals_of_no_number_);
+    warn_of_no_numbers("texture coordinates", "taken as 0", uvs_of_no_number_);
+    settle_lost("normals", "made up", lost_normals_, normals_.empty());
+    settle_lost("texture coordinates", "left out", lost_uvs_, uvs_.empty());
   }
 
   // The mesh, with positions relative to origin().
@@ -132,7 +135,7 @@ class ObjReader {
     newest_.push_back(none);
   }
 
-  // References to normals that the file has not defined.
+  // References to what the file has not defined.
   struct Lost {
     std::size_t count = 0;
     std::string place, what;  // of the first
@@ -144,14 +147,12 @@ class ObjReader {
           fmt::format("{}: {} that are no numbers are {} ({} in all)", lost.place, what, mend, lost.count));
   }
 
-  // Some programs reference normals that they do not write.
-  void settle_lost_normals() {
-    warn_of_no_numbers("normals", "made up", normals_of_no_number_);
-    warn_of_no_numbers("texture coordinates", "taken as 0", uvs_of_no_number_);
-    if (lost_normals_.count == 0) return;
-    if (!normals_.empty()) fail(source_, lost_normals_.place, lost_normals_.what);
+  // Some programs reference normals or texture coordinates that they do not write.
+  void settle_lost(const char* what, const char* mend, const Lost& lost, bool has_none) {
+    if (lost.count == 0) return;
+    if (!has_none) fail(source_, lost.place, lost.what);
     model_.warnings.push_back(
-        fmt::format("{}: faces name normals, but the file has none: they are made up", lost_normals_.place));
+        fmt::format("{}: faces name {}, but the file has none: they are {}", lost.place, what, mend));
   }
 
   // Resolves an index: 1 is the first, -1 the latest.
@@ -178,7 +179,7 @@ class ObjReader {
       text_.fail(fmt::format("vertex {}, of line {}, is no number", corner.position + 1, bad->second));
     if (first != word.npos) {
       const std::string_view uv = word.substr(first + 1, second == word.npos ? second : second - first - 1);
-      if (!uv.empty()) corner.uv = resolve(uv, uvs_.size(), "texture coordinate");
+      if (!uv.empty()) corner.uv = resolve(uv, uvs_.size(), "texture coordinate", &lost_uvs_);
     }
     if (second != word.npos) {
       const std::string_view normal = word.substr(second + 1);
@@ -282,7 +283,7 @@ class ObjReader {
   std::vector<std::uint32_t> points_;          // per mesh vertex: the first one of the same file vertex
   std::vector<bool> has_normal_;
   bool any_uv_ = false, any_color_ = false;
-  Lost lost_normals_, normals_of_no_number_, uvs_of_no_number_;
+  Lost lost_normals_, lost_uvs_, normals_of_no_number_, uvs_of_no_number_;
   std::map<std::size_t, std::size_t> lines_of_no_number_;  // by position: the line that defines it
   std::vector<std::uint32_t> groups_;                      // per triangle
   std::uint32_t group_ = 0;

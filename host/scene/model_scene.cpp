@@ -169,7 +169,8 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}, {"conserve", true}}}}};
   if (model.lights.empty()) {
     document["environment"] = soft_sky(made_up);
-    document["render"] = {{"integrator", "path"}, {"samples", 64}};
+    // The key light in a shiny material would leave bright dots on what is matte.
+    document["render"] = {{"integrator", "path"}, {"samples", 64}, {"max_component", 4}};
   }
   set_view(document, model);
   if (!model.camera && model.lights.empty() && !bounds.empty())

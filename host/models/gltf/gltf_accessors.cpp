@@ -210,20 +210,16 @@ Elements GltfAccessors::part_of_sparse(const JsonAt& at, std::uint64_t component
   return part;
 }
 
-// Checks that the view holds all elements, with aligned components.
+// Checks that the view holds all elements. They are copied byte by byte, so none needs to be aligned.
 void GltfAccessors::check_room(const JsonAt& at, const Elements& elements) const {
   const BufferView& view = views_[elements.view];
   const std::size_t size = elements.element_size, stride = view.stride ? view.stride : size;
   const std::size_t last = size - elements.padding;
-  const std::size_t component = size_of_component(elements.component);
   if (stride < size) at.fail(fmt::format("elements of {} bytes in a view with a stride of {}", size, stride));
   if (elements.offset > view.length || last > view.length - elements.offset ||
       (elements.count - 1) > (view.length - elements.offset - last) / stride)
     at.fail(fmt::format("{} elements of {} bytes, {} apart, from byte {}: the view has {} bytes",
                         elements.count, size, stride, elements.offset, view.length));
-  if (elements.offset % component != 0 || (view.offset + elements.offset) % component != 0)
-    at.fail(fmt::format("the data begins at byte {} of its buffer, not at a multiple of {}",
-                        view.offset + elements.offset, component));
 }
 
 void GltfAccessors::fail_at(const Accessor& accessor, const std::string& what) const {

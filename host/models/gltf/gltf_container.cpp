@@ -37,8 +37,6 @@ GltfContainer open_glb(const Source& source) {
     if (length - at < 8) fail_at_byte(source, at, "the file ends within a chunk's header");
     const std::size_t size = word_at(source, at);
     const std::uint32_t type = word_at(source, at + 4);
-    if (size % 4 != 0)
-      fail_at_byte(source, at, fmt::format("a chunk of {} bytes, not a multiple of 4", size));
     if (size > length - at - 8)
       fail_at_byte(source, at, fmt::format("a chunk of {} bytes runs over the end", size));
     const std::string_view content = std::string_view(source.bytes).substr(at + 8, size);

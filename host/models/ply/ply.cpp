@@ -1,5 +1,5 @@
 // Reads PLY, ASCII and binary in both byte orders: vertices with normals, texture coordinates and colours;
-// faces, with optional colours, or triangle strips.
+// faces, with optional colours and texture coordinates, or triangle strips.
 #include <fmt/format.h>
 
 #include <tbb/blocked_range.h>
@@ -93,22 +93,24 @@ class DataReader {
     const bool strips = element.name == "tristrips";
     const std::size_t count = vertex_count();
     if (content_.mesh.positions.empty() && element.count > 0) cursor_.fail("faces before any vertex");
-    std::size_t list = element.properties.size();
-    for (std::size_t p = 0; p < element.properties.size(); ++p)
-      if (element.properties[p].name == "vertex_indices" || element.properties[p].name == "vertex_index")
-        list = p;
-    for (const PlyProperty& property : element.properties)
-      if (property.name == "texcoord" && property.count_type && content_.mesh.uvs.empty())
-        content_.unread.emplace_back("texture coordinates of faces");
-    if (list == element.properties.size() || !element.properties[list].count_type)
+    const std::size_t none = element.properties.size();
+    std::size_t list = none, uvs = none;
+    for (std::size_t p = 0; p < none; ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (property.name == "vertex_indices" || property.name == "vertex_index") list = p;
+      if (property.name == "texcoord" && property.count_type && !strips && content_.mesh.uvs.empty()) uvs = p;
+    }
+    if (list == none || !element.properties[list].count_type)
       cursor_.fail(fmt::format("'{}' needs a list vertex_indices", element.name));
-    if (!strips && !layout.colors() && content_.mesh.triangles.empty() && read_triangles(element, list))
-      return;
+    const bool plain = !strips && !layout.colors() && !layout.has[image] && uvs == none;
+    if (plain && content_.mesh.triangles.empty() && read_triangles(element, list)) return;
     content_.mesh.triangles.reserve(element.count);
     Values values{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       corners_.clear();
+      uvs_.clear();
       read_element(cursor_, element, layout, values, [&](std::size_t p, double value) {
+        if (p == uvs) uvs_.push_back(std::isfinite(value) ? static_cast<float>(value) : 0.0f);
         if (p != list) return;
         const bool restart = strips && value == -1;
         if (!restart && !(value >= 0 && value < static_cast<double>(count) && value == std::trunc(value)))
@@ -119,8 +121,13 @@ class DataReader {
           cursor_.fail(
               fmt::format("{} {}: vertex {} has a coordinate that is no number", element.name, i, value));
       });
-      strips ? add_strips() : add_polygon();
-      if (layout.colors()) content_.face_colors.resize(content_.mesh.triangles.size(), color_of(values));
+      uvs_.resize(2 * corners_.size());
+      strips ? add_strips() : add_polygon(uvs != none);
+      const std::size_t triangles = content_.mesh.triangles.size();
+      if (layout.colors()) content_.face_colors.resize(triangles, color_of(values));
+      const bool known = values[image] >= 0 && values[image] < static_cast<double>(header_.textures.size());
+      if (layout.has[image])
+        content_.images.resize(triangles, known ? static_cast<std::uint32_t>(values[image]) : 0);
     }
   }
 
@@ -153,24 +160,25 @@ class DataReader {
     return true;
   }
 
-  void add_polygon() {
-    Mesh& mesh = content_.mesh;
-    if (corners_.size() == 3) {
-      mesh.triangles.emplace_back(corners_[0], corners_[1], corners_[2]);
-      return;
-    }
+  void add_triangle(glm::uvec3 t, bool with_uvs) {
+    content_.mesh.triangles.emplace_back(corners_[t.x], corners_[t.y], corners_[t.z]);
+    for (int k = 0; k < 3 && with_uvs; ++k)
+      content_.corner_uvs.emplace_back(uvs_[2 * t[k]], uvs_[2 * t[k] + 1]);
+  }
+
+  void add_polygon(bool with_uvs) {
+    if (corners_.size() == 3) return add_triangle({0, 1, 2}, with_uvs);
     if (corners_.size() < 3) {
       ++content_.dropped;
       return;
     }
     places_.clear();
     pieces_.clear();
-    for (const std::uint32_t corner : corners_) places_.push_back(mesh.positions[corner]);
+    for (const std::uint32_t corner : corners_) places_.push_back(content_.mesh.positions[corner]);
     if (!triangulate(places_, pieces_))
       cursor_.fail(fmt::format("a concave polygon of {} corners; at most {} are triangulated",
                                corners_.size(), most_concave_corners));
-    for (const glm::uvec3 t : pieces_)
-      mesh.triangles.emplace_back(corners_[t.x], corners_[t.y], corners_[t.z]);
+    for (const glm::uvec3 t : pieces_) add_triangle(t, with_uvs);
   }
 
   void add_strips() {
@@ -190,33 +198,73 @@ class DataReader {
   Cursor cursor_;
   Content content_;
   std::vector<std::uint32_t> corners_;
+  std::vector<float> uvs_;  // of the corners
   std::vector<glm::vec3> places_;
   std::vector<glm::uvec3> pieces_;
 };
 
-// Converts face colours to vertex colours: splits vertices between faces of different colours. Returns each
-// vertex's original, so that normals are still smoothed across the split.
-std::vector<std::uint32_t> paint_faces(Mesh& mesh, const std::vector<glm::vec3>& face_colors) {
+// Gives vertices the colours and texture coordinates of faces' corners: splits those whose corners differ.
+// Returns each vertex's original, so that normals are still smoothed across the split.
+std::vector<std::uint32_t> split_by_corners(const Content& content, Mesh& mesh) {
+  const bool colored = mesh.colors.empty() && !content.face_colors.empty(),
+             mapped = !content.corner_uvs.empty();
+  if (!colored && !mapped) return {};
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> original(mesh.positions.size());
   for (std::uint32_t i = 0; i < original.size(); ++i) original[i] = i;
-  std::vector<bool> painted(mesh.positions.size(), false);
-  mesh.colors.assign(mesh.positions.size(), glm::vec3(1));
+  std::vector<bool> given(mesh.positions.size(), false);
+  std::vector<std::uint32_t> next(mesh.positions.size(), none);  // copies of a vertex
+  if (colored) mesh.colors.assign(mesh.positions.size(), glm::vec3(1));
+  if (mapped) mesh.uvs.assign(mesh.positions.size(), glm::vec2(0));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh.triangles[t][k];
-      if (!painted[v]) {
-        painted[v] = true;
-        mesh.colors[v] = face_colors[t];
-      } else if (mesh.colors[v] != face_colors[t]) {
-        mesh.triangles[t][k] = static_cast<std::uint32_t>(mesh.positions.size());
-        original.push_back(v);
-        mesh.positions.push_back(glm::vec3(mesh.positions[v]));
-        if (!mesh.normals.empty()) mesh.normals.push_back(glm::vec3(mesh.normals[v]));
-        if (!mesh.uvs.empty()) mesh.uvs.push_back(glm::vec2(mesh.uvs[v]));
-        mesh.colors.push_back(face_colors[t]);
+      const glm::vec3 color = colored ? content.face_colors[t] : glm::vec3(1);
+      const glm::vec2 uv = mapped ? content.corner_uvs[3 * t + static_cast<std::size_t>(k)] : glm::vec2(0);
+      std::uint32_t v = mesh.triangles[t][k];
+      while (given[v] && ((colored && mesh.colors[v] != color) || (mapped && mesh.uvs[v] != uv))) {
+        if (next[v] == none) {
+          next[v] = static_cast<std::uint32_t>(mesh.positions.size());
+          original.push_back(original[v]);
+          given.push_back(false);
+          next.push_back(none);
+          mesh.positions.push_back(glm::vec3(mesh.positions[v]));
+          if (!mesh.normals.empty()) mesh.normals.push_back(glm::vec3(mesh.normals[v]));
+          if (!mesh.uvs.empty()) mesh.uvs.push_back(glm::vec2(mesh.uvs[v]));
+          if (!mesh.colors.empty()) mesh.colors.push_back(glm::vec3(mesh.colors[v]));
+        }
+        v = next[v];
       }
+      given[v] = true;
+      if (colored) mesh.colors[v] = color;
+      if (mapped) mesh.uvs[v] = uv;
+      mesh.triangles[t][k] = v;
     }
   return original;
+}
+
+// A material for each of the header's textures, or one of the vertices' colours.
+void add_materials(const Source& source, const PlyHeader& header, const Content& content, Mesh& mesh,
+                   Model& model) {
+  if (mesh.triangles.empty()) return;
+  MtlTextures textures(model);
+  if (!mesh.uvs.empty())
+    for (const MtlMap& map : header.textures) {
+      MaterialDescription material;
+      material.name = map.file;
+      material.textures.diffuse = material.textures.ambient = textures.use(map, true, source, source.path);
+      if (material.textures.diffuse >= 0) material.diffuse = dvec3(1);
+      model.materials.push_back(material);
+    }
+  if (model.materials.empty() && mesh.colors.empty()) return;
+  if (model.materials.empty()) {
+    MaterialDescription material;
+    material.name = "vertex colors";
+    material.vertex_color = true;
+    model.materials.push_back(material);
+  }
+  mesh.materials.assign(mesh.triangles.size(), 0);
+  for (std::size_t t = 0; t < content.images.size() && model.materials.size() > 1; ++t)
+    mesh.materials[t] = static_cast<int>(content.images[t]);
 }
 
 template <class Cursor>
@@ -253,21 +301,14 @@ Model load_ply(Source source, const ModelOptions& options) {
   Mesh& mesh = content.mesh;
   if (mesh.positions.empty()) fail(source, "", "the file has no vertices");
   mesh.name = source.path.stem().string();
-  std::vector<std::uint32_t> points;
-  if (mesh.colors.empty() && !content.face_colors.empty()) points = paint_faces(mesh, content.face_colors);
+  const std::vector<std::uint32_t> points = split_by_corners(content, mesh);
   complete_normals(mesh, {}, options.crease_angle.value_or(45), points);
   Model model;
   model.dropped_polygons = content.dropped;
   warn_of_no_numbers(source, content.normals_of_no_number, "normals", "made up", model);
   warn_of_no_numbers(source, content.uvs_of_no_number, "texture coordinates", "taken as 0", model);
   for (const std::string& feature : content.unread) leave_unread(model, feature);
-  if (!mesh.colors.empty() && !mesh.triangles.empty()) {
-    MaterialDescription material;
-    material.name = "vertex colors";
-    material.vertex_color = true;
-    model.materials.push_back(material);
-    mesh.materials.assign(mesh.triangles.size(), 0);
-  }
+  add_materials(source, header, content, mesh, model);
   add_mesh(model, std::move(mesh), content.origin);
   return model;
 }

@@ -90,7 +90,13 @@ PlyHeader read_ply_header(const Source& source) {
     } else if (word == "property") {
       if (header.elements.empty()) text.fail("a property before any element");
       header.elements.back().properties.push_back(read_property(text));
-    } else if (word != "comment" && word != "obj_info") {
+    } else if (word == "comment") {
+      if (text.keyword() != "texturefile") continue;
+      MtlMap map;
+      map.file = text.rest();
+      map.line = text.line();
+      if (!map.file.empty()) header.textures.push_back(map);
+    } else if (word != "obj_info") {
       text.fail("the header wants format, element, property, comment or end_header here");
     }
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/mtl_maps.h"
 #include "models/source.h"
 
 namespace sundog::models {
@@ -28,6 +29,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
+  std::vector<MtlMap> textures;              // of "comment TextureFile NAME" lines, as MeshLab writes
   std::size_t data_byte = 0, data_line = 1;  // where the data begins
 };
 

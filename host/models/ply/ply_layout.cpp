@@ -12,7 +12,7 @@ Slot slot_of(std::string_view name) {
     std::string_view name;
     Slot slot;
   };
-  static constexpr std::array<Known, 24> known{{{"x", px},
+  static constexpr std::array<Known, 25> known{{{"x", px},
                                                 {"y", py},
                                                 {"z", pz},
                                                 {"nx", nx},
@@ -35,7 +35,8 @@ Slot slot_of(std::string_view name) {
                                                 {"diffuse_blue", blue},
                                                 {"alpha", alpha},
                                                 {"a", alpha},
-                                                {"diffuse_alpha", alpha}}};
+                                                {"diffuse_alpha", alpha},
+                                                {"texnumber", image}}};
   for (const Known& k : known)
     if (k.name == name) return k.slot;
   return no_slot;

@@ -9,7 +9,23 @@
 
 namespace sundog::models::ply {
 
-enum Slot { px, py, pz, nx, ny, nz, tu, tv, red, green, blue, alpha, slot_count, no_slot = slot_count };
+enum Slot {
+  px,
+  py,
+  pz,
+  nx,
+  ny,
+  nz,
+  tu,
+  tv,
+  red,
+  green,
+  blue,
+  alpha,
+  image,
+  slot_count,
+  no_slot = slot_count
+};
 
 Slot slot_of(std::string_view name);
 

@@ -26,6 +26,8 @@ struct Content {
   Mesh mesh;
   dvec3 origin{0};                     // of the positions
   std::vector<glm::vec3> face_colors;  // per triangle, if faces have colours and vertices have none
+  std::vector<glm::vec2> corner_uvs;   // three per triangle, if faces have them and vertices have none
+  std::vector<std::uint32_t> images;   // per triangle, if faces name them
   std::size_t dropped = 0;
   std::size_t normals_of_no_number = 0, uvs_of_no_number = 0;
   std::set<std::uint32_t> lost;  // NaN positions

@@ -90,7 +90,7 @@ TEST_CASE("a bad OBJ is refused with its line", "[models]") {
   CHECK_THAT(error("f 1 2 4"), ContainsSubstring("line 4: vertex 4 does not exist: 3 are defined"));
   CHECK_THAT(error("f 0 1 2"), ContainsSubstring("line 4: vertex 0"));
   CHECK_THAT(error("f -4 1 2"), ContainsSubstring("line 4"));
-  CHECK_THAT(error("f 1/1 2/1 3/1"), ContainsSubstring("line 4: texture coordinate 1"));
+  CHECK_THAT(error("vt 0 0\nf 1/2 2/1 3/1"), ContainsSubstring("line 5: texture coordinate 2"));
   CHECK_THAT(error("f 1//0 2//1 3//1"), ContainsSubstring("line 4: normal 0"));
   CHECK_THAT(error("vn 0 0 1\nf 1//2 2//1 3//1"), ContainsSubstring("line 5: normal 2"));
   CHECK_THAT(error("f 1//1 2//1 3//1\nvn 0 0 1"), ContainsSubstring("line 4: normal 1 does not exist: 0"));
@@ -265,6 +265,9 @@ TEST_CASE("MTL's d counts where Tr says something else, with a warning", "[model
   CHECK_THAT(model.warnings[0], ContainsSubstring("material 'm' has d 1 and Tr 1, which differ: d counts"));
   CHECK(material_of("Tr 0.75\nd 0.25", &model).transmission == dvec3(0.75));
   CHECK(model.warnings.empty());
+  CHECK(material_of("Tr 1.000000", &model).transmission == dvec3(0));  // as MeshLab writes
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("'m' has Tr 1 and no d: it is taken as opaque"));
 }
 
 TEST_CASE("a map without a name is left out, and images of materials that no face has are not read",

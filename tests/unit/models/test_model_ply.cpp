@@ -258,3 +258,35 @@ TEST_CASE("a bad PLY is refused with its line or byte", "[models]") {
   CHECK_THAT(load_error("a.ply", std::string_view(whole).substr(0, whole.size() - 1)),
              ContainsSubstring("byte"));
 }
+
+TEST_CASE("a PLY's faces have texture coordinates and images, as MeshLab writes them", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("a.png", "an image");
+  const std::string head =
+      "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b c.png\n"
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "property int texnumber\nend_header\n";
+  // A square of two triangles; along their edge, the texture continues at one end and jumps at the other.
+  const Model model =
+      load_model(folder.write("a.ply", head + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                                              "3 0 1 2 6 0 0 .5 0 .5 1 0\n3 0 2 3 6 0 0 1 1 0 1 1\n"));
+  const Mesh& mesh = model.meshes.at(0);
+  REQUIRE(mesh.triangles.size() == 2);
+  CHECK(mesh.positions.size() == 5);
+  CHECK(mesh.triangles[0].x == mesh.triangles[1].x);
+  const auto uv = [&](std::size_t triangle, int corner) {
+    return mesh.uvs[mesh.triangles[triangle][corner]];
+  };
+  CHECK(uv(0, 2) == glm::vec2(.5f, 1));
+  CHECK(uv(1, 1) == glm::vec2(1, 1));
+  CHECK(mesh.positions[mesh.triangles[1].y] == mesh.positions[mesh.triangles[0].z]);
+  CHECK(mesh.materials == std::vector<int>{0, 1});
+  REQUIRE(model.materials.size() == 2);
+  REQUIRE(model.images.size() == 1);
+  CHECK(model.images[0].name == "a.png");
+  CHECK(model.materials[0].diffuse == dvec3(1));
+  CHECK(model.materials[1].textures.diffuse == -1);
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("line 4: the image") && ContainsSubstring("b c.png"));
+}

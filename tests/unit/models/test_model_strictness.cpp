@@ -121,12 +121,41 @@ TEST_CASE("what a glTF may leave out or leave over is no error", "[models]") {
              ContainsSubstring("buffer 0 is not at hand"));
 }
 
-TEST_CASE("an OBJ may name normals without having any, and its library a material without a name",
+TEST_CASE("a GLB's chunks and a glTF's elements need not be aligned, as old exporters write them",
           "[models]") {
+  std::string bytes = "x";
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const std::string json =
+      document(
+          R"("buffers":[{"byteLength":37}],"bufferViews":[{"buffer":0,"byteOffset":1,"byteLength":36}],"accessors":[
+      {"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],"meshes":[{"primitives":[{"attributes":
+      {"POSITION":0}}]}],)" +
+          one_node) +
+      " ";
+  for (const std::size_t odd : {0u, 1u, 2u, 3u}) {
+    const std::string text = json + std::string(odd, ' ');
+    std::string glb = "glTF";
+    const auto size = [](const std::string& s) { return static_cast<std::uint32_t>(s.size()); };
+    put<std::uint32_t>(glb, {2, 12 + 8 + size(text) + 8 + size(bytes), size(text), 0x4E4F534A});
+    glb += text;
+    put<std::uint32_t>(glb, {size(bytes), 0x004E4942});
+    glb += bytes;
+    CHECK(area_of(load_text("a.glb", glb).meshes.at(0)) == 0.5);
+  }
+}
+
+TEST_CASE(
+    "an OBJ may name normals or texture coordinates without having any, and its library a material without a "
+    "name",
+    "[models]") {
   const Model normals = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//3\n");
   CHECK(area_of(normals.meshes.at(0)) == 0.5);
   REQUIRE(normals.warnings.size() == 1);
   CHECK_THAT(normals.warnings[0], ContainsSubstring("line 4") && ContainsSubstring("normals"));
+  const Model uvs = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/3\n");
+  CHECK(uvs.meshes.at(0).uvs.empty());
+  REQUIRE(uvs.warnings.size() == 1);
+  CHECK_THAT(uvs.warnings[0], ContainsSubstring("line 4: faces name texture coordinates"));
   const TemporaryFolder folder;
   folder.write("m.mtl", "newmtl\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n");
   const Model model =
