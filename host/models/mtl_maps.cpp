@@ -48,7 +48,7 @@ void read_option(TextReader& text, std::string_view option, MtlMap& map) {
   } else if (option == "-imfchan") {
     map.channel = channel_of(text.word());
   } else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-boost" ||
-             option == "-texres" || option == "-type") {
+             option == "-texres" || option == "-type" || option == "-colorspace") {
     text.word();
   } else {
     text.fail(fmt::format("'{}' is no option of a texture", option));

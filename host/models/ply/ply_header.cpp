@@ -94,6 +94,7 @@ PlyHeader read_ply_header(const Source& source) {
       if (text.keyword() != "texturefile") continue;
       MtlMap map;
       map.file = text.rest();
+      if (map.file.starts_with("<this>")) map.file.replace(0, 6, source.path.stem().string());  // MeshLab's
       map.line = text.line();
       if (!map.file.empty()) header.textures.push_back(map);
     } else if (word != "obj_info") {

@@ -263,7 +263,7 @@ TEST_CASE("a PLY's faces have texture coordinates and images, as MeshLab writes 
   const TemporaryFolder folder;
   folder.write("a.png", "an image");
   const std::string head =
-      "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b c.png\n"
+      "ply\nformat ascii 1.0\ncomment TextureFile <this>.png\ncomment TextureFile b c.png\n"
       "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
       "property int texnumber\nend_header\n";

@@ -389,7 +389,7 @@ TEST_CASE("an MTL's disp displaces by what -bm says, and bends normals without i
   for (const Mesh& mesh : moved.meshes)
     for (const glm::vec3& p : mesh.positions) highest = std::max(highest, std::abs(p.z));
   CHECK(highest > 0.1f);
-  folder.write("m.mtl", "newmtl a\ndisp h.png\n");
+  folder.write("m.mtl", "newmtl a\ndisp -colorspace linear h.png\n");
   const SceneDescription bent = load_scene(folder / "a.obj");
   CHECK(bent.materials.at(0).displaced_by == -1);
   CHECK(bent.materials[0].textures.height >= 0);
