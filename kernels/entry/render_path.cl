@@ -7,7 +7,6 @@
 #define RAYS_BY_LANE 1
 #include "lib/core/counters.cl"
 #include "lib/light/choose_light.cl"
-#include "lib/light/relief_shadow.cl"
 #include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/steps.cl"

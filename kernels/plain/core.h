@@ -17,6 +17,7 @@ float real_log(float a);
 float nonzero(float a);  // to divide by
 
 float real_rsqrt(float a);
+float3 unit3(float3 a);
 float3 safe_unit3(float3 a);
 float3 renormalized3(float3 a);
 

@@ -3,7 +3,6 @@
 #include "lib/path/ray_counts.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/relief_hits.cl"
 
 // The hits of the shadow rays of `lanes`; in scenes where nothing lets light pass, any hit will do.
 static inline Hits shadow_hits(const Scene* scene, SceneRays* rays, MASK lanes, bool coherent, u32* counts) {

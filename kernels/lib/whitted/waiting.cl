@@ -1,15 +1,15 @@
 // What plain/whitted leaves in the tile: rays that wait, and what pixels show less of.
 #pragma once
 #include "lib/light/choose_light.cl"
-#include "lib/light/field_light.cl"
-#include "lib/light/field_openness.cl"
 #include "lib/light/light.cl"
-#include "lib/light/relief_shadow.cl"
 #include "lib/light/shadow.cl"
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/trace/shaft.cl"
+#if HAS_SDF
+#include "lib/sdf/light.cl"
+#endif
 
 static inline void wait_again(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
                               MASK lanes) {

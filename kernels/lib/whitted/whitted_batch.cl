@@ -49,7 +49,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                               const WaitingRays* paths, MASK lanes, bool coherent, bool last,
-                              const Encounters* met, const Shading* at, u32* counts) {
+                              const Encounters* met, const SurfaceShadings* at, u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   MASK casting = lanes;
   ShadowStack* stack = tile->shadows;
@@ -77,9 +77,10 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                                WaitingRays* paths, MASK lanes, bool coherent, u32* counts) {
   Encounters met;
-  Shading at;
-  MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
-                                          : meet_listed(scene, rays, lanes, &met, counts);
+  SurfaceShadings at;
+  MASK unseen =
+      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, &met, counts, lanes)
+                                         : meet_listed(scene, rays, lanes, &met, counts));
   const MASK straight = lanes & ~unseen & is_from_camera(paths, lanes);
   unseen |= straight & pass_hidden(scene, rays, &met, straight);
   if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);

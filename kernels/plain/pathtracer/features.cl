@@ -6,9 +6,6 @@
 #define FEATURE_DEPTH 16        // surfaces on a way, at most
 #define FEATURE_DENSITY 100.0f  // per steradian: lobes of directions as likely as these are followed, too
 
-void see_surfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, bool camera, UNIFORM bool coherent,
-                  Encounter* met, UNIFORM u32* counts);
-
 // A sample on its way.
 typedef struct FeatureWalk {
   PathState path;

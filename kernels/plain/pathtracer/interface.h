@@ -9,9 +9,6 @@ typedef struct LANES(PhotonSearches) {
   float area;
 } PhotonSearch;
 
-// The way to the next interface.
-bool meet_interfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, Encounter* met,
-                     UNIFORM u32* counts);
 CALLED(no_hits) SurfaceHit hit_nothing(float t_max);
 
 // Lights.

@@ -1,5 +1,6 @@
 // Converts raw hits to shading data: position, surface, side, and surface coordinates.
-#include "plain/shade/encounter.h"
+#include "plain/path/segment.cl"
+#include "plain/shade/bsdf.h"
 #include "plain/shade/parametrize.cl"
 
 static inline float greatest_size(float3 a) { return greatest((float3)(fabs(a.x), fabs(a.y), fabs(a.z))); }

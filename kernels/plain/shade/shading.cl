@@ -1,10 +1,7 @@
 // Surfaces where rays meet them.
 #include "plain/shade/bsdf.cl"
-#include "plain/shade/encounter.h"
-#include "plain/shade/parallax.cl"
 #include "plain/shade/relief.cl"
-
-void note_depth(const Encounter* met, SurfaceInteraction* s);
+#include "plain/shade/relief_hits.cl"
 
 // A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:

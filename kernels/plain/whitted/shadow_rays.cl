@@ -1,5 +1,6 @@
 // Shadow rays from a surface to the lights, left on a stack with the light that each would bring.
 #include "plain/light/light.cl"
+#include "plain/light/relief_shadow.cl"
 #include "plain/light/shadow.cl"
 #include "plain/shade/local_light.cl"
 #include "plain/whitted/interface.h"
