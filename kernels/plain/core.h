@@ -8,6 +8,7 @@ CALLED(cross3) float3 cross(float3 a, float3 b);
 CALLED(greatest3) float greatest(float3 a);
 CALLED(length3) float length(float3 a);
 CALLED(along3) float3 along(float3 a, float s, float3 b);  // a + s b
+static inline float plain_dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 float real_min(float a, float b);
 float real_max(float a, float b);
 float real_clamp(float a, float low, float high);
@@ -25,8 +26,6 @@ float3 renormalized3(float3 a);
 float3 direction_at(float3 axis, float cosine, float sine, float turn);
 float3 direction_about(float3 axis, float cosine, float turn);
 void tangent_frame(float3 n, float3* s, float3* t);
-UNIFORM float3 direction_beside(UNIFORM float3 axis, UNIFORM float drop, UNIFORM float side,
-                                UNIFORM float turn);
 float real_acos(float x);
 void sincos_of_turn(float turn, float* sine, float* cosine);
 void place_in_disk(float u_x, float u_y, float* x, float* y);

@@ -38,20 +38,6 @@ static inline void tangent_frame(REAL3 n, REAL3* s, REAL3* t) {
   *t = real3(b, sign + n.y * n.y * a, -n.y);
 }
 
-// For one path.
-static inline void axes_about(float3 n, float3* s, float3* t) {
-  const float sign = copysign(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-  *s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  *t = (float3)(b, sign + n.y * n.y * a, -n.y);
-}
-// The direction at the distance `side` from the axis; drop: 1 minus its cosine.
-static inline float3 direction_beside(float3 axis, float drop, float side, float turn) {
-  float3 s, t;
-  axes_about(axis, &s, &t);
-  const float3 d = (1.0f - drop) * axis + side * (cospi(2.0f * turn) * s + sinpi(2.0f * turn) * t);
-  return d * rsqrt(dot(d, d));
-}
-
 // The direction with this cosine and sine to the unit axis, at the azimuth `turn` (fraction of a circle).
 static inline REAL3 direction_at(REAL3 axis, REAL cosine, REAL sine, REAL turn) {
   REAL3 s, t;

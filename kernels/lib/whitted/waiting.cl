@@ -1,7 +1,6 @@
 // What plain/whitted leaves in the tile: rays that wait, and what pixels show less of.
 #pragma once
 #include "lib/light/choose_light.cl"
-#include "lib/light/light.cl"
 #include "lib/light/shadow.cl"
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"

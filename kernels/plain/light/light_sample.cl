@@ -27,6 +27,18 @@ static inline SeenLight seen_square(float3 to, float3 u, float3 v, bool in_front
   return seen;
 }
 
+// The unit vector across the axis at the part `turn` of a circle, and the direction at the distance `side`
+// from the axis; drop: 1 minus its cosine.
+static inline float3 across_axis(float3 axis, float turn) {
+  float3 s, t;
+  tangent_frame(axis, &s, &t);
+  return cospi(2.0f * turn) * s + sinpi(2.0f * turn) * t;
+}
+static inline float3 direction_beside(float3 axis, float drop, float side, float turn) {
+  const float3 d = (1.0f - drop) * axis + side * across_axis(axis, turn);
+  return d * rsqrt(plain_dot(d, d));
+}
+
 // A photon as it leaves a light.
 typedef struct Emission {
   float3 p, n;      // of a light that has a position: a place on it, and the normal there

@@ -34,7 +34,9 @@ EnvironmentDescription picture(int width, int height, float all, int x = 0, int 
 // of as many samples (the density reported, that of the direction; radiance by density).
 const char* const draw_kernel = R"(
 #include "lib/core/sampler_lanes.cl"
-#include "lib/light/environment.cl"
+#include "lib/core/directions.cl"
+#include "lib/path/scene_ray.cl"
+#include "plain/light/environment.cl"
 __kernel void draw(__global const Environment* environments, __global const float4* pixels,
                    __global const float* shares, __global const u32* cutpoints, __global float4* out, u32 count) {
   const u32 first = get_global_id(0) * LANES;
