@@ -4,7 +4,8 @@
 #include "lib/core/counters.cl"
 #include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
-#include "lib/whitted/whitted.cl"
+#include "lib/whitted/whitted_batch.cl"
+#include "lib/whitted/whitted_single.cl"
 #include "shared/launch.h"
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.

@@ -1,10 +1,7 @@
 // Bsdfs in lanes: those of plain/shade, and the hand-written functions that they call.
 #pragma once
 #include "lib/core/directions.cl"
-#include "lib/core/optics.cl"
-#include "lib/path/scene_ray.cl"
-#include "lib/shade/dispersion.cl"
-#include "lib/shade/interaction.cl"
+#include "lib/path/segment.cl"
 #include "lib/shade/texels.cl"
 #include "shared/lobe_energy.h"
 #include "shared/metal_rough.h"

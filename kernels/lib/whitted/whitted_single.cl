@@ -3,8 +3,7 @@
 // time: so a surface's shadow rays wait on the stack, above its children, and each round takes a ray of
 // whatever kind.
 #pragma once
-#include "lib/whitted/lights.cl"
-#include "plain/whitted/steps.cl"
+#include "lib/whitted/waiting.cl"
 
 #if BATCH == 1
 // Shadow rays of the surface from the number `light` on, as far as there is room; the ray `whole` waits for

@@ -6,6 +6,8 @@
 #define FEATURE_DEPTH 16        // surfaces on a way, at most
 #define FEATURE_DENSITY 100.0f  // per steradian: lobes of directions as likely as these are followed, too
 
+void start_marching(UNIFORM u32* counts);
+
 // A sample on its way.
 typedef struct FeatureWalk {
   PathState path;
@@ -13,20 +15,14 @@ typedef struct FeatureWalk {
   float3 albedo, normal;
 } FeatureWalk;
 
-ENTRY static inline FeatureWalk start_feature(UNIFORM const Scene* scene, const SampleAt* at) {
-  const float3 none = (float3)(0.0f);
-  const FeatureWalk f = {start_path(scene, at), (float3)(1.0f), none, none, none};
-  return f;
-}
-
 ENTRY static inline float3 at_most_one(float3 a) {
   return (float3)(real_min(a.x, 1.0f), real_min(a.y, 1.0f), real_min(a.z, 1.0f));
 }
 
 // Takes the sample to the next surface. Returns whether that sends it on in about one direction. Else it is
 // the sample's feature, or behind mirrors the sky, which has only their tint.
-ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* ray,
-                               UNIFORM bool coherent, UNIFORM u32* counts) {
+static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* ray, UNIFORM bool coherent,
+                         UNIFORM u32* counts) {
   Encounter met;
   const bool first = f->path.depth == 1;
   see_surfaces(scene, ray, first, coherent, &met, counts);
@@ -61,4 +57,19 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   if (!cut_out) ++f->path.depth;
   leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, cut_out, ray);
   return true;
+}
+
+// The features of the sample of this ray.
+ENTRY static inline float3 albedo_of_sample(UNIFORM const Scene* scene, const SampleAt* at, SceneRay* ray,
+                                            OUT float3* normal, UNIFORM u32* counts) {
+  const float3 none = (float3)(0.0f);
+  FeatureWalk f = {start_path(scene, at), (float3)(1.0f), none, none, none};
+  start_marching(counts);
+  bool going = step_feature(scene, &f, ray, true, counts);
+  while (going) {
+    start_marching(counts);
+    going = step_feature(scene, &f, ray, false, counts);
+  }
+  *normal = f.normal;
+  return f.albedo;
 }

@@ -130,8 +130,7 @@ static inline void start_from(UNIFORM const Scene* scene, UNIFORM u32 index, UNI
   const float pdf = pdf_to_balls(scene, targets, from.p, start->d);
   if (HAS_AREA_LIGHTS && has_extent(light)) {
     start->flux = from.radiance * (fmax(plain_dot(from.n, start->d), 0.0f) * from.area / pdf);
-    const float size =
-        real_max(greatest((float3)(fabs(from.p.x), fabs(from.p.y), fabs(from.p.z))), light->edge_u.w);
+    const float size = real_max(greatest_size(from.p), light->edge_u.w);
     start->o += from.n * (OFF_LIGHT * size);
   } else {  // the flux of all directions
     start->flux = (float3)(1.0f / pdf);

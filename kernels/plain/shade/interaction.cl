@@ -3,8 +3,6 @@
 #include "plain/shade/bsdf.h"
 #include "plain/shade/parametrize.cl"
 
-static inline float greatest_size(float3 a) { return greatest((float3)(fabs(a.x), fabs(a.y), fabs(a.z))); }
-
 // The distance from the surface at which new rays must start: a few float spacings at the magnitudes that
 // produced the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that
 // scenes work in any unit); `turned`: that of the point about which it was rotated.

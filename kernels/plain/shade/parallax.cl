@@ -21,10 +21,9 @@ typedef struct ReliefWay {
 } ReliefWay;
 
 // The path of direction d (unit) between the depths `begin` and `end`.
-ENTRY static inline ReliefWay relief_ways(UNIFORM const Scene* scene,
-                                          UNIFORM __global const MaterialMaps* maps,
-                                          const SurfaceInteraction* s, const TexturePoint* at, float3 d,
-                                          float begin, float end) {
+static inline ReliefWay relief_ways(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                    const SurfaceInteraction* s, const TexturePoint* at, float3 d,
+                                    float begin, float end) {
   const float3 n = s->ng;
   const float rise = dot(n, d), slant = real_max(fabs(rise), PARALLAX_SLANT);
   const float depth = maps->parallax / nonzero(at->scale);
@@ -47,8 +46,8 @@ ENTRY static inline ReliefWay relief_ways(UNIFORM const Scene* scene,
 }
 
 // Height above the path at t.
-ENTRY static inline float height_above(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
-                                       const TexturePoint* at, const ReliefWay* ways, float t) {
+static inline float height_above(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                 const TexturePoint* at, const ReliefWay* ways, float t) {
   TexturePoint there = *at;
   there.u = fma(t, ways->u, at->u);
   there.v = fma(t, ways->v, at->v);

@@ -18,8 +18,8 @@ static inline void bend_normal(float3 d, SurfaceInteraction* s) {
 }
 
 // The surface that the ray has met, and what it does to light.
-ENTRY static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
-                                   OUT SurfaceShading* at) {
+static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                             OUT SurfaceShading* at) {
   interact(scene, ray->o, ray->d, &met->hit, &met->face, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
   note_depth(met, &at->s);

@@ -38,9 +38,7 @@ struct Estimate {
 };
 
 const char* const sample_kernel = R"(
-#include "lib/core/directions.cl"
-#include "lib/path/scene_ray.cl"
-#include "lib/pathtracer/numbers.cl"
+#include "lib/pathtracer/steps.cl"
 #include "plain/pathtracer/photon_start.cl"
 typedef struct Lit { Light light; float4 p, n; } Lit;
 typedef struct Estimate { float mean, deviation, density_error, by_place, place_deviation; } Estimate;
