@@ -18,42 +18,15 @@
 #define AOV_VECTORS (ALL_AOVS ? 7u : FEATURE_AOVS ? 5u : 3u)
 
 #if FEATURE_AOVS
-#include "lib/path/camera_samples.cl"
 #include "lib/pathtracer/steps.cl"
 #include "plain/pathtracer/features.cl"
-
-#define FEATURE_SAMPLES 64u  // of a pixel, at most
-
-// The mean albedo of the samples of the pixels (x, y) of `lanes`; `normal`: likewise.
-NEVER_INLINE REAL3 mean_features(const Scene* scene, MediaStack around, MASK x, MASK y, MASK lanes,
-                                 REAL3* normal, u32* counts) {
-  const u32 samples = min(scene->info->samples, FEATURE_SAMPLES);
-  REAL3 albedo = all3((float3)(0.0f)), n;
-  *normal = albedo;
-  REAL weights = (REAL)(0.0f);
-  for (u32 k = 0; k < samples; ++k) {
-    const BegunSamples begun = {{x, y, (MASK)((int)k), scene->info->seed}, lanes};
-    float signs[BATCH];
-    SceneRays rays = begun_rays(scene, &begun, samples, around, signs);
-    const REAL3 seen = albedo_of_sample(scene, &begun.at, &rays, &n, counts, lanes);
-    REAL sign = (REAL)(0.0f);
-    EACH_LANE(i, lanes) REAL_LANE(sign, i) = signs[i];
-    weights += sign;
-    albedo = along3(albedo, sign, seen);
-    *normal = along3(*normal, sign, n);
-  }
-  const REAL share = 1.0f / select((REAL)(1.0f), weights, MASK_OF(weights > 0.0f)), zero = (REAL)(0.0f);
-  *normal = scale3(*normal, share);
-  albedo = scale3(albedo, share);
-  albedo = real3(real_max(albedo.x, zero), real_max(albedo.y, zero), real_max(albedo.z, zero));
-  return at_most_one(albedo, lanes);
-}
 
 // The two vectors behind the first three, of the pixels whose middles are (x, y).
 NEVER_INLINE void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
                                  u32* counts, __global float4* aovs) {
   REAL3 normal;
-  const REAL3 albedo = mean_features(scene, stack, TO_MASK(x), TO_MASK(y), lanes, &normal, counts);
+  const LaneSamples at = {TO_MASK(x), TO_MASK(y), NO_LANES, scene->info->seed};
+  const REAL3 albedo = mean_features(scene, &stack, &at, &normal, counts, lanes);
   EACH_LANE(i, lanes) {
     __global float4* out = aovs + AOV_VECTORS * i;
     out[3] = (float4)(get3(&albedo, i), 0.0f);

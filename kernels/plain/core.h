@@ -24,14 +24,6 @@ float3 unit3(float3 a);
 float3 safe_unit3(float3 a);
 float3 renormalized3(float3 a);
 
-// Directions about an axis: at a cosine and a sine, or a cosine alone; `turn`: a part of a circle.
-float3 direction_at(float3 axis, float cosine, float sine, float turn);
-float3 direction_about(float3 axis, float cosine, float turn);
-void tangent_frame(float3 n, float3* s, float3* t);
-float real_acos(float x);
-void sincos_of_turn(float turn, float* sine, float* cosine);
-void place_in_disk(float u_x, float u_y, float* x, float* y);
-
 CONSTANT int MAX_CROSSINGS;
 
 // Counts a ray of each path that is here. A ray also counts for its path's pixel.

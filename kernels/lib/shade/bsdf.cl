@@ -1,6 +1,5 @@
 // Bsdfs in lanes: those of plain/shade, and the hand-written functions that they call.
 #pragma once
-#include "lib/core/directions.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/texels.cl"
 #include "shared/lobe_energy.h"

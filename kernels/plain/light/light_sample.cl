@@ -1,5 +1,5 @@
 // The results of every light's functions: a sampled direction, the light seen from a point, a photon's start.
-#include "plain/core.h"
+#include "plain/path/directions.cl"
 
 typedef struct LightSample {
   float3 wi;        // unit, from the surface to the light
@@ -25,18 +25,6 @@ static inline SeenLight seen_square(float3 to, float3 u, float3 v, bool in_front
   seen.in_front = in_front;
   seen.behind = behind;
   return seen;
-}
-
-// The unit vector across the axis at the part `turn` of a circle, and the direction at the distance `side`
-// from the axis; drop: 1 minus its cosine.
-static inline float3 across_axis(float3 axis, float turn) {
-  float3 s, t;
-  tangent_frame(axis, &s, &t);
-  return cospi(2.0f * turn) * s + sinpi(2.0f * turn) * t;
-}
-static inline float3 direction_beside(float3 axis, float drop, float side, float turn) {
-  const float3 d = (1.0f - drop) * axis + side * across_axis(axis, turn);
-  return d * rsqrt(plain_dot(d, d));
 }
 
 // A photon as it leaves a light.

@@ -1,9 +1,11 @@
 // The features that a denoiser reads: the albedo and the normal of the surface that a sample
 // sees, through the same filter, lens and time, behind smooth glass and in mirrors.
+#include "plain/path/lens.cl"
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
 
 #define FEATURE_DEPTH 16        // surfaces on a way, at most
+#define FEATURE_SAMPLES 64u     // of a pixel, at most
 #define FEATURE_DENSITY 100.0f  // per steradian: lobes of directions as likely as these are followed, too
 
 void start_marching(UNIFORM u32* counts);
@@ -15,7 +17,7 @@ typedef struct FeatureWalk {
   float3 albedo, normal;
 } FeatureWalk;
 
-ENTRY static inline float3 at_most_one(float3 a) {
+static inline float3 at_most_one(float3 a) {
   return (float3)(real_min(a.x, 1.0f), real_min(a.y, 1.0f), real_min(a.z, 1.0f));
 }
 
@@ -59,17 +61,31 @@ static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* r
   return true;
 }
 
-// The features of the sample of this ray.
-ENTRY static inline float3 albedo_of_sample(UNIFORM const Scene* scene, const SampleAt* at, SceneRay* ray,
-                                            OUT float3* normal, UNIFORM u32* counts) {
+// The mean albedo of the samples of the pixel of `at`; `normal`: likewise.
+ENTRY static float3 mean_features(UNIFORM const Scene* scene, UNIFORM const MediaStack* around,
+                                  const SampleAt* at, OUT float3* normal, UNIFORM u32* counts) {
   const float3 none = (float3)(0.0f);
-  FeatureWalk f = {start_path(scene, at), (float3)(1.0f), none, none, none};
-  start_marching(counts);
-  bool going = step_feature(scene, &f, ray, true, counts);
-  while (going) {
+  const u32 samples = min(scene->info->samples, FEATURE_SAMPLES);
+  float3 albedo = none, n = none;
+  float weights = 0.0f;
+  for (u32 k = 0u; k < samples; ++k) {
+    SampleAt here = *at;
+    here.sample = (int)k;
+    float sign;
+    SceneRay ray = sample_ray(scene, &here, samples, around, &sign);
+    FeatureWalk f = {start_path(scene, &here), (float3)(1.0f), none, none, none};
     start_marching(counts);
-    going = step_feature(scene, &f, ray, false, counts);
+    bool going = step_feature(scene, &f, &ray, true, counts);
+    while (going) {
+      start_marching(counts);
+      going = step_feature(scene, &f, &ray, false, counts);
+    }
+    weights += sign;
+    albedo = along(albedo, sign, f.albedo);
+    n = along(n, sign, f.normal);
   }
-  *normal = f.normal;
-  return f.albedo;
+  const float share = 1.0f / (weights > 0.0f ? weights : 1.0f);
+  *normal = n * share;
+  albedo = albedo * share;
+  return at_most_one((float3)(real_max(albedo.x, 0.0f), real_max(albedo.y, 0.0f), real_max(albedo.z, 0.0f)));
 }

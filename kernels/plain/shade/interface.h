@@ -1,4 +1,5 @@
 // Hand-written surfaces, as plain text sees them.
+#include "plain/path/directions.cl"
 #include "plain/path/face.cl"
 #include "plain/path/media.cl"
 #include "plain/path/optics.cl"

@@ -90,7 +90,7 @@ TEST_CASE("check finds a device whose picture is wrong, and one whose kernels do
     CHECK(row.at("differing") > 20);
   }
   SECTION("broken") {
-    const fs::path file = folder / "lib/core/directions.cl";
+    const fs::path file = folder / "lib/core/transform.cl";
     sundog::write_file(file, sundog::read_file(file) + "\nthis is no kernel\n");
     const json row = row_of(check({pocl}, status, folder.path().string()), "Portable");
     CHECK(status == 4);
