@@ -6,7 +6,6 @@
 #define HAS_PATHS 1
 #define RAYS_BY_LANE 1
 #include "lib/core/counters.cl"
-#include "lib/light/choose_light.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/steps.cl"
 #include "plain/path/lens.cl"

@@ -2,8 +2,6 @@
 #include "plain/light/emission.cl"
 #include "plain/light/environment.cl"
 
-int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
-
 static inline bool is_in_sky(UNIFORM __global const Light* light) {
   return (LIGHTS_OF_SKY >> light->kind & 1u) != 0u;
 }

@@ -11,9 +11,6 @@ typedef struct LANES(PhotonSearches) {
 
 CALLED(no_hits) SurfaceHit hit_nothing(float t_max);
 
-// Lights.
-float light_probabilities(UNIFORM const Scene* scene, UNIFORM u32 leaf, float3 p, HERE);
-
 // Photons about a surface, one after the other.
 PhotonSearch search_photons(UNIFORM const Scene* scene, const SampleAt* at, int depth, const SceneRay* ray,
                             const SurfaceInteraction* s, HERE);
