@@ -108,25 +108,25 @@ ENTRY static inline Emission emit_environment(const LightSample* sky) {
   return emit_along(-sky->wi, sky->radiance / fmax(sky->pdf, 1e-30f));
 }
 
-// The photon of a light, to a ball: a and b choose the place in that, c and e the one on the light.
+// The photon of a light, to a ball, a place in which `u` chooses; `v` chooses one on the light.
 static inline void start_from(UNIFORM const Scene* scene, UNIFORM u32 index, UNIFORM u32 targets, float4 ball,
-                              float a, float b, float c, float e, PhotonStart* start) {
+                              const Numbers* u, const Numbers* v, PhotonStart* start) {
   __global const Light* light = scene->lights + index;
   Emission from;
   if (HAS_ENVIRONMENT && light->kind == LIGHT_ENVIRONMENT) {
-    const LightSample sky = sample_environment(scene, c, e);
+    const LightSample sky = sample_environment(scene, v->z, v->w);
     from = emit_environment(&sky);
   } else
-    from = emit_light(light, c, e);
+    from = emit_light(light, v->z, v->w);
   start->o = from.p;
   start->d = from.d;
   if (!has_place(light)) {
-    start->o = place_across(scene, ball, from.d, a, b);
+    start->o = place_across(scene, ball, from.d, u->x, u->y);
     start->flux = from.radiance / pdf_across(scene, targets, start->o, from.d);
     start->o -= 1.001f * way_to_planes(scene, targets, start->o, from.d) * from.d;
     return;
   }
-  start->d = direction_to_ball(ball, from.p, a, b);
+  start->d = direction_to_ball(ball, from.p, u->x, u->y);
   const float pdf = pdf_to_balls(scene, targets, from.p, start->d);
   if (HAS_AREA_LIGHTS && has_extent(light)) {
     start->flux = from.radiance * (fmax(plain_dot(from.n, start->d), 0.0f) * from.area / pdf);
@@ -149,7 +149,7 @@ ENTRY static bool start_photon(UNIFORM const Scene* scene, UNIFORM u32 targets, 
   const float4 ball = scene->photon_targets[target].ball;
   PhotonStart photon = {(float3)(0.0f), (float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f), v.x, (int)chosen,
                         NOT_DIMMED};
-  EACH_ALIKE(u32, index, chosen) start_from(scene, index, targets, ball, u.x, u.y, v.z, v.w, &photon);
+  EACH_ALIKE(u32, index, chosen) start_from(scene, index, targets, ball, &u, &v, &photon);
   photon.flux = photon.flux / share * (1.0f / (float)count);
   *start = photon;
   return greatest(photon.flux) > 0.0f && greatest(photon.flux) < INFINITY;
