@@ -4,7 +4,6 @@
 #include "lib/core/counters.cl"
 #include "lib/path/segment.cl"
 #include "lib/shade/bsdf.cl"
-#include "lib/shade/relief_hits.cl"
 #include "plain/shade/lobes.cl"
 #include "plain/shade/specular.cl"
 #include "shared/launch.h"
@@ -19,16 +18,19 @@
 #define AOV_VECTORS (ALL_AOVS ? 7u : FEATURE_AOVS ? 5u : 3u)
 
 #if FEATURE_AOVS
-#include "lib/pathtracer/features.cl"
+#include "lib/pathtracer/steps.cl"
+#include "plain/pathtracer/features.cl"
 
 // The two vectors behind the first three, of the pixels whose middles are (x, y).
 NEVER_INLINE void write_features(const Scene* scene, MediaStack stack, REAL x, REAL y, MASK lanes,
                                  u32* counts, __global float4* aovs) {
-  const Features f = mean_features(scene, stack, TO_MASK(x), TO_MASK(y), lanes, counts);
+  REAL3 normal;
+  const LaneSamples at = {TO_MASK(x), TO_MASK(y), NO_LANES, scene->info->seed};
+  const REAL3 albedo = mean_features(scene, &stack, &at, &normal, counts, lanes);
   EACH_LANE(i, lanes) {
     __global float4* out = aovs + AOV_VECTORS * i;
-    out[3] = (float4)(get3(&f.albedo, i), 0.0f);
-    out[4] = (float4)(get3(&f.normal, i), 0.0f);
+    out[3] = (float4)(get3(&albedo, i), 0.0f);
+    out[4] = (float4)(get3(&normal, i), 0.0f);
   }
 }
 #endif
@@ -44,7 +46,7 @@ static inline REAL steps_alone(const Scene* scene, const SceneRays* camera, MASK
     start_marching(counts);
     SceneRays rays = *camera;
     Encounters met;
-    see_surfaces(scene, &rays, lanes_of(1u << i), ALL_LANES, true, &met, counts);
+    see_surfaces(scene, &rays, ALL_LANES, true, &met, counts, lanes_of(1u << i));
     REAL_LANE(steps, i) = (float)counts[COUNT_MARCH_STEPS];
   }
   return steps;
@@ -70,12 +72,12 @@ NEVER_INLINE void write_more(const Scene* scene, MediaStack stack, REAL x, REAL 
 // receive what they see. Returns the lanes of `lanes` that see anything.
 static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, Encounters* met,
                                SurfaceInteractions* s, Bsdfs* bsdf, u32* counts) {
-  see_surfaces(scene, rays, lanes, ALL_LANES, true, met, counts);
+  see_surfaces(scene, rays, ALL_LANES, true, met, counts, lanes);
   for (;;) {
     const MASK hit = lanes & hit_anything(&met->hit);
     interact(scene, rays->o, rays->d, &met->hit, &met->face, s, hit);
     set_footprints(scene, rays, met->hit.t, s, hit);
-    note_depth(met, s);
+    note_depth(met, s, hit);
     HAVING(HAS_PARALLAX, add_parallax(scene, rays->d, s, hit);)
     HAVING(HAS_RELIEF, add_relief(scene, rays->d, s, hit);)
     *bsdf = make_bsdfs(scene, s, met->before, met->after, hit);
@@ -84,7 +86,7 @@ static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, 
     const MASK passing = cut_away(bsdf, &split, hit) & may_cross(rays, hit);
     if (!any_lane(passing)) return hit;
     continue_behind(scene->info, rays, &met->hit, met->face.entering, passing);
-    see_behind(scene, rays, passing, ALL_LANES, met, counts);
+    see_behind(scene, rays, ALL_LANES, met, counts, passing);
   }
 }
 
@@ -117,7 +119,7 @@ NEVER_INLINE void first_surfaces_item(const Scene* scene, __global const u32* re
   Bsdfs bsdf;
   const MASK hit = see_middles(scene, &rays, lanes, &met, &s, &bsdf, counts);
   const REAL3 albedo = surface_color(scene, &bsdf, negate3(rays.d), hit);
-  const REAL sunk = ways_to_heights(scene, &s, rays.d, hit);
+  const REAL sunk = way_to_heights(scene, &s, rays.d, hit);
   const REAL3 world = add3(add3(along3(s.p, sunk, rays.d), all3(scene->info->origin_rest.xyz)),
                            all3(scene->info->origin.xyz));
   const REAL depth = (met.hit.t + sunk) * dot3(rays.d, all3(scene->info->camera_forward.xyz));

@@ -1,5 +1,4 @@
 // One stage: which media the lights are inside of, before photons leave them.
-#include "lib/core/directions.cl"
 #include "lib/path/media_around.cl"
 #include "plain/light/emission.cl"
 

@@ -6,11 +6,9 @@
 #define HAS_PATHS 1
 #define RAYS_BY_LANE 1
 #include "lib/core/counters.cl"
-#include "lib/light/choose_light.cl"
-#include "lib/light/relief_shadow.cl"
-#include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/steps.cl"
+#include "plain/path/lens.cl"
 #include "plain/pathtracer/bounce.cl"
 #include "shared/launch.h"
 
@@ -67,13 +65,15 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   const MASK done = idle & (MASK_OF(paths->at.sample == last) | MASK_OF(work->place == NO_PLACE));
   EACH_LANE(lane, done)
   take_pixel(launch, pixels, lane, scene->info->seed, work, ray_counts);
-  const BegunSamples begun = {paths->at, idle & MASK_OF(work->place != NO_PLACE)};
-  if (!any_lane(begun.lanes)) return NO_LANES;
+  const MASK begun = idle & MASK_OF(work->place != NO_PLACE);
+  if (!any_lane(begun)) return NO_LANES;
   const MediaStack around = read_media(camera_media);
-  const SceneRays first = begun_rays(scene, &begun, scene->info->samples, around, work->sign);
-  work->rays = select_SceneRay(work->rays, first, begun.lanes);
-  *paths = select_PathState(*paths, start_path(scene, &begun.at, begun.lanes), begun.lanes);
-  return begun.lanes;
+  REAL sign;
+  const SceneRays first = sample_ray(scene, &paths->at, scene->info->samples, &around, &sign, begun);
+  EACH_LANE(lane, begun) work->sign[lane] = REAL_LANE(sign, lane);
+  work->rays = select_SceneRay(work->rays, first, begun);
+  *paths = select_PathState(*paths, start_path(scene, &paths->at, begun), begun);
+  return begun;
 }
 
 // The surfaces that the paths of `lanes` have met cover their part of the pixels.

@@ -2,23 +2,26 @@
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
 #include "lib/core/counters.cl"
-#include "lib/path/camera_samples.cl"
 #include "lib/path/ray_counts.cl"
-#include "lib/whitted/whitted.cl"
+#include "lib/whitted/whitted_batch.cl"
+#include "lib/whitted/whitted_single.cl"
+#include "plain/path/lens.cl"
 #include "shared/launch.h"
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
 static inline MASK start_rays(const Scene* scene, const Launch* launch, __global const u32* restrict pixels,
                               u32 item, u32 sample, MediaStack around, SceneRays* rays, float* signs,
                               TileSamples* tile) {
-  BegunSamples begun;
+  LaneSamples at;
+  REAL sign;
   tile->sample = sample;
-  begun.lanes = item_pixels(launch, pixels, item, &begun.at.x, &begun.at.y);
-  begun.at.sample = (MASK)((int)sample) & begun.lanes;
-  begun.at.seed = scene->info->seed;
-  set_tile_pixels(tile, &begun.at);
-  *rays = begun_rays(scene, &begun, scene->info->samples, around, signs);
-  return begun.lanes;
+  const MASK begun = item_pixels(launch, pixels, item, &at.x, &at.y);
+  at.sample = (MASK)((int)sample) & begun;
+  at.seed = scene->info->seed;
+  set_tile_pixels(tile, &at);
+  *rays = sample_ray(scene, &at, scene->info->samples, &around, &sign, begun);
+  EACH_LANE(lane, begun) signs[lane] = REAL_LANE(sign, lane);
+  return begun;
 }
 
 // Where the tile's surfaces note what they cover of their pixels, of which each sample counts signs[lane].

@@ -1,7 +1,6 @@
 // One stage: photons from the lights to where they land, before the samples that look for them.
 #define HAS_LANDINGS 1
 #include "lib/core/counters.cl"
-#include "lib/pathtracer/photon_start.cl"
 #include "lib/pathtracer/steps.cl"
 #include "plain/pathtracer/photon.cl"
 
@@ -26,14 +25,15 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   __global float4* beams = landed + 2u * (launch->last - launch->first) + 3u * (first - launch->first);
   EACH_LANE(i, lanes) beams[3u * i + 2u] = (float4)(0.0f);  // no light
 #endif
-  const PhotonStarts starts = start_photons(scene, launch, &at, lanes);
+  PhotonStarts starts;
+  const MASK started = lanes & start_photon(scene, launch->targets, launch->count, &at, &starts, lanes);
   KEEP_IN_MEMORY(Photons, photons);
-  *photons = begun_photon(scene, &at, starts.flux, starts.dimmed, starts.lanes);
-  const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, starts.lanes);
+  *photons = begun_photon(scene, &at, &starts, started);
+  const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, started);
   const MediaStack outside = {0, 0};
   SceneRays rays = scene_rays(&begun, outside);
-  EACH_LANE(i, starts.lanes) set_media(&rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
-  for (lanes = starts.lanes; any_lane(lanes);) {
+  EACH_LANE(i, started) set_media(&rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
+  for (lanes = started; any_lane(lanes);) {
     Landings landings CLEARED_ON_GPUS;
     start_marching(counts);
     const MASK going = lanes & step_photon(scene, photons, &rays, &landings, counts, lanes);
@@ -53,7 +53,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     lanes = going;
   }
 #if HAS_SCATTERING
-  EACH_LANE(i, starts.lanes & MASK_OF(photons->beam.length > 0.0f)) {
+  EACH_LANE(i, started & MASK_OF(photons->beam.length > 0.0f)) {
     const float light = REAL_LANE(photons->beam.scattered, i);
     const u32 slice = photon_slice(REAL_LANE(starts.time, i));
     const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons->beam.sent_on, i);

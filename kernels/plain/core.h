@@ -2,12 +2,15 @@
 #include "lib/core/tables.h"
 #include "shared/sampler.h"
 #include "shared/scene.h"
+#include "shared/spectra.h"
 
 CALLED(dot3) float dot(float3 a, float3 b);
 CALLED(cross3) float3 cross(float3 a, float3 b);
 CALLED(greatest3) float greatest(float3 a);
 CALLED(length3) float length(float3 a);
 CALLED(along3) float3 along(float3 a, float s, float3 b);  // a + s b
+static inline float greatest_size(float3 a) { return greatest((float3)(fabs(a.x), fabs(a.y), fabs(a.z))); }
+static inline float plain_dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 float real_min(float a, float b);
 float real_max(float a, float b);
 float real_clamp(float a, float low, float high);
@@ -17,18 +20,9 @@ float real_log(float a);
 float nonzero(float a);  // to divide by
 
 float real_rsqrt(float a);
+float3 unit3(float3 a);
 float3 safe_unit3(float3 a);
 float3 renormalized3(float3 a);
-
-// Directions about an axis: at a cosine and a sine, or a cosine alone; `turn`: a part of a circle.
-float3 direction_at(float3 axis, float cosine, float sine, float turn);
-float3 direction_about(float3 axis, float cosine, float turn);
-void tangent_frame(float3 n, float3* s, float3* t);
-UNIFORM float3 direction_beside(UNIFORM float3 axis, UNIFORM float drop, UNIFORM float side,
-                                UNIFORM float turn);
-float real_acos(float x);
-void sincos_of_turn(float turn, float* sine, float* cosine);
-void place_in_disk(float u_x, float u_y, float* x, float* y);
 
 CONSTANT int MAX_CROSSINGS;
 
@@ -46,5 +40,10 @@ typedef struct LANES(LaneSamples, join_samples) {
 CALLED(wanted_lanes)
 Numbers numbers_at(const SampleAt* at, int dimension, UNIFORM bool first, UNIFORM bool later);
 
-// A column of the table of spectra between two rows.
-float spectrum_at(UNIFORM const Scene* scene, UNIFORM u32 first, float row, HERE);
+// The spectrum whose rows begin at `first`, at a wavelength: a (fractional) row of the table.
+HAVING(HAS_DISPERSION)
+static inline float spectrum_at(UNIFORM const Scene* scene, UNIFORM u32 first, float row) {
+  const int low = min((int)row, (int)SPECTRUM_ROWS - 2), at = (int)first + low;
+  const float a = scene->spectra[at], b = scene->spectra[at + 1];
+  return fma(row - (float)low, b - a, a);
+}

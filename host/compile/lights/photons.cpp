@@ -130,7 +130,7 @@ std::vector<float> share_photons(const std::vector<float4>& balls, const Compile
 }
 
 /// Appends planes after the balls, with a negative weight and never sampled
-/// (kernels/lib/pathtracer/photon_start.cl): at their positions when the shutter opens and, if they move,
+/// (kernels/plain/pathtracer/photon_start.cl): at their positions when the shutter opens and, if they move,
 /// when it closes.
 void append_planes(const SceneDescription& scene, const CompiledScene& out,
                    std::vector<PhotonTarget>& targets) {

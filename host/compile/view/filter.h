@@ -15,7 +15,7 @@ double filter_value(Filter filter, double radius, double x);
 /// The radius in pixels; the filter's default if the settings give none.
 double filter_radius(const RenderSettings& settings);
 
-/// The table for filter_offset() in kernels/lib/core/filter.cl (shared/filter.h); empty for a box of one
+/// The table for filter_offset() in kernels/plain/path/lens.cl (shared/filter.h); empty for a box of one
 /// pixel, which needs none.
 std::vector<float> filter_table(const RenderSettings& settings);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/sampler.cl"
+#include "shared/filter.h"
 
 static inline UINTS hash_lanes(UINTS x) {
   const UINTS state = x * 747796405u + 2891336453u;

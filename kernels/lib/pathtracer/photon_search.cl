@@ -1,9 +1,8 @@
 // Photons about the surfaces of paths, within a radius: of each lane one after the other.
 #pragma once
 #include "lib/core/sampler_lanes.cl"
-#include "lib/path/scene_ray.cl"
 #include "lib/pathtracer/photon_cells.cl"
-#include "lib/shade/interaction.cl"
+#include "lib/shade/bsdf.cl"
 
 #if HAS_CAUSTICS
 #define PHOTONS_A_CELL 96u  // looked at; of more, every second, third...

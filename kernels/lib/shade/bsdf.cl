@@ -1,11 +1,6 @@
 // Bsdfs in lanes: those of plain/shade, and the hand-written functions that they call.
 #pragma once
-#include "lib/core/directions.cl"
-#include "lib/core/optics.cl"
-#include "lib/path/scene_ray.cl"
-#include "lib/shade/dispersion.cl"
-#include "lib/shade/interaction.cl"
-#include "lib/shade/parallax.h"
+#include "lib/path/segment.cl"
 #include "lib/shade/texels.cl"
 #include "shared/lobe_energy.h"
 #include "shared/metal_rough.h"
@@ -20,16 +15,5 @@ typedef struct SlotValues {
   REAL4 of[MAP_COUNT];
 } SlotValues;
 #include "plain/shade/bsdf.cl"
-#include "plain/shade/parallax.cl"
 #include "plain/shade/relief.cl"
-
-// Surfaces that rays have met, and what they do to light.
-typedef struct Shading {
-  SurfaceInteractions s;
-  Bsdfs bsdf;
-} Shading;
-
-// The surfaces of `lanes` whose materials have any of the flags.
-static inline MASK of_kind(const Bsdfs* bsdf, u32 flags, MASK lanes) {
-  return lanes & MASK_OF((bsdf->flags & (int)flags) != 0);
-}
+#include "plain/shade/relief_hits.cl"

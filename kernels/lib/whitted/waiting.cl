@@ -1,15 +1,14 @@
-// What plain/whitted leaves in the tile: rays that wait, and what pixels show less of.
+// What plain/whitted leaves in the tile: rays that wait, and what pixels show less of; and the shadow rays
+// that surfaces send.
 #pragma once
-#include "lib/light/choose_light.cl"
-#include "lib/light/field_light.cl"
-#include "lib/light/field_openness.cl"
-#include "lib/light/light.cl"
-#include "lib/light/relief_shadow.cl"
-#include "lib/light/shadow.cl"
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"
+#include "lib/shade/bsdf.cl"
 #include "lib/trace/shaft.cl"
+#if HAS_SDF
+#include "lib/sdf/light.cl"
+#endif
 
 static inline void wait_again(const TileSamples* tile, const SceneRays* rays, const WaitingRays* paths,
                               MASK lanes) {
@@ -57,3 +56,19 @@ static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pi
   }
 }
 #endif
+
+#include "plain/whitted/shadow_rays.cl"
+#include "plain/whitted/shaft_light.cl"
+#include "plain/whitted/steps.cl"
+
+// The shadow ray *index is the next of the surfaces of `lanes`: returns whether any of them, `casting`, sends
+// it. If shafts serve its light, *index becomes the first ray to the next one.
+static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+                             const WaitingRays* paths, MASK lanes, const SurfaceShadings* at, u32* index,
+                             MASK* casting, u32* counts) {
+  if (!HAS_SHAFTS || scene->light_rays[*index].ray) return true;
+  *casting = lanes & needs_rays(scene, *index, tile, rays, paths, at, counts, lanes);
+  if (any_lane(*casting)) return true;
+  *index += scene->light_rays[*index].rays;
+  return false;
+}

@@ -1,8 +1,8 @@
-// Whitted's ray tree for a batch of pixels, which share a stack: the newest BATCH rays are taken together, a
-// ray a lane.
+// Whitted's ray tree (Whitted 1980) for a batch of pixels, which share a stack: the newest BATCH rays are
+// taken together, a ray a lane. What a pixel receives is added in an order that depends on nothing but the
+// work-item's pixels.
 #pragma once
-#include "lib/whitted/lights.cl"
-#include "plain/whitted/steps.cl"
+#include "lib/whitted/waiting.cl"
 
 #if BATCH > 1
 // Takes the newest shadow rays, at most `most`, to the light or to filters, behind which those that pass wait
@@ -39,7 +39,14 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
   SceneRays rays;
   WaitingRays paths;
   const MASK lanes = pop_shadows(stack, most, &rays, &paths);
-  Hits hits = shadow_hits(scene, &rays, lanes, coherent, counts);
+  Hits hits;
+  if (HAS_SHADOW_FILTERS) {
+    nearest_to_light(scene, &rays, lanes, coherent, &hits, counts);
+  } else {  // any hit will do
+    hits = no_hits(rays.t_max);
+    const MASK occluded = any_hits(scene, &rays, lanes, coherent, counts);
+    hits.instance = select(hits.instance, NO_LANES, occluded);
+  }
   const MASK passing = lanes & reach_filter(scene, tile, &rays, &paths, &hits, counts, lanes);
   push_shadows(stack, &rays, &paths, passing);
 }
@@ -49,7 +56,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
 // to one light; else shadow rays wait until there are many, or with `last` until no others come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                               const WaitingRays* paths, MASK lanes, bool coherent, bool last,
-                              const Encounters* met, const Shading* at, u32* counts) {
+                              const Encounters* met, const SurfaceShadings* at, u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   MASK casting = lanes;
   ShadowStack* stack = tile->shadows;
@@ -77,9 +84,10 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                                WaitingRays* paths, MASK lanes, bool coherent, u32* counts) {
   Encounters met;
-  Shading at;
-  MASK unseen = coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, lanes, coherent, &met, counts)
-                                          : meet_listed(scene, rays, lanes, &met, counts);
+  SurfaceShadings at;
+  MASK unseen =
+      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, &met, counts, lanes)
+                                         : meet_listed(scene, rays, lanes, &met, counts));
   const MASK straight = lanes & ~unseen & is_from_camera(paths, lanes);
   unseen |= straight & pass_hidden(scene, rays, &met, straight);
   if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);

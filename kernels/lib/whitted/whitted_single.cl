@@ -3,15 +3,14 @@
 // time: so a surface's shadow rays wait on the stack, above its children, and each round takes a ray of
 // whatever kind.
 #pragma once
-#include "lib/whitted/lights.cl"
-#include "plain/whitted/steps.cl"
+#include "lib/whitted/waiting.cl"
 
 #if BATCH == 1
 // Shadow rays of the surface from the number `light` on, as far as there is room; the ray `whole` waits for
 // the rest.
 static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                                   const WaitingRays* paths, const WaitingRays* whole, u32 light,
-                                  const Encounters* met, const Shading* at, u32* counts) {
+                                  const Encounters* met, const SurfaceShadings* at, u32* counts) {
 #if HAS_SHAFTS
   u32 sent[LIGHT_ROOM], count = 0;
   MASK casting;
@@ -43,14 +42,15 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
   if (to_light) return reach_filter(scene, tile, rays, paths, &met.hit, counts, ALL_LANES);
-  HAVING(HAS_PARALLAX, enter_reliefs(scene, rays, ALL_LANES, &met, counts);)
+  HAVING(HAS_PARALLAX, enter_relief(scene, rays, &met, counts, ALL_LANES);)
   MASK unseen = reach_interfaces(scene, rays, &met, counts, ALL_LANES);
   const MASK straight = ~unseen & is_from_camera(paths, ALL_LANES);
   unseen |= straight & pass_hidden(scene, rays, &met, straight);
   const WaitingRays whole = *paths;
   const u32 light = (u32)next_light(paths, ALL_LANES);
   // Ways to lights ask for hits in reliefs while the surface waits.
-  EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(Shading, at);, Shading shading CLEARED_ON_GPUS; Shading* at = &shading;)
+  EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(SurfaceShadings, at);, SurfaceShadings shading CLEARED_ON_GPUS;
+         SurfaceShadings* at = &shading;)
   const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, at, counts, ALL_LANES);
   add_to_pixels(seen, paths->pixel, MASK_OF(light == 0u), tile->radiance);
   forget_glow(rays, ALL_LANES);

@@ -20,8 +20,7 @@ ENTRY static inline UNIFORM float4 middle_of_light(UNIFORM __global const Light*
 }
 
 // A photon of a light other than the environment, by two numbers in [0, 1).
-ENTRY static inline UNIFORM Emission emit_light(UNIFORM __global const Light* light, UNIFORM float c,
-                                                UNIFORM float e) {
+ENTRY static inline Emission emit_light(UNIFORM __global const Light* light, float c, float e) {
 #define EMIT(constant, name, placed, aimed, extent) \
   if (light->kind == LIGHT_##constant) return emit_##name(light, c, e);
   DELTA_LIGHTS(EMIT)

@@ -2,14 +2,12 @@
 #include "plain/light/emission.cl"
 #include "plain/light/environment.cl"
 
-int choose_lights(UNIFORM const Scene* scene, float3 p, float u, HERE, float* probability);
-
 static inline bool is_in_sky(UNIFORM __global const Light* light) {
   return (LIGHTS_OF_SKY >> light->kind & 1u) != 0u;
 }
 
 // Whether rays may meet the light `index`: it is seen, and has an extent.
-ENTRY static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index) {
+static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index) {
   __global const Light* light = scene->lights + index;
   if (light->kind == LIGHT_ENVIRONMENT) return scene->info->sees_environment != 0u;
   if (is_in_sky(light)) return light->direction.w > 0.0f;
@@ -17,7 +15,7 @@ ENTRY static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u
 }
 
 // The way from the point p to a light without extent.
-ENTRY static inline LightSample way_to_lamp(UNIFORM __global const Light* light, float3 p) {
+static inline LightSample way_to_lamp(UNIFORM __global const Light* light, float3 p) {
 #define GO_TO(constant, name, placed, aimed, extent) \
   if (light->kind == LIGHT_##constant) return sample_##name(light, p);
   DELTA_LIGHTS(GO_TO)
@@ -25,8 +23,8 @@ ENTRY static inline LightSample way_to_lamp(UNIFORM __global const Light* light,
 }
 
 // A way from the point p to an area light, chosen by the two numbers u in [0, 1)^2.
-ENTRY static inline LightSample sample_area_light(UNIFORM __global const Light* light, float3 p, float u_x,
-                                                  float u_y) {
+static inline LightSample sample_area_light(UNIFORM __global const Light* light, float3 p, float u_x,
+                                            float u_y) {
 #define SAMPLE_AREA(constant, name, placed, aimed, extent) \
   if (light->kind == LIGHT_##constant) return sample_##name(light, p, u_x, u_y);
   AREA_LIGHTS(SAMPLE_AREA)
@@ -42,10 +40,10 @@ ENTRY static inline float area_light_pdf(UNIFORM __global const Light* light, fl
   return pdf_triangle(light, p, wi, d);
 }
 
-ENTRY static inline UNIFORM bool has_corners(UNIFORM __global const Light* light) {
+static inline UNIFORM bool has_corners(UNIFORM __global const Light* light) {
   return (LIGHTS_WITH_CORNERS >> light->kind & 1u) != 0u;
 }
-ENTRY static inline SeenLight see_light(UNIFORM __global const Light* light, float3 p) {
+static inline SeenLight see_light(UNIFORM __global const Light* light, float3 p) {
 #define SEE(constant, name, placed, aimed, extent) \
   if (light->kind == LIGHT_##constant) return corners_##name(light, p);
   AREA_LIGHTS(SEE)

@@ -1,5 +1,5 @@
 // The results of every light's functions: a sampled direction, the light seen from a point, a photon's start.
-#include "plain/core.h"
+#include "plain/path/directions.cl"
 
 typedef struct LightSample {
   float3 wi;        // unit, from the surface to the light

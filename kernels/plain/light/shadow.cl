@@ -122,8 +122,8 @@ static inline bool passed_most(const SceneRay* ray, UNIFORM u32* counts) {
 }
 
 // The part of `light` that arrives at the end of the shadow ray, taken all the way there.
-ENTRY static inline float3 light_arriving(UNIFORM const Scene* scene, SceneRay* ray, float3 sent,
-                                          UNIFORM u32* counts) {
+static inline float3 light_arriving(UNIFORM const Scene* scene, SceneRay* ray, float3 sent,
+                                    UNIFORM u32* counts) {
   float3 light = sent;
   if (!HAS_SHADOW_FILTERS) {
     if (any_hits(scene, ray, false, counts)) return (float3)(0.0f);

@@ -32,7 +32,7 @@ static inline float3 lit_sky_along(UNIFORM const Scene* scene, float3 d, bool ca
     }
   return light;
 }
-ENTRY static inline float3 sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {
+static inline float3 sky_along(UNIFORM const Scene* scene, float3 d, bool camera) {
   if (HAS_SKY)
     return lit_sky_along(scene, d, camera);
   else

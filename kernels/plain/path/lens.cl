@@ -1,6 +1,10 @@
-// Camera rays of samples, with a lens and a moving camera if the scene has these.
-#include "plain/path/camera.cl"
+// Camera rays of samples, with a lens and a moving camera if the scene has these, and a reconstruction filter
+// (shared/filter.h).
+#include "plain/path/directions.cl"
+#include "plain/path/scene_ray.cl"
+#include "shared/filter.h"
 
+void places_in_pixels(const SampleAt* at, HERE, UNIFORM u32 samples, float* x, float* y);
 void pair_lanes(const SampleAt* at, int dimension, UNIFORM bool later, float* u, float* v);
 
 // A uniformly distributed point of the regular polygon with `blades` corners on the unit circle: chooses a
@@ -24,8 +28,8 @@ static inline float3 lens_offset(UNIFORM __global const SceneInfo* info, float u
 }
 
 // The ray of a sample at the place (x, y) of the image.
-ENTRY static inline CameraRay sampled_camera_rays(UNIFORM __global const SceneInfo* info, const SampleAt* at,
-                                                  float x, float y) {
+static inline CameraRay sampled_camera_ray(UNIFORM __global const SceneInfo* info, const SampleAt* at,
+                                           float x, float y) {
   float time = 0.0f;
   if (HAS_MOTION) {
     float free = 0.0f;
@@ -57,4 +61,31 @@ ENTRY static inline CameraRay sampled_camera_rays(UNIFORM __global const SceneIn
     ahead = along(ahead, -1.0f / info->lens_x.w, offset);  // still through the point in focus
   }
   return clipped_ray(info, o, ahead, time);
+}
+
+// The filter's offset along an axis for the sample value u in [0, 1). Multiplies `sign` by the filter's sign
+// there.
+static inline float filter_offset(UNIFORM __global const float* table, float u, float* sign) {
+  const float below = table[0];
+  const bool lobe = u < below;
+  const float side = 2.0f * (lobe ? u / below : (u - below) / (1.0f - below)) - 1.0f;
+  const float at = fabs(side) * (float)FILTER_STEPS;
+  const int step = min((int)at, FILTER_STEPS - 1), first = (lobe ? FILTER_BELOW : FILTER_ABOVE) + step;
+  const float near = table[first], far = table[first + 1];
+  if (lobe) *sign = -*sign;
+  return copysign(near + (at - (float)step) * (far - near), side);
+}
+
+// The ray of a sample, where a pixel has `samples`; `sign`: the sample's weight, 1.0 or -1.0.
+ENTRY static inline SceneRay sample_ray(UNIFORM const Scene* scene, const SampleAt* at, UNIFORM u32 samples,
+                                        UNIFORM const MediaStack* around, OUT float* sign) {
+  float x, y, weight = 1.0f;
+  places_in_pixels(at, samples, &x, &y);
+  if (HAS_FILTER && samples > 1u) {
+    x = 0.5f + filter_offset(scene->filter, x, &weight);
+    y = 0.5f + filter_offset(scene->filter, y, &weight);
+  }
+  *sign = weight;
+  const CameraRay camera = sampled_camera_ray(scene->info, at, (float)at->x + x, (float)at->y + y);
+  return begun_ray(&camera, around);
 }

@@ -89,7 +89,7 @@ static inline float refraction_index(UNIFORM __global const Medium* media, int m
 }
 
 // Refractive index behind an interface over that before it.
-ENTRY static inline float relative_index(UNIFORM __global const Medium* media, int before, int after) {
+static inline float relative_index(UNIFORM __global const Medium* media, int before, int after) {
   if (!HAS_MEDIA) return 1.0f;
   return refraction_index(media, after) / refraction_index(media, before);
 }

@@ -68,13 +68,13 @@ ENTRY static inline bool may_cross(const SceneRay* ray) {
   return false;
 }
 // The ray continues `before`, which has crossed one interface more.
-ENTRY static inline void cross_further(const SceneRay* before, SceneRay* ray) {
+static inline void cross_further(const SceneRay* before, SceneRay* ray) {
   if (HAS_CROSSINGS) ray->crossings = before->crossings + 1;
 }
 
 // The ray restarts from what it has hit: notes which field, and which side of it.
-ENTRY static inline void start_on_hits(UNIFORM __global const SceneInfo* info, SceneRay* ray,
-                                       const SurfaceHit* hit, bool inside) {
+static inline void start_on_hits(UNIFORM __global const SceneInfo* info, SceneRay* ray, const SurfaceHit* hit,
+                                 bool inside) {
   if (HAS_SDF) {
     const bool on_field = hit->instance >= (int)info->instance_count;
     ray->from = on_field ? hit->instance * 2 + (int)inside : FROM_NOWHERE;
@@ -83,8 +83,8 @@ ENTRY static inline void start_on_hits(UNIFORM __global const SceneInfo* info, S
 
 // A new ray, whose origin is the hit of `ray`, restarts from the side `inside`; `ray` is still the one that
 // hit.
-ENTRY static inline void start_on_surfaces(UNIFORM __global const SceneInfo* info, SceneRay* ray,
-                                           const SurfaceHit* hit, bool inside) {
+static inline void start_on_surfaces(UNIFORM __global const SceneInfo* info, SceneRay* ray,
+                                     const SurfaceHit* hit, bool inside) {
   if (HAS_SDF) ray->footprint = fma(hit->t, pixel_spread(info), ray->footprint);
   if (HAS_CONES) ray->cone_width = fma(hit->t, ray->cone_spread, ray->cone_width);
   if (HAS_MEDIA) ray->since = 0.0f;

@@ -180,8 +180,8 @@ static inline void pass_interface(UNIFORM const Scene* scene, SceneRay* ray, Sur
 
 // Whether the ray would see a surface that it enters. Parts of an interface between touching solids count as
 // unseen: what is there belongs to neither.
-ENTRY static inline bool sees_interface(UNIFORM const Scene* scene, const SceneRay* ray,
-                                        const SurfaceHit* hit, const Face* face) {
+static inline bool sees_interface(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit,
+                                  const Face* face) {
   if (!HAS_MEDIA || (face->flags & (int)INTERFACE) != (int)MATERIAL_TRANSMITS) return true;
   if (HAS_TOUCHING && may_touch_others(scene->instances, hit)) return false;
   MediaStack behind = ray->media;

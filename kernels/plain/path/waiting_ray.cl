@@ -25,7 +25,7 @@ ENTRY static inline WaitingRay camera_path(int pixel) {
 }
 
 ENTRY static inline int depth_of(const WaitingRay* path) { return path->depth & (TURNED - 1); }
-ENTRY static inline bool is_straight(const WaitingRay* path) { return (path->depth & TURNED) == 0; }
+static inline bool is_straight(const WaitingRay* path) { return (path->depth & TURNED) == 0; }
 ENTRY static inline bool is_from_camera(const WaitingRay* path) {
   return (path->depth & ((1 << DEPTH_BITS) - 1)) == 1;
 }

@@ -1,5 +1,6 @@
 // One bounce of a path: its ray to the next interface, the light that it meets there, the light of one lamp
 // that the surface chooses, and the ray that continues.
+#include "plain/light/relief_shadow.cl"
 #include "plain/pathtracer/gather_photons.cl"
 #include "plain/pathtracer/guides.cl"
 #include "plain/pathtracer/hero.cl"

@@ -1,13 +1,14 @@
 // The features that a denoiser reads: the albedo and the normal of the surface that a sample
 // sees, through the same filter, lens and time, behind smooth glass and in mirrors.
+#include "plain/path/lens.cl"
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
 
 #define FEATURE_DEPTH 16        // surfaces on a way, at most
+#define FEATURE_SAMPLES 64u     // of a pixel, at most
 #define FEATURE_DENSITY 100.0f  // per steradian: lobes of directions as likely as these are followed, too
 
-void see_surfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, bool camera, UNIFORM bool coherent,
-                  Encounter* met, UNIFORM u32* counts);
+void start_marching(UNIFORM u32* counts);
 
 // A sample on its way.
 typedef struct FeatureWalk {
@@ -16,20 +17,14 @@ typedef struct FeatureWalk {
   float3 albedo, normal;
 } FeatureWalk;
 
-ENTRY static inline FeatureWalk start_feature(UNIFORM const Scene* scene, const SampleAt* at) {
-  const float3 none = (float3)(0.0f);
-  const FeatureWalk f = {start_path(scene, at), (float3)(1.0f), none, none, none};
-  return f;
-}
-
-ENTRY static inline float3 at_most_one(float3 a) {
+static inline float3 at_most_one(float3 a) {
   return (float3)(real_min(a.x, 1.0f), real_min(a.y, 1.0f), real_min(a.z, 1.0f));
 }
 
 // Takes the sample to the next surface. Returns whether that sends it on in about one direction. Else it is
 // the sample's feature, or behind mirrors the sky, which has only their tint.
-ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* ray,
-                               UNIFORM bool coherent, UNIFORM u32* counts) {
+static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* ray, UNIFORM bool coherent,
+                         UNIFORM u32* counts) {
   Encounter met;
   const bool first = f->path.depth == 1;
   see_surfaces(scene, ray, first, coherent, &met, counts);
@@ -64,4 +59,33 @@ ENTRY static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, Scene
   if (!cut_out) ++f->path.depth;
   leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, cut_out, ray);
   return true;
+}
+
+// The mean albedo of the samples of the pixel of `at`; `normal`: likewise.
+ENTRY static float3 mean_features(UNIFORM const Scene* scene, UNIFORM const MediaStack* around,
+                                  const SampleAt* at, OUT float3* normal, UNIFORM u32* counts) {
+  const float3 none = (float3)(0.0f);
+  const u32 samples = min(scene->info->samples, FEATURE_SAMPLES);
+  float3 albedo = none, n = none;
+  float weights = 0.0f;
+  for (u32 k = 0u; k < samples; ++k) {
+    SampleAt here = *at;
+    here.sample = (int)k;
+    float sign;
+    SceneRay ray = sample_ray(scene, &here, samples, around, &sign);
+    FeatureWalk f = {start_path(scene, &here), (float3)(1.0f), none, none, none};
+    start_marching(counts);
+    bool going = step_feature(scene, &f, &ray, true, counts);
+    while (going) {
+      start_marching(counts);
+      going = step_feature(scene, &f, &ray, false, counts);
+    }
+    weights += sign;
+    albedo = along(albedo, sign, f.albedo);
+    n = along(n, sign, f.normal);
+  }
+  const float share = 1.0f / (weights > 0.0f ? weights : 1.0f);
+  *normal = n * share;
+  albedo = albedo * share;
+  return at_most_one((float3)(real_max(albedo.x, 0.0f), real_max(albedo.y, 0.0f), real_max(albedo.z, 0.0f)));
 }

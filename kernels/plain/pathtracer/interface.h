@@ -9,13 +9,7 @@ typedef struct LANES(PhotonSearches) {
   float area;
 } PhotonSearch;
 
-// The way to the next interface.
-bool meet_interfaces(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, Encounter* met,
-                     UNIFORM u32* counts);
 CALLED(no_hits) SurfaceHit hit_nothing(float t_max);
-
-// Lights.
-float light_probabilities(UNIFORM const Scene* scene, UNIFORM u32 leaf, float3 p, HERE);
 
 // Photons about a surface, one after the other.
 PhotonSearch search_photons(UNIFORM const Scene* scene, const SampleAt* at, int depth, const SceneRay* ray,

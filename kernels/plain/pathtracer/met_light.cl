@@ -1,4 +1,5 @@
 // Light that the rays of paths meet: what shines on surfaces, the sky, and what lies on the way.
+#include "plain/light/choose_light.cl"
 #include "plain/pathtracer/light_parts.cl"
 #include "plain/pathtracer/mis.cl"
 
@@ -12,7 +13,7 @@ static float chosen_pdf(UNIFORM const Scene* scene, const PathState* path, float
     __global const Light* light = scene->lights + index;
     if (light->position.w == 0.0f) {
       pdf = area_light_pdf(light, path->from, d, distance);
-      if (HAS_LIGHT_TREE) pdf *= light_probabilities(scene, scene->light_leaves[index], chosen_from(path));
+      if (HAS_LIGHT_TREE) pdf *= light_probability(scene, scene->light_leaves[index], chosen_from(path));
       pdf = pdf_on_stretch_to(path, light, pdf);
     }
   }

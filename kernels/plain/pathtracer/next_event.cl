@@ -1,4 +1,5 @@
 // Light chosen for a place on a path: one light, a place on it, and a shadow ray there.
+#include "plain/light/choose_light.cl"
 #include "plain/pathtracer/mis.cl"
 #include "plain/pathtracer/spectrum.cl"
 
@@ -11,7 +12,7 @@ static inline int choose_index(UNIFORM const Scene* scene, float3 p, float u, fl
   *chance = 1.0f / count;
   if (HAS_LIGHT_TREE && chosen == (int)LIGHT_CHOSEN) {
     float probability;
-    chosen = choose_lights(scene, p, turn - slot, &probability);
+    chosen = choose_light(scene, p, turn - slot, &probability);
     *chance *= probability;
   }
   return chosen;

@@ -2,9 +2,8 @@
 // mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others.
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
+#include "plain/pathtracer/photon_start.cl"
 #include "plain/pathtracer/stretch.cl"
-
-CONSTANT int NOT_DIMMED;
 
 // One of the stretches on which a medium scatters a photon that was mirrored or bent, chosen by how much
 // light each of them scatters.
@@ -31,13 +30,13 @@ typedef struct Landing {
   int instance;        // that it lies on
 } Landing;
 
-ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at, float3 flux,
-                                        int dimmed) {
+ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at,
+                                        const PhotonStart* start) {
   Photon photon;
   photon.path = start_path(scene, at);
-  photon.path.throughput = spectrum_of(&photon.path.wavelengths, flux);
+  photon.path.throughput = spectrum_of(&photon.path.wavelengths, start->flux);
   photon.bent = false;
-  photon.dimmed = dimmed;
+  photon.dimmed = start->dimmed;
   if (HAS_SCATTERING) {
     photon.beam.length = 0.0f;
     photon.beam.scattered = 0.0f;

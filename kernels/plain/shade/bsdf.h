@@ -20,3 +20,9 @@ typedef struct Bsdf {
   HAVING(HAS_FUZZ_MAPS) float3 fuzz;                         // factor on the fuzz's color
   HAVING(HAS_SPECULAR_MAPS) float3 tint;                     // factor on the reflectance of the dielectric
 } Bsdf;
+
+// A surface that a ray has met, and what it does to light.
+typedef struct SurfaceShading {
+  SurfaceInteraction s;
+  Bsdf bsdf;
+} SurfaceShading;

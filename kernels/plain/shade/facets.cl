@@ -47,8 +47,8 @@ typedef struct MetFacet {
   HAVING(HAS_ROUGH) float alpha, lambda_o, energy;
 } MetFacet;
 
-ENTRY static inline MetFacet meet_facet(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float u_x,
-                                        float u_y) {
+static inline MetFacet meet_facet(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float u_x,
+                                  float u_y) {
   MetFacet facet;
   facet.bsdf = *bsdf;
   if (HAS_ROUGH) {
@@ -75,11 +75,11 @@ ENTRY static inline MetFacet meet_facet(UNIFORM const Scene* scene, const Bsdf* 
   return facet;
 }
 
-ENTRY static inline float3 reflected_by(const MetFacet* facet, float3 wo) {
+static inline float3 reflected_by(const MetFacet* facet, float3 wo) {
   if (HAS_ROUGH && facet->rough) return reflect_direction(-wo, facet->bsdf.ns);
   return reflected_direction(&facet->bsdf, wo);
 }
-ENTRY static inline float3 transmitted_by(const MetFacet* facet, const SpecularSplit* split, float3 wo) {
+static inline float3 transmitted_by(const MetFacet* facet, const SpecularSplit* split, float3 wo) {
   if (HAS_ROUGH && facet->rough && split->eta != 1.0f)
     return refract_direction(-wo, facet->bsdf.ns, split->cos_i, split->cos_t, split->eta);
   return transmitted_direction(&facet->bsdf, split, wo);
@@ -89,8 +89,8 @@ ENTRY static inline float3 transmitted_by(const MetFacet* facet, const SpecularS
 // losses by multiple scattering (Turquin 2019, "Practical multiple scattering compensation for microfacet
 // models"). `side` is 1 for directions before the surface, -1 behind it; `share` is what Fresnel's equations
 // make of glass's own colour.
-ENTRY static inline float3 facet_weight(const MetFacet* facet, const Bsdf* surface, float3 wi,
-                                        UNIFORM float side, float3 color, float share, bool mends) {
+static inline float3 facet_weight(const MetFacet* facet, const Bsdf* surface, float3 wi, UNIFORM float side,
+                                  float3 color, float share, bool mends) {
   float3 weight = (float3)(1.0f);
   if (HAS_ROUGH && facet->rough) {
     const float c = side * dot(surface->ns, wi);

@@ -1,8 +1,7 @@
 // Converts raw hits to shading data: position, surface, side, and surface coordinates.
-#include "plain/shade/encounter.h"
+#include "plain/path/segment.cl"
+#include "plain/shade/bsdf.h"
 #include "plain/shade/parametrize.cl"
-
-static inline float greatest_size(float3 a) { return greatest((float3)(fabs(a.x), fabs(a.y), fabs(a.z))); }
 
 // The distance from the surface at which new rays must start: a few float spacings at the magnitudes that
 // produced the position (the idea of Waechter and Binder 2019, without their absolute threshold, so that

@@ -1,6 +1,8 @@
 // Hand-written surfaces, as plain text sees them.
+#include "plain/path/directions.cl"
 #include "plain/path/face.cl"
 #include "plain/path/media.cl"
+#include "plain/path/optics.cl"
 #include "shared/bvh.h"
 #include "shared/layers.h"
 #include "shared/lobe_energy.h"
@@ -35,12 +37,6 @@ float metal_mirror(float metalness, float roughness);
 float rough_exponent(float roughness);
 float highlight_energy(float e);
 float metal_highlight(float energy, float mirror);
-
-// Interfaces.
-float refracted_cosine(float cos_i, float eta);
-float fresnel_reflectance(float cos_i, float cos_t, float eta);
-float3 reflect_direction(float3 d, float3 n);
-float3 refract_direction(float3 d, float3 n, float cos_i, float cos_t, float eta);
 
 typedef struct Parametrization {
   float u, v;

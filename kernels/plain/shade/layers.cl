@@ -132,8 +132,7 @@ static inline float3 left_where_there(const Bsdf* bsdf, float3 through, float3 l
 }
 
 // Transmittance of the surface at the cosine c with its fuzz and coats; `through`: without.
-ENTRY static inline float3 passed_by_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float c,
-                                            float3 through) {
+static inline float3 passed_by_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float c, float3 through) {
   float3 passed = through;
   EACH_ALIKE(int, index, bsdf->material)
   passed = left_where_there(bsdf, through, left_by_layers(scene, scene->layers + index, bsdf, c, -c));

@@ -1,5 +1,5 @@
 // The ray that leaves a surface.
-#include "plain/shade/encounter.h"
+#include "plain/shade/relief_hits.cl"
 
 // It goes in the direction d, above the surface or `below`, behind it. `way`: how far its start is from where
 // the relief lets it go.
@@ -12,7 +12,7 @@ static inline SceneRay leaving_ray(UNIFORM const Scene* scene, const SceneRay* r
   child.t_min = 0.0f;
   child.o = along(leave_relief(s, d, way), s->offset + s->lift, leaving_normal(s));
   if (below) {
-    child.o = points_behind(scene, s, ray->d);
+    child.o = point_behind(scene, s, ray->d);
     start_on_hits(scene->info, &child, &met->hit, s->entering);
     enter_behind(met, &child);
   }

@@ -5,8 +5,8 @@
 
 // pi times the BSDF times the cosine of the local lobes, in the classical units where a white surface that
 // faces a light of intensity 1 has radiance 1. For n.l > 0.
-ENTRY static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float3 wi,
-                                       bool met) {
+static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float3 wi,
+                                 bool met) {
   float3 light = (float3)(0.0f);
 #define ADD_LOCAL(feature, name) \
   if (feature) local_##name(scene, bsdf, wo, wi, met, &light);
@@ -15,8 +15,8 @@ ENTRY static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* b
 }
 
 // Adds the layers' share that a reflected ray stands for.
-ENTRY static inline void mirror_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
-                                       SpecularSplit* split) {
+static inline void mirror_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
+                                 SpecularSplit* split) {
   if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material)
   split->kr = along(split->kr, bsdf->there,
                     mirrored_by_layers(scene, scene->layers + index, bsdf, dot(bsdf->ns, wo)));

@@ -48,8 +48,8 @@ static inline bool has_slot(UNIFORM __global const MaterialMaps* maps, UNIFORM u
 }
 
 // The value of one slot, 1 without a texture.
-ENTRY static inline float4 map_value(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
-                                     UNIFORM u32 slot, const TexturePoint* at) {
+static inline float4 map_value(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                               UNIFORM u32 slot, const TexturePoint* at) {
   if (HAS_CONES && has_slot(maps, slot)) return value_of_texture(scene, maps->slot[slot], at);
   return (float4)(1.0f);
 }
@@ -220,8 +220,8 @@ ENTRY static inline void widen_highlight(float even, float* exponent, float3* sp
 }
 
 // The surface's transmittance for a shadow ray; `own`: without its textures.
-ENTRY static inline float3 mapped_filter(UNIFORM const Scene* scene, const SurfaceInteraction* s, bool hidden,
-                                         float3 own) {
+static inline float3 mapped_filter(UNIFORM const Scene* scene, const SurfaceInteraction* s, bool hidden,
+                                   float3 own) {
   const TexturePoint at = texture_points(scene, s);
   float3 passed = own;
   EACH_ALIKE(u32, index, (u32)s->material) {

@@ -1,12 +1,13 @@
 // Parallax: rays continue below a surface until they hit its height map, and heights occlude light (Brawley
 // and Tatarchuk 2004, "Parallax Occlusion Mapping: Self-Shadowing, Perspective-Correct Bump Mapping Using
 // Reverse Height Map Tracing"). The surface itself is at height 1.
-#include "lib/shade/parallax.h"
 #include "plain/shade/maps.cl"
 
-#define PARALLAX_LEAST 8.0f  // minimum, plus one for each texel crossed
-#define PARALLAX_UNKNOWN 48  // for heights without texels
-#define PARALLAX_HALVINGS 6  // bisections of the step in which a ray hits the heights
+#define PARALLAX_SLANT 0.05f  // minimum sine of rays along the surface
+#define PARALLAX_STEPS 128    // maximum
+#define PARALLAX_LEAST 8.0f   // minimum, plus one for each texel crossed
+#define PARALLAX_UNKNOWN 48   // for heights without texels
+#define PARALLAX_HALVINGS 6   // bisections of the step in which a ray hits the heights
 
 HAVING(HAS_PARALLAX);
 
@@ -20,10 +21,9 @@ typedef struct ReliefWay {
 } ReliefWay;
 
 // The path of direction d (unit) between the depths `begin` and `end`.
-ENTRY static inline ReliefWay relief_ways(UNIFORM const Scene* scene,
-                                          UNIFORM __global const MaterialMaps* maps,
-                                          const SurfaceInteraction* s, const TexturePoint* at, float3 d,
-                                          float begin, float end) {
+static inline ReliefWay relief_ways(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                    const SurfaceInteraction* s, const TexturePoint* at, float3 d,
+                                    float begin, float end) {
   const float3 n = s->ng;
   const float rise = dot(n, d), slant = real_max(fabs(rise), PARALLAX_SLANT);
   const float depth = maps->parallax / nonzero(at->scale);
@@ -46,8 +46,8 @@ ENTRY static inline ReliefWay relief_ways(UNIFORM const Scene* scene,
 }
 
 // Height above the path at t.
-ENTRY static inline float height_above(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
-                                       const TexturePoint* at, const ReliefWay* ways, float t) {
+static inline float height_above(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
+                                 const TexturePoint* at, const ReliefWay* ways, float t) {
   TexturePoint there = *at;
   there.u = fma(t, ways->u, at->u);
   there.v = fma(t, ways->v, at->v);
@@ -115,13 +115,17 @@ static inline float meet_heights(UNIFORM const Scene* scene, UNIFORM __global co
   return below;
 }
 
-ENTRY static inline bool has_parallax(UNIFORM const Scene* scene, int material) {
-  bool found = false;
+// The depth of the material's relief, in its object's units; 0 without a relief.
+static inline float parallax_of(UNIFORM const Scene* scene, int material) {
+  float depth = 0.0f;
   EACH_ALIKE(u32, index, (u32)material) {
     const u32 number = scene->materials[index].maps;
-    found = number != NO_MAPS && scene->material_maps[number].parallax != 0.0f;
+    if (number != NO_MAPS) depth = scene->material_maps[number].parallax;
   }
-  return found;
+  return depth;
+}
+static inline bool has_parallax(UNIFORM const Scene* scene, int material) {
+  return parallax_of(scene, material) != 0.0f;
 }
 
 // Moves the texture inputs of the surface to where a ray of the direction d hits its heights.

@@ -14,7 +14,6 @@
 #include "plain/shade/interface.h"
 
 // Rounded once an operation, unlike dot(), which has a fma().
-static inline float plain_dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // The corner `corner` of the triangle at `place` (TriangleShading).
 static inline float3 corner_of(UNIFORM const Scene* scene, u32 place, UNIFORM u32 corner) {

@@ -1,10 +1,7 @@
 // Surfaces where rays meet them.
 #include "plain/shade/bsdf.cl"
-#include "plain/shade/encounter.h"
-#include "plain/shade/parallax.cl"
 #include "plain/shade/relief.cl"
-
-void note_depth(const Encounter* met, SurfaceInteraction* s);
+#include "plain/shade/relief_hits.cl"
 
 // A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
@@ -21,8 +18,8 @@ static inline void bend_normal(float3 d, SurfaceInteraction* s) {
 }
 
 // The surface that the ray has met, and what it does to light.
-ENTRY static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
-                                   OUT SurfaceShading* at) {
+static inline void shade_hit(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
+                             OUT SurfaceShading* at) {
   interact(scene, ray->o, ray->d, &met->hit, &met->face, &at->s);
   at->s.offset = offset_beyond(met, at->s.offset);
   note_depth(met, &at->s);

@@ -39,8 +39,8 @@ static inline bool is_wall(int flags) {
 }
 
 // The reflectance of such a wall; `f` for other surfaces.
-ENTRY static inline float reflected_by_walls(UNIFORM const Scene* scene, int material, int flags, float c,
-                                             float f) {
+static inline float reflected_by_walls(UNIFORM const Scene* scene, int material, int flags, float c,
+                                       float f) {
   float reflected = f;
   if (HAS_THIN_WALLS && is_wall(flags)) EACH_ALIKE(int, index, material)
   reflected = wall_reflectance(c, scene->materials[index].transmission.w);
@@ -95,7 +95,7 @@ ENTRY static inline bool cut_away(const Bsdf* bsdf, const SpecularSplit* split) 
 }
 
 // Direction of perfect reflection; a shading normal must not send it inside.
-ENTRY static inline float3 reflected_direction(const Bsdf* bsdf, float3 wo) {
+static inline float3 reflected_direction(const Bsdf* bsdf, float3 wo) {
   const float3 by_shading = reflect_direction(-wo, bsdf->ns);
   return dot(by_shading, bsdf->side) > 0.0f ? by_shading : reflect_direction(-wo, bsdf->side);
 }

@@ -24,7 +24,6 @@ CONSTANT u32 TEXTURE_STACK;
 CONSTANT u32 EXTRA_UVS;
 float radius_about_y(float3 p);
 float turns(float x, float y);
-float3 unit3(float3 a);
 CALLED(mix4) float4 blend(float4 a, float4 b, float t);
 float4 sample_image(UNIFORM const Scene* scene, UNIFORM __global const TextureNode* node, float u, float v,
                     float footprint, HERE);

@@ -1,4 +1,5 @@
 // The rays of a tile and what their pixels have received: hand-written, as plain text sees them.
+#include "plain/light/field_light.cl"
 #include "plain/path/waiting_ray.cl"
 #include "plain/shade/leaving_ray.cl"
 
@@ -20,7 +21,6 @@ void wait_again(UNIFORM const TileSamples* tile, const SceneRay* ray, const Wait
 // A shadow ray waits.
 void push_shadow(UNIFORM const TileSamples* tile, const SceneRay* ray, const WaitingRay* path, HERE);
 CALLED(note_rays) void note_pixel_ray(int pixel, HERE, UNIFORM u32* counts);
-float soft_shadows(UNIFORM const Scene* scene, const SceneRay* ray, HERE, UNIFORM u32* counts);
 
 // Light that a pixel receives.
 void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
@@ -29,5 +29,3 @@ void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
 void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
 void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,
               const SurfaceInteraction* s, HERE, float part);
-
-float field_openness(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit, HERE);

@@ -1,5 +1,7 @@
 // Shadow rays from a surface to the lights, left on a stack with the light that each would bring.
+#include "plain/light/choose_light.cl"
 #include "plain/light/light.cl"
+#include "plain/light/relief_shadow.cl"
 #include "plain/light/shadow.cl"
 #include "plain/shade/local_light.cl"
 #include "plain/whitted/interface.h"
@@ -13,7 +15,7 @@ static LightSample choose_among(UNIFORM const Scene* scene, UNIFORM __global con
   const u32 turn = scene->info->table_lights;  // of the lights whose numbers these are: none's
   bounce_numbers(tile, path, turn, BOUNCE_LIGHT_POINT, way->ray, way->rays, &u_x, &u_y);
   bounce_numbers(tile, path, turn, BOUNCE_LIGHT_CHOICE, way->ray, way->rays, &choice, &unused);
-  const int chosen = choose_lights(scene, p, choice, &chance);
+  const int chosen = choose_light(scene, p, choice, &chance);
   LightSample light = sample_chosen(scene, p, u_x, u_y, chosen, met);
   light.pdf *= chance;
   return light;

@@ -38,18 +38,17 @@ struct Estimate {
 };
 
 const char* const sample_kernel = R"(
-#include "lib/pathtracer/photon_start.cl"
-#include "plain/light/light.cl"
+#include "lib/pathtracer/steps.cl"
+#include "plain/pathtracer/photon_start.cl"
 typedef struct Lit { Light light; float4 p, n; } Lit;
 typedef struct Estimate { float mean, deviation, density_error, by_place, place_deviation; } Estimate;
 // What a photon brings that starts like this, where `s` is a sample of the light.
-float sent_by(const Scene* scene, const Emission* from, const LightSamples* s, float3 p, float3 n) {
+float sent_by(const Scene* scene, const Emissions* from, const LightSamples* s, REAL3 p, REAL3 n) {
   __global const Light* light = scene->lights;
-  if (!has_place(light)) return from->radiance.x * max(-dot(from->d, n), 0.0f);
-  const float3 way = from->p - p;
-  const float3 wi = way * rsqrt(dot(way, way));
-  const float sent = from->radiance.x * max(dot(wi, n), 0.0f) / dot(way, way);
-  return sent * (has_extent(light) ? from->area * max(-dot(wi, from->n), 0.0f) : M_PI_F * s->radiance.x * s->distance * s->distance);
+  if (!has_place(light)) return from->radiance.x * max(-dot3(from->d, n), 0.0f);
+  const REAL3 way = subtract3(from->p, p), wi = unit3(way);
+  const float sent = from->radiance.x * max(dot3(wi, n), 0.0f) / dot3(way, way);
+  return sent * (has_extent(light) ? from->area * max(-dot3(wi, from->n), 0.0f) : M_PI_F * s->radiance.x * s->distance * s->distance);
 }
 __kernel void run(__global const Lit* in, __global const Environment* environments, __global const float4* pixels,
                   __global const float* shares, __global const u32* cutpoints, __global Estimate* out, u32 count) {
@@ -67,8 +66,9 @@ __kernel void run(__global const Lit* in, __global const Environment* environmen
     sum += value;
     squares += value * value;
     const bool distant = in[i].light.kind == LIGHT_ENVIRONMENT;
-    const Emission from = distant ? emit_environment(&s, 0) : emit_light(&in[i].light, u_x, u_y);
-    const float sent = sent_by(&scene, &from, &s, in[i].p.xyz, in[i].n.xyz);
+    const Emissions from =
+        distant ? emit_environment(&s, ALL_LANES) : emit_light(&in[i].light, u_x, u_y, ALL_LANES);
+    const float sent = sent_by(&scene, &from, &s, p, n);
     place_sum += sent;
     place_squares += sent * sent;
     if (s.radiance.x == 0.0f || !has_extent(&in[i].light) || !has_place(&in[i].light)) continue;

@@ -1,4 +1,4 @@
-// Sines, cosines and arc cosines of the lanes (lib/core/directions.cl) against double precision.
+// Sines, cosines and arc cosines of the lanes (plain/path/directions.cl) against double precision.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -12,14 +12,15 @@ namespace {
 
 // Of each number as a share of a circle the sine and cosine, of each in [-1, 1] the arc cosine.
 const char* const text = R"(
-  #include "lib/core/directions.cl"
+  #include "lib/core/lanes.h"
+  #include "plain/path/directions.cl"
   #include "shared/types.h"
   kernel void run(global const float* in, global float4* out, u32 count) {
     const u32 i = get_global_id(0);
     if (i >= count) return;
     REAL sine, cosine;
-    sincos_of_turn((REAL)(in[i]), &sine, &cosine);
-    const REAL angle = real_acos(real_clamp((REAL)(in[i]), (REAL)(-1.0f), (REAL)(1.0f)));
+    sincos_of_turn((REAL)(in[i]), &sine, &cosine, ALL_LANES);
+    const REAL angle = real_acos(real_clamp((REAL)(in[i]), (REAL)(-1.0f), (REAL)(1.0f)), ALL_LANES);
     out[i] = (float4)(REAL_LANE(sine, LANES - 1), REAL_LANE(cosine, LANES - 1), REAL_LANE(angle, LANES - 1), 0.0f);
   })";
 

@@ -34,7 +34,8 @@ EnvironmentDescription picture(int width, int height, float all, int x = 0, int 
 // of as many samples (the density reported, that of the direction; radiance by density).
 const char* const draw_kernel = R"(
 #include "lib/core/sampler_lanes.cl"
-#include "lib/light/environment.cl"
+#include "lib/path/scene_ray.cl"
+#include "plain/light/environment.cl"
 __kernel void draw(__global const Environment* environments, __global const float4* pixels,
                    __global const float* shares, __global const u32* cutpoints, __global float4* out, u32 count) {
   const u32 first = get_global_id(0) * LANES;
@@ -47,7 +48,7 @@ __kernel void draw(__global const Environment* environments, __global const floa
   pair_lanes(&at, (MASK)(8), false, &u_x, &u_y);
   pair_lanes(&at, (MASK)(16), false, &v_x, &v_y);
   const REAL up = 1.0f - 2.0f * u_y, side = real_sqrt(real_max(1.0f - up * up, (REAL)(0.0f)));
-  sincos_of_turn(u_x - 0.5f, &sine, &cosine);
+  sincos_of_turn(u_x - 0.5f, &sine, &cosine, ALL_LANES);
   const REAL3 d = real3(side * cosine, up, side * sine);
   const REAL seen = environment_along(&scene, d, &density, ALL_LANES).x;
   const LightSamples s = sample_environment(&scene, v_x, v_y, ALL_LANES);

@@ -36,15 +36,18 @@ SceneDescription floor_under(int count) {
 
 // The lights that even numbers choose for a point, with the probabilities reported, and those of the leaves.
 const char* const choose_kernel = R"(
-#include "lib/light/choose_light.cl"
+#include "lib/core/lanes.h"
+#include "lib/core/tables.h"
+#include "plain/light/choose_light.cl"
 __kernel void choose(__global const LightNode* nodes, __global const float4* point, __global const u32* leaves,
                      __global float4* chosen, __global float* of_leaves, u32 count, u32 leaf_count) {
   const u32 i = get_global_id(0);
   const Scene scene = {.light_nodes = nodes};
-  if (i < leaf_count) of_leaves[i] = light_probability(&scene, leaves[i], point[0].xyz);
+  if (i < leaf_count) of_leaves[i] = light_probability(&scene, leaves[i], all3(point[0].xyz), ALL_LANES);
   if (i >= count) return;
   float probability;
-  const u32 light = choose_light(&scene, point[0].xyz, ((float)i + 0.5f) / (float)count, &probability);
+  const int light =
+      choose_light(&scene, all3(point[0].xyz), ((float)i + 0.5f) / (float)count, &probability, ALL_LANES);
   chosen[i] = (float4)((float)light, probability, 0.0f, 0.0f);
 }
 )";

@@ -144,8 +144,8 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
 
 /// The part's includes stand under no #if: there each would be expanded wherever it is met, to 36 MB of text.
 inline std::string text_of(Part part) {
-  return fmt::format("#include \"{}\"\n{}",
-                     part == Part::parallax ? "lib/light/relief_shadow.cl" : "lib/shade/bsdf.cl",
+  return fmt::format("#include \"lib/shade/bsdf.cl\"\n{}{}",
+                     part == Part::parallax ? "#include \"plain/light/relief_shadow.cl\"\n" : "",
                      kernel_text);
 }
 

@@ -101,7 +101,7 @@ struct Found {
 };
 
 const char* const look_kernel = R"(
-#include "lib/shade/interaction.cl"
+#include "lib/shade/bsdf.cl"
 #include "lib/trace/traverse.cl"
 __kernel void look(SCENE_PARAMETERS, __global const Ray* rays, __global float* out, u32 count) {
   const Scene scene = SCENE_OF_PARAMETERS;

@@ -6,7 +6,7 @@
 #define LEAST_SOLID_ANGLE 0.01f
 
 // Whether irradiance by the light has a closed form, and see_rectangle() serves all samples of a point.
-ENTRY static inline UNIFORM bool is_rectangle(UNIFORM __global const Light* light) {
+static inline UNIFORM bool is_rectangle(UNIFORM __global const Light* light) {
   return light->kind == LIGHT_RECTANGLE;
 }
 
@@ -23,7 +23,7 @@ static inline float side_normal(float side, float zz) {
 }
 static inline float angle_between(float a, float b) { return real_acos(real_clamp(-a * b, -1.0f, 1.0f)); }
 
-ENTRY static inline SphericalRectangle see_rectangle(UNIFORM __global const Light* light, float3 p) {
+static inline SphericalRectangle see_rectangle(UNIFORM __global const Light* light, float3 p) {
   SphericalRectangle r;
   const float3 x = light->edge_u.xyz / light->edge_u.w, y = light->edge_v.xyz / light->edge_v.w;
   const float3 to = light->position.xyz - p;
@@ -61,9 +61,8 @@ static inline float used_solid_angle(const SphericalRectangle* r) {
   return r->solid_angle > LEAST_SOLID_ANGLE ? r->solid_angle : 0.0f;
 }
 
-ENTRY static inline LightSample sample_seen_rectangle(UNIFORM __global const Light* light,
-                                                      const SphericalRectangle* r, float3 p, float u_x,
-                                                      float u_y) {
+static inline LightSample sample_seen_rectangle(UNIFORM __global const Light* light,
+                                                const SphericalRectangle* r, float3 p, float u_x, float u_y) {
   float x, y;
   place_in_rectangle(r, u_x, u_y, &x, &y);
   const float used = used_solid_angle(r);
