@@ -39,7 +39,7 @@ const std::map<std::string, std::vector<std::string>> folders = {
      {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune", "commands", "peers"}},
     {"host/app", {"process", "options", "job", "render", "bake", "commands", "serve"}},
     {"kernels/lib",
-     {"core", "halo", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
+     {"core", "solids", "sdf", "trace", "path", "shade", "light", "whitted", "pathtracer"}},
 };
 
 struct Include {
