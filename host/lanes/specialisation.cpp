@@ -86,7 +86,7 @@ void Specialisation::make_vary(const Variable* v, const Place& place, const std:
 }
 
 void Specialisation::declare(const Variable* v, const Frames& frames) {
-  declared_in_[v] = frames;
+  declared_in_[v] = frames.size();
   if (v->type.is_by_hand()) varying.insert(v);
 }
 
@@ -102,9 +102,7 @@ bool Specialisation::is_dead_after(const Variable* v, const Statement* loop, con
 }
 
 std::vector<const Frame*> Specialisation::between(const Variable* v, const Frames& frames) {
-  const Frames& outer = declared_in_[v];
-  std::size_t k = 0;
-  while (k < outer.size() && k < frames.size() && outer[k].is_same(frames[k])) ++k;
+  const std::size_t k = declared_in_[v];
   std::vector<const Frame*> out;
   for (std::size_t i = k; i < frames.size(); ++i)
     if (frames[i].divergent &&
@@ -137,8 +135,7 @@ void Specialisation::statement(const Statement& s, Frames& frames) {
       return;
     case Kind::branch: {
       const bool divergent = s.feature.empty() && varies(*s.expressions[0], frames);
-      for (std::size_t i = 0; i < s.body.size(); ++i)
-        inside(*s.body[i], {Frame::Kind::branch, &s, divergent, i}, frames);
+      for (const StatementPtr& part : s.body) inside(*part, {Frame::Kind::branch, &s, divergent}, frames);
       return;
     }
     case Kind::loop:
@@ -227,8 +224,8 @@ void Specialisation::assign(const Expression& to, bool value_varies, const Frame
   if (root->uniform && by_lanes)
     fail(to.place, "'{}' is uniform, but is written a lane at a time", root->name);
   writes_uniform |= root->uniform;
-  masked |= !root->uniform;
   if (by_lanes) make_vary(root, to.place, "what is written there varies");
+  masked |= varies(root);
 }
 
 bool Specialisation::varies(const Expression& e, const Frames& frames) {

@@ -59,8 +59,7 @@ void Writer::loop(const Statement& s) {
   if (rounds) line("  MASK {} = {};", entry.going, entry.lanes);
   inside({Frame::Kind::round, &s, rounds}, entry.going, body);
   if (before.empty()) {
-    if (checked_.contains(entry.lanes) && !asks_lanes)
-      std::erase(tests, fmt::format("any_lane({})", entry.lanes));
+    if (loops_.back().checked && !asks_lanes) std::erase(tests, fmt::format("any_lane({})", entry.lanes));
     out_[head].text = fmt::format("for (; {}; {}) {{", all_of(tests), step);
   }
   line("}");

@@ -125,9 +125,9 @@ void Writer::block(const std::vector<StatementPtr>& all, bool in_loop) {
     const bool leaves = in_loop && loops_.back().masked && s.is(StatementKind::branch) && exits_of(s).any() &&
                         s.feature.empty() && varies(*s.expressions[0]);
     if (!leaves || !is_long(all, i + 1)) continue;
-    const Loop& l = loops_.back();
+    Loop& l = loops_.back();
     line("if (!any_lane({})) {}", l.going, l.going == l.lanes ? "break;" : "continue;");
-    if (i == 0 && l.going == l.lanes) checked_.insert(l.lanes);  // the loop itself need not ask
+    if (i == 0 && l.going == l.lanes) l.checked = true;  // the loop itself need not ask
   }
 }
 
@@ -239,7 +239,7 @@ void Writer::branch(const Statement& s) {
     for (std::size_t i = 0; i < s.body.size(); ++i) {
       directive(i == 0 ? "#if " + s.feature : "#else");
       line("{");
-      inside({Frame::Kind::branch, &s, false, i}, mask_, *s.body[i]);
+      inside({Frame::Kind::branch, &s, false}, mask_, *s.body[i]);
       line("}");
     }
     return directive("#endif");
@@ -247,7 +247,7 @@ void Writer::branch(const Statement& s) {
   if (!varies(*s.expressions[0])) {
     for (std::size_t i = 0; i < s.body.size(); ++i) {
       line(i == 0 ? fmt::format("if ({}) {{", value(*s.expressions[0])) : "} else {");
-      inside({Frame::Kind::branch, &s, false, i}, mask_, *s.body[i]);
+      inside({Frame::Kind::branch, &s, false}, mask_, *s.body[i]);
     }
     return line("}");
   }
@@ -260,7 +260,7 @@ void Writer::branch(const Statement& s) {
     const std::size_t at = out_.size();
     line("{}MASK {} = {} & {};", exits.any() ? "" : "const ", mask, mask_, name);
     line(weight(part) > cheap || exits.loops ? fmt::format("if (any_lane({})) {{", mask) : "{");
-    inside({Frame::Kind::branch, &s, true, i, only}, mask, part);
+    inside({Frame::Kind::branch, &s, true, only}, mask, part);
     line("}");
     drop_unused(at, mask);
   }

@@ -30,7 +30,8 @@ class Writer {
   struct Loop {
     const Statement* node;
     std::string going, lanes;
-    bool masked;  // lanes leave it at different times
+    bool masked;           // lanes leave it at different times
+    bool checked = false;  // its body asks first whether any is left
   };
   using Write = std::function<std::string()>;
 
@@ -112,7 +113,6 @@ class Writer {
   std::vector<Loop> loops_;
   bool returned_ = false;
   std::map<const Variable*, std::string> tables_;  // for pointers kept as an index
-  std::set<std::string> checked_;                  // of loops whose body tests them first
   Place place_;
 };
 
