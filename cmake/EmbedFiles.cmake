@@ -118,6 +118,20 @@ function(sundog_write_surface_tables target)
   set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# Adds halo_lanes.inc to a target: plain kernels in lanes, which one of its sources includes.
+function(sundog_write_halo_lanes target)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/halo_lanes.inc)
+  set(kernels ${PROJECT_SOURCE_DIR}/kernels)
+  file(GLOB plain CONFIGURE_DEPENDS ${kernels}/plain/halo/*.cl)
+  add_executable(write_halo_lanes ${PROJECT_SOURCE_DIR}/cmake/write_halo_lanes.cpp)
+  target_link_libraries(write_halo_lanes PRIVATE sundog_warnings sundog_lanes)
+  add_custom_command(OUTPUT ${output} COMMAND write_halo_lanes ${kernels} ${output}
+    DEPENDS write_halo_lanes ${plain} ${kernels}/shared/halo.h ${kernels}/shared/types.h
+    COMMENT "Writing halos in lanes" VERBATIM)
+  target_sources(${target} PRIVATE ${output})
+  target_include_directories(${target} SYSTEM PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+endfunction()
+
 if(CMAKE_SCRIPT_MODE_FILE AND HASHED)
   sundog_hash_files()
 elseif(CMAKE_SCRIPT_MODE_FILE)

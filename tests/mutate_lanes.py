@@ -21,8 +21,8 @@ def changes():
 
 def result(build):
     made = subprocess.run(["cmake", "--build", build, "--target", "unit_tests", "device_tests"], capture_output=True)
-    if made.returncode:
-        return "DOES NOT BUILD"
+    if made.returncode:  # the host compiles halos in lanes, too: a compiler may refuse what is made of them
+        return "noticed" if b"halo_lanes.inc" in made.stdout else "DOES NOT BUILD"
     environment = dict(os.environ, SUNDOG_TEST_DEVICES=os.environ.get("SUNDOG_TEST_DEVICES", "pocl"))
     for program, tests in (("unit_tests", "[#test_lanes_text],[#test_lanes_refused]"), ("device_tests", "[#test_lanes]")):
         try:

@@ -8,21 +8,18 @@ Parser::Parser(const Source& source, const IsPlain& is_plain) : tokens_(source.t
   types_["void"] = {.kind = nothing, .name = "void"};
   types_["bool"] = {.kind = boolean, .name = "bool"};
   types_["u32"] = {.kind = natural, .name = "u32"};
-  const std::pair<std::string, Type::Kind> numbers[] = {{"float", real}, {"int", integer}, {"uint", natural}};
-  for (const auto& [name, kind] : numbers) {
-    types_[name] = {.kind = kind, .name = name};
-    for (int n = 2; n <= 4; ++n)
-      add_vector({name + std::to_string(n), kind == real ? fmt::format("REAL{}", n) : "", "", n}, kind);
-  }
-  types_["i32"] = types_["int"];
+  types_["float"] = {.kind = real, .name = "float"};
+  types_["uint"] = {.kind = natural, .name = "uint"};
+  types_["i32"] = types_["int"] = {.kind = integer, .name = "int"};
+  for (int n = 2; n <= 4; ++n) add_vector({fmt::format("float{}", n), fmt::format("REAL{}", n), "", n});
   for (const char* name :
        {"INFINITY", "MAXFLOAT", "FLT_MIN", "FLT_MAX", "FLT_EPSILON", "M_PI_F", "M_1_PI_F", "M_PI_2_F", "NAN"})
     constants_[name] = types_["float"];
 }
 
-void Parser::add_vector(const VectorForm& form, Type::Kind part) {
+void Parser::add_vector(const VectorForm& form) {
   const VectorForm* kept = &out_.forms.emplace_back(form);
-  types_[form.name] = {.kind = Type::Kind::vector, .name = form.name, .form = kept, .part = part};
+  types_[form.name] = {.kind = Type::Kind::vector, .name = form.name, .form = kept};
 }
 
 Program Parser::program() {
@@ -78,9 +75,7 @@ void Parser::declaration() {
     features_[file] = words_in_brackets(1)[0];
   } else if (take("LANE_VECTOR")) {
     const std::vector<std::string> words = words_in_brackets(4);
-    add_vector({words[0], words[1], words[2], std::atoi(words[3].c_str())}, Type::Kind::real);
-  } else if (at("enum")) {
-    enumeration();
+    add_vector({words[0], words[1], words[2], std::atoi(words[3].c_str())});
   } else if (take("CONSTANT")) {
     const Type type = base_type();
     constants_[name("a constant")] = type;
@@ -93,25 +88,19 @@ void Parser::declaration() {
 }
 
 void Parser::type_definition() {
-  if (at("enum")) {
-    enumeration();
+  if (at("struct")) return structure();
+  if (take("enum")) {
+    if (at_name()) ++at_;
+    want("{");
+    list_until("}", [&] {
+      constants_[name("a constant")] = types_["int"];
+      while (!at(",") && !at("}")) ++at_;
+    });
     types_[name("a type")] = types_["uint"];
-  } else if (at("struct")) {
-    structure();
   } else {
     const Type type = pointed(base_type());
     types_.try_emplace(name("a type"), type);
   }
-}
-
-void Parser::enumeration() {
-  want("enum");
-  if (at_name()) ++at_;
-  want("{");
-  list_until("}", [&] {
-    constants_[name("a constant")] = types_["int"];
-    while (!at(",") && !at("}")) ++at_;
-  });
 }
 
 /// `struct [name] [LANES(name, join)] { members } name`
@@ -140,7 +129,6 @@ void Parser::members(Structure& s) {
   while (!take("}")) {
     Member member;
     if (take("HAVING")) member.feature = words_in_brackets(1)[0];
-    member.uniform = take("UNIFORM");
     const Type base = base_type();
     do {
       member.type = pointed(base);

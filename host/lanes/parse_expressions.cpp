@@ -29,13 +29,9 @@ const Type& Parser::scalar(Type::Kind kind) const {
 ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
   const Type& own = e->type;
   if (own.fits(type)) return e;
-  if (type.is_table() && e->kind == Kind::number && e->text == "0") {  // none
-    e->type = type;
-    return e;
-  }
   if (!own.is_number() || (!type.is_vector() && !type.is_number()))
     fail(e->place, "wanted {}, found {}", name_of(type), name_of(own));
-  if (type.is_vector()) e = converted(e, scalar(type.part));
+  if (type.is_vector()) e = converted(e, this->type("float"));
   const ExpressionPtr cast = made(Kind::cast, type, e->place, "", e);
   cast->implicit = true;
   return cast;
@@ -133,7 +129,8 @@ ExpressionPtr Parser::combined(const Token& sign, ExpressionPtr a, ExpressionPtr
 
 ExpressionPtr Parser::unary() {
   const Token sign = word();
-  if (sign.kind != Token::Kind::sign) return postfix(primary());
+  if (sign.kind == Token::Kind::number) return postfix(number());
+  if (at_name()) return postfix(named());
   if (sign.is("(")) return cast_or_brackets();
   static const std::set<std::string_view> known{"-", "!", "~", "*", "&", "++", "--"};
   if (!known.contains(sign.text)) fail(sign.place, "'{}' begins no expression", sign.text);
@@ -178,7 +175,7 @@ ExpressionPtr Parser::vector_of(const Type& type, const Place& where) {
   for (const ExpressionPtr& given : arguments()) {
     const bool is_vector = given->type.is_vector();
     parts += is_vector ? given->type.form->parts : 1;
-    e->of.push_back(is_vector ? given : converted(given, scalar(type.part)));
+    e->of.push_back(is_vector ? given : converted(given, this->type("float")));
   }
   if (parts == 1) return converted(e->of[0], type);
   if (parts != type.form->parts || !type.form->prefix.empty())
@@ -218,8 +215,7 @@ ExpressionPtr Parser::part_of(ExpressionPtr of, bool arrow) {
         std::string_view("xyzw").substr(0, static_cast<std::size_t>(whole.form->parts));
     if (wanted.size() > 4 || wanted.find_first_not_of(known) != std::string::npos)
       fail(where, "a {} has no '{}'", whole.name, wanted);
-    const Type& part = scalar(whole.part);
-    const Type& found = wanted.size() == 1 ? part : type(part.name + std::to_string(wanted.size()));
+    const Type& found = type(wanted.size() == 1 ? "float" : fmt::format("float{}", wanted.size()));
     return made(Kind::component, found, where, wanted, of);
   }
   if (!whole.is_structure()) fail(where, "{} has no members", name_of(whole));
@@ -229,12 +225,6 @@ ExpressionPtr Parser::part_of(ExpressionPtr of, bool arrow) {
   if (!e->type.is_pointer()) e->type.global = of->type.global;
   e->arrow = arrow;
   return e;
-}
-
-ExpressionPtr Parser::primary() {
-  if (word().kind == Token::Kind::number) return number();
-  if (at_name()) return named();
-  fail(place(), "'{}' begins no expression", word().text);
 }
 
 ExpressionPtr Parser::number() {

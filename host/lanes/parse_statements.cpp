@@ -66,10 +66,10 @@ StatementPtr Parser::statement() {
 StatementPtr Parser::unscoped_statement() {
   if (at("{")) return block();
   if (at("if")) return branch();
-  if (at("for") || at("while") || at("do")) return loop();
+  if (at("for") || at("while")) return loop();
   if (at("EACH_ALIKE")) return each_alike();
   if (at("return")) return given();
-  if (at("goto") || at("switch")) fail(place(), "'{}' has no lanes: use if", word().text);
+  if (at("goto") || at("switch") || at("do")) fail(place(), "'{}' has no lanes: use if, while", word().text);
   StatementPtr s = made(Statement::Kind::block);
   if (take("break"))
     s->kind = Statement::Kind::leave_loop;
@@ -128,31 +128,24 @@ StatementPtr Parser::branch() {
 }
 
 StatementPtr Parser::loop() {
-  StatementPtr s = made(at("do") ? Statement::Kind::do_loop : Statement::Kind::loop);
-  StatementPtr first = made(Statement::Kind::block), body;
-  ExpressionPtr asked = made(Expression::Kind::constant, type("bool"), place(), "true");
-  if (take("do")) {
-    body = statement();
-    want("while");
+  StatementPtr s = made(Statement::Kind::loop);
+  StatementPtr first = made(Statement::Kind::block);
+  ExpressionPtr asked = made(Expression::Kind::constant, type("bool"), place(), "true"), step;
+  if (take("while")) {
     asked = truth(in_brackets());
-    want(";");
-  } else if (take("while")) {
-    asked = truth(in_brackets());
-    body = statement();
   } else {
     want("for");
     want("(");
     if (!take(";")) first = begins_declaration() ? declared() : statement();
     if (!at(";")) asked = truth(condition());
     want(";");
-    const ExpressionPtr step = at(")") ? nullptr : expression();
+    if (!at(")")) step = expression();
     want(")");
-    body = statement();
-    if (step) s->expressions.push_back(step);
   }
-  s->expressions.insert(s->expressions.begin(), std::move(asked));
+  s->expressions.push_back(std::move(asked));
+  if (step) s->expressions.push_back(std::move(step));
   s->body.push_back(std::move(first));
-  s->body.push_back(std::move(body));
+  s->body.push_back(statement());
   return s;
 }
 

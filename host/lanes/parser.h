@@ -39,8 +39,7 @@ class Parser {
   // Declarations (parse_declarations.cpp).
   void declaration();
   void type_definition();
-  void add_vector(const VectorForm& form, Type::Kind part);
-  void enumeration();
+  void add_vector(const VectorForm& form);
   void structure();
   void members(Structure& s);
   void function();
@@ -87,7 +86,6 @@ class Parser {
   ExpressionPtr postfix(ExpressionPtr of);
   ExpressionPtr stepped(const Token& sign, ExpressionPtr of, bool postfix) const;
   ExpressionPtr part_of(ExpressionPtr of, bool arrow);
-  ExpressionPtr primary();
   ExpressionPtr number();
   ExpressionPtr named();
   ExpressionPtr call(const Token& called);

@@ -145,17 +145,13 @@ class Preprocessor {
       open_.push_back(is_active() && condition(words, place));
     } else if (what == "else" || what == "endif") {
       if (open_.empty()) fail(place, "#{} without an #if", what);
-      if (what == "else")
-        open_.back() = !open_.back();
-      else
-        open_.pop_back();
-    } else if (what.starts_with("if") || what.starts_with("el") || is_active()) {
-      active_directive(what, words, place);
-    }
-  }
-
-  void active_directive(const std::string& what, const Tokens& words, const Place& place) {
-    if (what == "include") {
+      open_.back() = !open_.back();
+      if (what == "endif") open_.pop_back();
+    } else if (what.starts_with("if") || what.starts_with("el")) {
+      fail(place, "#{} is not known", what);
+    } else if (!is_active()) {
+      return;
+    } else if (what == "include") {
       std::string path;  // a path in quotation marks: its words stand side by side
       for (const Token& word : words)
         if (!word.is("\"")) path += word.text;

@@ -50,16 +50,14 @@ void Specialisation::number(const Statement& s, int& at) {
         return false;
       });
   for (const StatementPtr& inner : s.body) number(*inner, at);
-  if (s.is_loop()) loop_end_[&s] = at;
+  if (s.is(Statement::Kind::loop)) loop_end_[&s] = at;
 }
 
 void Specialisation::find_only_result() {
   std::set<const Variable*> all;
-  const auto visit = [&](const auto& self, const Statement& s) -> void {
+  each_within(*function.body, [&](const Statement& s) {
     if (s.is(Statement::Kind::give)) all.insert(s.expressions.empty() ? nullptr : s.expressions[0]->variable);
-    for (const StatementPtr& inner : s.body) self(self, *inner);
-  };
-  visit(visit, *function.body);
+  });
   if (all.size() != 1) return;
   for (const StatementPtr& part :
        function.body->body)  // in a block within, its name would not be known at the end
@@ -88,7 +86,7 @@ void Specialisation::make_vary(const Variable* v, const Place& place, const std:
 }
 
 void Specialisation::declare(const Variable* v, const Frames& frames) {
-  declared_in_[v] = frames;
+  declared_in_[v] = frames.size();
   if (v->type.is_by_hand()) varying.insert(v);
 }
 
@@ -104,9 +102,7 @@ bool Specialisation::is_dead_after(const Variable* v, const Statement* loop, con
 }
 
 std::vector<const Frame*> Specialisation::between(const Variable* v, const Frames& frames) {
-  const Frames& outer = declared_in_[v];
-  std::size_t k = 0;
-  while (k < outer.size() && k < frames.size() && outer[k].is_same(frames[k])) ++k;
+  const std::size_t k = declared_in_[v];
   std::vector<const Frame*> out;
   for (std::size_t i = k; i < frames.size(); ++i)
     if (frames[i].divergent &&
@@ -139,12 +135,10 @@ void Specialisation::statement(const Statement& s, Frames& frames) {
       return;
     case Kind::branch: {
       const bool divergent = s.feature.empty() && varies(*s.expressions[0], frames);
-      for (std::size_t i = 0; i < s.body.size(); ++i)
-        inside(*s.body[i], {Frame::Kind::branch, &s, divergent, i}, frames);
+      for (const StatementPtr& part : s.body) inside(*part, {Frame::Kind::branch, &s, divergent}, frames);
       return;
     }
     case Kind::loop:
-    case Kind::do_loop:
       return loop(s, frames);
     case Kind::each_alike:
       return inside(*s.body[0], {Frame::Kind::alike, &s, varies(*s.expressions[0], frames)}, frames);
@@ -220,26 +214,18 @@ void Specialisation::assign(const Expression& to, bool value_varies, const Frame
   while (place->kind == Kind::member || place->kind == Kind::component) place = place->of[0].get();
   const bool scatters = place->kind == Kind::index && varies(*place->of[1], frames);
   masked |= scatters;
-  const bool parted = divergent_return || is_parted(frames);
-  for (const Expression* at = &to; at->kind == Kind::member; at = at->of[0].get())
-    if (at->whole().structure->member(at->text)->uniform && (value_varies || parted))
-      fail(at->place, "'{}' is uniform, but is set a lane at a time", at->text);
-  const bool has_uniform =
-      to.type.is_structure() && std::ranges::any_of(to.type.structure->members, &Member::uniform);
-  if (has_uniform && (through || !between(root, frames).empty()))
-    fail(to.place, "a {} has uniform members, but is set a lane at a time", to.type.name);
   if (!through) {
     if (value_varies || scatters) make_vary(root, to.place, "what it is set to varies");
     if (!between(root, frames).empty()) make_vary(root, to.place, "it is set where lanes part");
     return;
   }
   if (root->type.is_table()) fail(to.place, "tables are only read");
-  const bool by_lanes = value_varies || scatters || parted;
+  const bool by_lanes = value_varies || scatters || divergent_return || is_parted(frames);
   if (root->uniform && by_lanes)
     fail(to.place, "'{}' is uniform, but is written a lane at a time", root->name);
   writes_uniform |= root->uniform;
-  masked |= !root->uniform;
   if (by_lanes) make_vary(root, to.place, "what is written there varies");
+  masked |= varies(root);
 }
 
 bool Specialisation::varies(const Expression& e, const Frames& frames) {
@@ -251,7 +237,6 @@ bool Specialisation::varies(const Expression& e, const Frames& frames) {
       const Type& base = e.of[0]->type;
       bool v = varies(*e.of[0], frames);
       if (base.is_own_pointer()) v = pointee_varies(*e.of[0]);
-      if (e.whole().structure->member(e.text)->uniform) return false;
       masked |= v && base.is_table();
       return v;
     }

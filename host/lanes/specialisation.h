@@ -12,9 +12,7 @@ struct Frame {
   Kind kind = Kind::branch;
   const Statement* node = nullptr;
   bool divergent = false;
-  std::size_t part = 0;   // of a branch: 0 then, 1 else
   std::string only = {};  // of a branch that no lane leaves: the condition of its lanes
-  bool is_same(const Frame& f) const { return kind == f.kind && node == f.node && part == f.part; }
 };
 using Frames = std::vector<Frame>;
 bool is_parted(const Frames& frames);
@@ -79,8 +77,8 @@ class Specialisation : public Findings {
   void find_only_result();
 
   Specialisations& all_;
-  std::map<const Variable*, Frames> declared_in_;
-  std::map<const Variable*, int> last_use_;  // positions in reading order
+  std::map<const Variable*, std::size_t> declared_in_;  // so many frames
+  std::map<const Variable*, int> last_use_;             // positions in reading order
   std::map<const Statement*, int> loop_end_;
 };
 

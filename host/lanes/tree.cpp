@@ -82,9 +82,6 @@ std::map<std::string, BuiltIn> built_ins() {
   std::map<std::string, BuiltIn> all{{"as_int", {1, nothing, integer, "AS_MASK"}},
                                      {"as_uint", {1, nothing, natural, "AS_UINTS"}},
                                      {"as_float", {1, nothing, real, "AS_REAL"}},
-                                     {"convert_float", {1, nothing, real, "TO_REAL"}},
-                                     {"convert_int_rtz", {1, real, integer, "TO_MASK"}},
-                                     {"convert_uint_rtz", {1, real, natural, "REAL_TO_UINTS"}},
                                      {"min", {2, integer, integer}},
                                      {"max", {2, integer, integer}}};
   for (const char* name : {"fma", "mad", "mix", "clamp"}) all[name] = {3, real, real};

@@ -24,7 +24,6 @@ struct Type {
   Kind kind = Kind::nothing;
   std::string name = {};             // in the device's compiler, for one path
   const VectorForm* form = nullptr;  // of a vector
-  Kind part = Kind::real;            // of a vector
   const Structure* structure = nullptr;
   std::shared_ptr<const Type> of = {};    // of a pointer or array
   int length = 0;                         // of an array
@@ -57,8 +56,7 @@ std::string name_of(const Type& type);
 struct Member {
   std::string name;
   Type type;
-  bool uniform = false;
-  std::string feature;  // the feature that the member needs; empty: none
+  std::string feature;  // the feature that it needs; empty: none
 };
 
 struct Structure {
@@ -148,7 +146,6 @@ struct Statement {
     declare,     // variables with initialisers, which may be null
     branch,      // if (expressions[0]) body[0] else body[1]; feature: by the preprocessor
     loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; there may be no expressions[1]
-    do_loop,     // do body[1] while (expressions[0]); body[0] is empty
     each_alike,  // variables[0] takes each distinct value of expressions[0]: body[0]
     leave_loop,  // break
     next_round,  // continue
@@ -163,8 +160,14 @@ struct Statement {
   std::string feature;
 
   bool is(Kind k) const { return kind == k; }
-  bool is_loop() const { return is(Kind::loop) || is(Kind::do_loop); }
 };
+
+/// Calls `visit` for s and all within.
+template <class Visit>
+void each_within(const Statement& s, const Visit& visit) {
+  visit(s);
+  for (const StatementPtr& inner : s.body) each_within(*inner, visit);
+}
 
 struct Function {
   std::string name, lanes;  // `lanes`: name of the hand-written one

@@ -21,6 +21,15 @@ std::string number_of(const Expression& e, const Type& type) {
   return (text.ends_with('u') ? text.substr(0, text.size() - 1) : text) + ".0f";
 }
 
+/// Whether computing e sets variables.
+bool writes(const Expression& e) {
+  return any_within(e, [](const Expression& part) {
+    return part.function && std::ranges::any_of(part.function->parameters, [](const Variable* p) {
+             return p->type.is_own_pointer() && !p->type.constant;
+           });
+  });
+}
+
 }  // namespace
 
 std::string Writer::type_text(const Type& type, bool varying) {
@@ -53,10 +62,9 @@ bool Writer::varies(const Expression& e) {
   return v;
 }
 
-std::string Writer::value(const Expression& e) { return varies(e) ? varying(e) : plain(e); }
-
 std::string Writer::lanes(const Expression& e) {
-  return varies(e) || e.kind == Kind::list ? varying(e) : spread(plain(e), e.type);
+  if (e.kind != Kind::list) return varies(e) ? value(e) : spread(value(e), e.type);
+  return "{" + joined(e.of, [&](const ExpressionPtr& part) { return lanes(*part); }) + "}";
 }
 
 std::string Writer::spread(const std::string& text, const Type& type) {
@@ -76,51 +84,6 @@ std::string Writer::spread(const std::string& text, const Type& type) {
   return fmt::format("({})({})", type_text(type, true), text);
 }
 
-std::string Writer::plain(const Expression& e) {
-  const auto part = [&](std::size_t i) { return plain(*e.of[i]); };
-  const auto parts = [&] { return joined(e.of, [&](const ExpressionPtr& one) { return plain(*one); }); };
-  switch (e.kind) {
-    case Kind::number:
-    case Kind::constant:
-    case Kind::variable:
-      return e.text;
-    case Kind::member:
-    case Kind::component:
-      return part(0) + (e.arrow ? "->" : ".") + e.text;
-    case Kind::index:
-      return fmt::format("{}[{}]", part(0), part(1));
-    case Kind::unary:
-      if (e.postfix) return part(0) + e.text;
-      return e.text == "&" || e.text == "!" || e.steps() ? e.text + part(0)
-                                                         : fmt::format("({}{})", e.text, part(0));
-    case Kind::binary:
-      return fmt::format("({} {} {})", part(0), e.text, part(1));
-    case Kind::assign:
-      return fmt::format("{} = {}", part(0), part(1));
-    case Kind::choose:
-      return fmt::format("({} ? {} : {})", part(0), part(1), part(2));
-    case Kind::cast:
-      if (const std::string number = number_of(*e.of[0], e.type); e.implicit && !number.empty())
-        return number;
-      if (e.implicit && e.type.is_truth()) return part(0);
-      [[fallthrough]];
-    case Kind::vector:
-      return fmt::format("({})({})", type_text(e.type, false), parts());
-    case Kind::list:
-      return "{" + parts() + "}";
-    case Kind::call:
-      return call(e);
-    case Kind::any:
-      if (!varies(*e.of[0])) return part(0);
-      return fmt::format("(any_lane({} & {}) != 0)", mask_, mask_of(*e.of[0]));
-  }
-  return "";
-}
-
-std::string Writer::place_of(const Expression& e) {
-  return varies(e) || e.type.is_own_pointer() ? varying(e) : plain(e);
-}
-
 std::string Writer::simple(const Expression& e) {
   const std::string text = lanes(e);
   if (is_name(text)) return text;
@@ -129,62 +92,72 @@ std::string Writer::simple(const Expression& e) {
   return name;
 }
 
-std::string Writer::varying(const Expression& e) {
+/// As it is written, in lanes where it varies.
+std::string Writer::value(const Expression& e) {
+  const bool v = varies(e);
+  const auto part = [&](std::size_t i) { return value(*e.of[i]); };
+  const auto all_values = [&] { return joined(e.of, [&](const ExpressionPtr& one) { return value(*one); }); };
   const auto vector_of = [](const std::string& all, auto parts) {
     return fmt::format("real{}({})", parts, all);
   };
   if (is_gathered(e) && e.kind != Kind::component)
     return e.type.is_vector() ? vector_of(parts_of(e), e.type.form->parts) : gather(e);
   switch (e.kind) {
+    case Kind::number:
+    case Kind::constant:
     case Kind::variable:
       return e.text;
-    case Kind::cast:
-      return e.type.is_truth() ? mask_of(e) : varying_cast(e);
-    case Kind::vector: {
-      if (e.type.part != Type::Kind::real) fail(e.place, "a {} has no lanes", e.type.name);
-      const std::string all = joined(e.of, [&](const ExpressionPtr& part) {
-        return part->type.is_vector() ? parts_of(*part) : lanes(*part);
-      });
-      return vector_of(all, e.type.form->parts);
-    }
     case Kind::component:
-      if (e.text.size() > 1) return vector_of(parts_of(*e.of[0], e.text), e.text.size());
+      if (v && e.text.size() > 1) return vector_of(parts_of(*e.of[0], e.text), e.text.size());
       if (is_gathered(e)) return gather(e);
       [[fallthrough]];
     case Kind::member:
-      return place_of(*e.of[0]) + (e.arrow ? "->" : ".") + e.text;
+      return part(0) + (e.arrow ? "->" : ".") + e.text;
     case Kind::index:
-      return element(e);
+      return varies(*e.of[1]) ? element(e) : fmt::format("{}[{}]", part(0), part(1));
     case Kind::unary:
-      return varying_unary(e);
+      if (v && e.text == "!") return mask_of(e);
+      if (v && e.text == "-" && e.type.is_vector())
+        return fmt::format("{}({})", e.type.form->function("negate"), part(0));
+      if (e.postfix) return part(0) + e.text;
+      return e.text == "&" || e.text == "!" || e.steps() ? e.text + part(0)
+                                                         : fmt::format("({}{})", e.text, part(0));
     case Kind::binary:
-      return e.type.is_truth()    ? mask_of(e)
-             : e.type.is_vector() ? varying_vector_binary(e)
-                                  : varying_binary(e);
+      if (v && e.type.is_truth()) return mask_of(e);
+      if (v) return e.type.is_vector() ? varying_vector_binary(e) : varying_binary(e);
+      return fmt::format("({} {} {})", part(0), e.text, part(1));
+    case Kind::assign:
+      return fmt::format("{} = {}", part(0), part(1));
     case Kind::choose:
-      return varying_choice(e);
+      return v ? varying_choice(e) : fmt::format("({} ? {} : {})", part(0), part(1), part(2));
+    case Kind::cast:
+      if (v) return e.type.is_truth() ? mask_of(e) : varying_cast(e);
+      if (const std::string number = number_of(*e.of[0], e.type); e.implicit && !number.empty())
+        return number;
+      if (e.implicit && e.type.is_truth()) return part(0);
+      return fmt::format("({})({})", type_text(e.type, false), part(0));
+    case Kind::vector: {
+      if (!v) return fmt::format("({})({})", type_text(e.type, false), all_values());
+      const std::string all = joined(e.of, [&](const ExpressionPtr& one) {
+        return one->type.is_vector() ? parts_of(*one) : lanes(*one);
+      });
+      return vector_of(all, e.type.form->parts);
+    }
+    case Kind::list:
+      return "{" + all_values() + "}";
     case Kind::call:
       return call(e);
-    case Kind::list: {
-      std::size_t i = 0;
-      return "{" +
-             joined(e.of,
-                    [&](const ExpressionPtr& part) {
-                      const bool uniform = e.type.is_structure() && e.type.structure->members[i++].uniform;
-                      return uniform ? plain(*part) : lanes(*part);
-                    }) +
-             "}";
-    }
-    default:
-      fail(e.place, "this has no value within an expression");
+    case Kind::any:
+      break;
   }
+  return varies(*e.of[0]) ? fmt::format("(any_lane({} & {}) != 0)", mask_, mask_of(*e.of[0])) : part(0);
 }
 
 std::string Writer::varying_cast(const Expression& e) {
   const Expression& of = *e.of[0];
   const Type &to = e.type, &from = of.type;
   if (to.is_vector()) {
-    if (!varies(of)) return fmt::format("{}({})", to.form->function("all"), plain(of));
+    if (!varies(of)) return fmt::format("{}({})", to.form->function("all"), value(of));
     if (!to.form->prefix.empty()) fail(e.place, "a {} of one number that varies", to.name);
     const std::vector<std::string> all(static_cast<std::size_t>(to.form->parts), simple(of));
     return fmt::format("real{}({})", to.form->parts, fmt::join(all, ", "));
@@ -202,16 +175,6 @@ std::string Writer::parts_of(const Expression& e, std::string_view wanted) {
   const bool gathers = is_gathered(e);
   const std::string base = gathers ? "" : simple(e);
   return joined(wanted, [&](char c) { return gathers ? gather(e, letters.find(c)) : base + "." + c; });
-}
-
-std::string Writer::varying_unary(const Expression& e) {
-  const Expression& of = *e.of[0];
-  if (e.text == "!") return mask_of(e);
-  if (e.text == "-" && e.type.is_vector())
-    return fmt::format("{}({})", e.type.form->function("negate"), lanes(of));
-  if (e.text == "*") return fmt::format("(*{})", varying(of));
-  if (e.text == "&") return "&" + place_of(of);
-  return fmt::format("({}{})", e.text, lanes(of));
 }
 
 std::string Writer::varying_vector_binary(const Expression& e) {
@@ -240,6 +203,99 @@ std::string Writer::varying_binary(const Expression& e) {
   const bool shifts = e.text == "<<" || e.text == ">>";
   const std::string first = shifts ? lanes(a) : value(a);
   return fmt::format("({} {} {})", first, e.text, shifts ? lanes(b) : value(b));
+}
+
+// ---- conditions as masks, and choices between two values
+
+/// Whether e must not be computed in lanes that do not ask for it.
+bool Writer::is_guarded(const Expression& e) {
+  return any_within(e, [&](const Expression& part) {
+    if (part.kind == Kind::any || (part.kind == Kind::member && is_gathered(part))) return true;
+    if ((part.kind == Kind::index || part.divides_whole()) && varies(*part.of[1])) return true;
+    if (!part.function) return false;
+    if (!part.function->body) return part.function->takes_mask;
+    return all_.of(*part.function, s_.arguments_of(part, frames_)).masked;
+  });
+}
+
+/// Calls `write` with the mask narrowed to `mask`; returns its text.
+std::string Writer::under(const std::string& mask, const Write& write) {
+  const std::string outer = mask_;
+  mask_ = fresh("m");
+  const std::size_t at = out_.size();
+  line("const MASK {} = {} & {};", mask_, outer, mask);
+  std::string text = write();
+  if (!mentions(text, mask_)) drop_unused(at, mask_);
+  mask_ = outer;
+  return text;
+}
+
+std::string Writer::varying_choice(const Expression& e) {
+  const Expression &asked = *e.of[0], &a = *e.of[1], &b = *e.of[2];
+  std::string mask;
+  if (!varies(asked)) {
+    const std::size_t at = out_.size();
+    const std::string text = fmt::format("({} ? {} : {})", value(asked), lanes(a), lanes(b));
+    if (out_.size() == at) return text;
+    out_.resize(at);
+    mask = fmt::format("LANES_IF({})", value(asked));
+  } else {
+    mask = mask_of(asked);
+  }
+  if (!is_guarded(a) && !is_guarded(b) && !writes(asked)) {
+    const std::string second = lanes(b);
+    return selected(e.type, second, lanes(a), mask, e.place);
+  }
+  const std::string is = fresh("is");
+  line("const MASK {} = {};", is, mask);
+  const std::string otherwise = under("~" + is, [&] { return lanes(b); });
+  return selected(e.type, otherwise, under(is, [&] { return lanes(a); }), is, e.place);
+}
+
+std::string Writer::selected(const Type& type, const std::string& a, const std::string& b,
+                             const std::string& mask, const Place& place) {
+  std::string select = "select";
+  if (type.is_vector()) select = type.form->function("select");
+  if (type.is_structure()) {
+    if (type.structure->by_hand)
+      fail(place, "a {} is set where lanes part, and nothing joins two", type.name);
+    type_text(type, true);
+    select += "_" + type.name;
+  }
+  return fmt::format("{}({}, {}, {})", select, a, b, mask);
+}
+
+std::string Writer::mask_of(const Expression& e) {
+  if (!varies(e)) return spread(value(e), e.type);
+  if (e.kind == Kind::binary && joins(e.text)) return joined_masks(e);
+  if (e.kind == Kind::binary) {
+    const std::string first = value(*e.of[0]);
+    return fmt::format("MASK_OF({} {} {})", first, e.text, value(*e.of[1]));
+  }
+  if (e.is_unary("!")) return "~" + mask_of(*e.of[0]);
+  if (e.kind == Kind::cast) return fmt::format("MASK_OF({} != 0)", lanes(*e.of[0]));
+  return e.kind == Kind::choose ? varying_choice(e) : value(e);
+}
+
+/// && and ||: the second condition is asked only where C asks it.
+std::string Writer::joined_masks(const Expression& e) {
+  const Expression &a = *e.of[0], &b = *e.of[1];
+  const char sign = e.text[0];
+  if (!varies(a)) {
+    const std::size_t at = out_.size();
+    const std::string first = value(a), second = mask_of(b);
+    if (out_.size() == at)
+      return sign == '&' ? fmt::format("({} ? {} : NO_LANES)", first, second)
+                         : fmt::format("({} ? ALL_LANES : {})", first, second);
+    out_.resize(at);
+  }
+  if (!is_guarded(b) && !writes(a)) {
+    const std::string first = mask_of(a);
+    return fmt::format("({} {} {})", first, sign, mask_of(b));
+  }
+  const std::string is = fresh("is");
+  line("const MASK {} = {};", is, mask_of(a));
+  return fmt::format("({} {} {})", is, sign, under(sign == '&' ? is : "~" + is, [&] { return mask_of(b); }));
 }
 
 }  // namespace sundog::spmd

@@ -10,8 +10,13 @@ std::string all_of(const std::vector<std::string>& tests) {
 
 }  // namespace
 
+std::string Writer::alive() const {
+  const auto masked = std::find_if(loops_.rbegin(), loops_.rend(), [](const Loop& l) { return l.masked; });
+  return masked == loops_.rend() ? "m_" : masked->going;
+}
+
 void Writer::loop(const Statement& s) {
-  const bool is_do = s.is(Statement::Kind::do_loop), rounds = s_.divergent_continue.contains(&s);
+  const bool rounds = s_.divergent_continue.contains(&s);
   const Expression& asked = *s.expressions[0];
   const Statement& body = *s.body[1];
   const std::string outer = mask_;
@@ -21,20 +26,19 @@ void Writer::loop(const Statement& s) {
   statement(*s.body[0]);
   const bool asks_lanes = varies(asked), gives = exits_of(body).gives && s_.divergent_return;
   const bool parts = frames_.back().divergent || gives || asks_lanes;
-  Loop entry{&s, mask_, mask_};
-  if (parts || rounds) {
+  Loop entry{&s, mask_, mask_, parts || rounds};
+  if (entry.masked) {
     entry.lanes = fresh("in");
     line("MASK {} = {};", entry.lanes, outer);
   }
   entry.going = rounds ? fresh("go") : entry.lanes;
-  all_loops_.push_back(entry);
-  if (parts || rounds) loops_.push_back(entry);
+  loops_.push_back(entry);
   mask_ = entry.lanes;
 
   // Lines that compute the condition, the condition itself, and the step.
   const std::size_t begin = out_.size();
   std::vector<std::string> tests;
-  if (!asks_lanes) tests.push_back(plain(asked));
+  if (!asks_lanes) tests.push_back(value(asked));
   std::erase(tests, "true");
   if (parts)
     tests.push_back(asks_lanes ? fmt::format("any_lane({} &= {})", entry.lanes, mask_of(asked))
@@ -45,35 +49,21 @@ void Writer::loop(const Statement& s) {
   if (out_.size() != begin)
     fail(s.expressions[1]->place, "the step of a loop is simple: put this into its body");
 
-  const auto ask = [&](int depth) {
-    for (Line& l : before) l.depth += depth;
-    out_.insert(out_.end(), before.begin(), before.end());
-    line("{}if (!({})) break;", std::string(2 * static_cast<std::size_t>(depth), ' '), all_of(tests));
-  };
-  const bool asks_first = !is_do && before.empty();
-  if (is_do) {
-    const std::string again = fresh("again");
-    line("bool {} = false;", again);
-    line("while (true) {");
-    line("  if ({}) {{", again);
-    ask(2);
-    line("  }");
-    line("  {} = true;", again);
-  } else {
-    line("for (;; {}) {{", step);
-    if (!asks_first) ask(1);
-  }
+  line("for (;; {}) {{", step);
   const std::size_t head = out_.size() - 1;
+  if (!before.empty()) {
+    for (Line& l : before) ++l.depth;
+    out_.insert(out_.end(), before.begin(), before.end());
+    line("  if (!({})) break;", all_of(tests));
+  }
   if (rounds) line("  MASK {} = {};", entry.going, entry.lanes);
   inside({Frame::Kind::round, &s, rounds}, entry.going, body);
-  if (asks_first) {
-    if (checked_.contains(entry.lanes) && !asks_lanes)
-      std::erase(tests, fmt::format("any_lane({})", entry.lanes));
+  if (before.empty()) {
+    if (loops_.back().checked && !asks_lanes) std::erase(tests, fmt::format("any_lane({})", entry.lanes));
     out_[head].text = fmt::format("for (; {}; {}) {{", all_of(tests), step);
   }
   line("}");
-  all_loops_.pop_back();
-  if (parts || rounds) loops_.pop_back();
+  loops_.pop_back();
   mask_ = outer;
   if (gives && outer != "m_") line("{} &= {};", outer, alive());
   frames_.pop_back();
@@ -84,7 +74,7 @@ void Writer::loop(const Statement& s) {
 void Writer::leave(const Statement& s) {
   const bool breaks = s.is(Statement::Kind::leave_loop);
   const auto [left, divergent] = left_loop(s, frames_);
-  const Loop& l = *std::ranges::find(all_loops_, left, &Loop::node);
+  const Loop& l = *std::ranges::find(loops_, left, &Loop::node);
   if (!divergent && (breaks || !s_.divergent_continue.contains(left)))
     return line(breaks ? "break;" : "continue;");
   const std::string gone = mask_;
@@ -97,7 +87,7 @@ void Writer::give(const Statement& s) {
   const bool gives = !s.expressions.empty();
   if (!s_.divergent_return) {
     if (!gives) return line("return;");
-    return line("return {};", s_.result_varies ? lanes(*s.expressions[0]) : plain(*s.expressions[0]));
+    return line("return {};", s_.result_varies ? lanes(*s.expressions[0]) : value(*s.expressions[0]));
   }
   if (gives && !s_.only_result) {
     const std::string value = lanes(*s.expressions[0]);
@@ -117,6 +107,7 @@ void Writer::give(const Statement& s) {
   };
   take_out("m_");
   for (const Loop& l : loops_) {
+    if (!l.masked) continue;
     take_out(l.lanes);
     take_out(l.going);
   }
@@ -126,21 +117,14 @@ void Writer::give(const Statement& s) {
 void Writer::each_alike(const Statement& s) {
   const Variable& v = *s.variables[0];
   const Expression& of = *s.expressions[0];
-  const std::string type = type_text(v.type, false);
-  if (!varies(of)) {
-    line("{");
-    line("  const {} {} = {};", type, v.name, plain(of));
-    inside({Frame::Kind::alike, &s, false}, mask_, *s.body[0]);
-    return line("}");
-  }
   std::string all = simple(of);
   if (v.type.is_natural()) all = fmt::format("AS_MASK({})", all);
   const std::string left = fresh("left"), word = fresh("word"), mask = fresh("m");
   line("u32 {};", word);
   line("for (u32 {0} = lane_bits({1}); {0};) {{", left, mask_);
   line("  MASK {} = take_alike({}, &{}, &{});", mask, all, left, word);
-  line("  const {0} {1} = ({0}){2};", type, v.name, word);
-  inside({Frame::Kind::alike, &s, true}, mask, *s.body[0]);
+  line("  const {0} {1} = ({0}){2};", type_text(v.type, false), v.name, word);
+  inside({Frame::Kind::alike, &s, varies(of)}, mask, *s.body[0]);
   line("}");
   if (exits_of(*s.body[0]).gives && mask_ != "m_") line("{} &= m_;", mask_);
 }

@@ -7,19 +7,6 @@ namespace {
 
 using Kind = Expression::Kind;
 
-/// A member, or each element of one that is an array.
-struct Part {
-  explicit Part(const Member& m) : member(m), type(m.type), name(m.name) {
-    if (!m.type.is_array()) return;
-    type = *m.type.of;
-    name += "[i]";
-    each = fmt::format("for (int i = 0; i < {}; ++i) ", m.type.length);
-  }
-  const Member& member;
-  Type type;
-  std::string name, each;
-};
-
 }  // namespace
 
 /// Whether e is read from a table at a place that varies.
@@ -59,7 +46,7 @@ std::string Writer::gather(const Expression& e, std::size_t part) {
   offset += 4 * static_cast<int>(part);
   std::string words = (stride == 4 ? index : fmt::format("{} * {}", index, stride / 4)) + places;
   if (offset != 0) words = fmt::format("{} + {}", words, offset / 4);
-  const Type::Kind kind = e.type.is_vector() ? e.type.part : e.type.kind;
+  const Type::Kind kind = e.type.is_vector() ? Type::Kind::real : e.type.kind;
   if (kind < Type::Kind::integer || kind > Type::Kind::real || e.type.is_by_hand())
     fail(e.place, "{} cannot be read at a place that varies", name_of(e.type));
   if (kind == Type::Kind::real)
@@ -70,12 +57,12 @@ std::string Writer::gather(const Expression& e, std::size_t part) {
 
 /// A pointer to a table: what is alike in all lanes, and an index of each lane, which may be empty.
 std::pair<std::string, std::string> Writer::table_and_index(const Expression& e) {
-  if (!varies(e)) return {plain(e), ""};
+  if (!varies(e)) return {value(e), ""};
   if (const auto kept = tables_.find(e.variable); kept != tables_.end()) return {kept->second, e.text};
   const Expression& of = e.is_unary("&") && e.of[0]->kind == Kind::index ? *e.of[0] : e;
   if ((!of.is_binary("+") && of.kind != Kind::index) || varies(*of.of[0]))
     fail(e.place, "a pointer that varies is a table and an index");
-  return {plain(*of.of[0]), index_of(*of.of[1])};
+  return {value(*of.of[0]), index_of(*of.of[1])};
 }
 
 /// The type of an array's elements, as lanes.h names it, and the place of one in each lane.
@@ -84,12 +71,11 @@ std::pair<std::string, std::string> Writer::place_in_lane(const Expression& e, c
     fail(e.place, "an element that varies of an array of {}", name_of(e.type));
   const std::string index = simple(*e.of[1]);
   return {e.type.is_real() ? "REAL" : "MASK",
-          fmt::format("{}[MASK_LANE({}, {})]", place_of(*e.of[0]), index, lane)};
+          fmt::format("{}[MASK_LANE({}, {})]", value(*e.of[0]), index, lane)};
 }
 
 /// An element of an array of lanes, or of one, at a place that may differ from lane to lane.
 std::string Writer::element(const Expression& e) {
-  if (!varies(*e.of[1])) return fmt::format("{}[{}]", place_of(*e.of[0]), plain(*e.of[1]));
   const std::string name = fresh("element"), lane = fresh("lane");
   const auto [type, place] = place_in_lane(e, lane);
   line("{0} {1} = ({0})(0);", type, name);
@@ -112,7 +98,7 @@ std::string Writer::call(const Expression& e) {
     const bool v = varies(e);
     const BuiltIn& f = *built_in_of(e.text);
     const std::string all =
-        joined(e.of, [&](const auto& given) { return v ? lanes(*given) : plain(*given); });
+        joined(e.of, [&](const auto& given) { return v ? lanes(*given) : value(*given); });
     return fmt::format("{}({})", v && !f.lanes.empty() ? f.lanes : e.text, all);
   }
   if (!e.function->body) return hand_written(e);
@@ -123,7 +109,7 @@ std::string Writer::call(const Expression& e) {
     const bool v = vary[i] || called.varies(e.function->taken[i]);
     ++i;
     if (given->type.is_own_pointer() || given->type.is_array()) return pointed(*given);
-    return v ? lanes(*given) : plain(*given);
+    return v ? lanes(*given) : value(*given);
   });
   if (called.masked) all += (all.empty() ? "" : ", ") + mask_;
   return fmt::format("{}({})", called.name, all);
@@ -136,7 +122,7 @@ std::string Writer::hand_written(const Expression& e) {
     if (parameter->here) return mask_;
     const Expression& given = *e.of[i++];
     if (given.type.is_own_pointer() || given.type.is_array()) return pointed(given);
-    if (parameter->uniform || given.type.is_pointer()) return plain(given);
+    if (parameter->uniform || given.type.is_pointer()) return value(given);
     // Masks of what is written by hand are among the lanes that are there.
     const bool narrows = parameter->type.is_truth() && f.takes_mask;
     return narrows ? fmt::format("{} & {}", mask_, lanes(given)) : lanes(given);
@@ -147,62 +133,64 @@ std::string Writer::hand_written(const Expression& e) {
 std::string Writer::pointed(const Expression& e) {
   for (const Expression* at = &e; !at->of.empty(); at = at->of[0].get())
     if (at->kind == Kind::index && varies(*at->of[1])) fail(at->place, "a pointer to an element that varies");
-  if (e.is_unary("&")) return "&" + place_of(*e.of[0]);
-  return place_of(e);
+  if (e.is_unary("&")) return "&" + value(*e.of[0]);
+  return value(e);
 }
 
 // ---- structures: as they are, and in lanes with what takes lanes of two
 
-/// Lines of `head`, a line for each member where its feature is there, and `end`.
+/// `head`, a line for each member, where its feature is there, and `end`.
 template <class Text>
-void Writer::structure_lines(const Structure& s, const std::string& head, const Text& text,
-                             const std::string& end) {
+void Writer::member_lines(const Structure& s, const std::string& head, const Text& text, const char* end) {
   place_ = s.place;
   depth_ = 0;
   line(head);
   for (const Member& m : s.members) {
     if (!m.feature.empty()) line("#if " + m.feature);
-    line("  " + text(Part(m)));
+    line("  " + text(m));
     if (!m.feature.empty()) line("#endif");
   }
   line(end);
 }
 
-std::vector<Line> Writer::structure(const Structure& s, bool in_lanes) {
-  out_.clear();
-  const std::string name = in_lanes ? s.lanes : s.name;
-  const auto declared = [&](const Part& m) {
-    const std::string type = type_text(m.type, in_lanes && !m.member.uniform);
-    const int length = m.member.type.length;
-    return fmt::format("{} {}{};", type, m.member.name, length > 0 ? fmt::format("[{}]", length) : "");
+/// `head {`, which sets all members of `r`: by `text` of their place, or of each element of theirs.
+template <class Text>
+std::vector<Line> Writer::structure_function(const Structure& s, const std::string& head, const Text& text) {
+  line("static inline {} {} {{", s.lanes, head);
+  const auto part = [&](const Member& m) {
+    if (!m.type.is_array()) return text(m.type, m.name);
+    return fmt::format("for (int i = 0; i < {}; ++i) {}", m.type.length, text(*m.type.of, m.name + "[i]"));
   };
-  structure_lines(s, fmt::format("typedef struct {} {{", name), declared, fmt::format("}} {};", name));
-  if (!in_lanes) return std::move(out_);
-  const auto joined = [&](const Part& m) {
-    const std::string a = "a." + m.name, b = "b." + m.name;
-    if (m.type.joins())
-      return fmt::format("{0}r.{1} = {2}; {0}{3}(&r.{1}, &{4}, m);", m.each, m.name, a,
-                         m.type.structure->join, b);
-    return fmt::format("{}r.{} = {};", m.each, m.name,
-                       m.member.uniform ? b : selected(m.type, a, b, "m", s.place));
-  };
-  line("static inline {0} select_{1}({0} a, {0} b, MASK m) {{", name, s.name);
-  structure_lines(s, fmt::format("  {} r;", name), joined, "  return r;");
+  member_lines(s, fmt::format("  {} r;", s.lanes), part, "  return r;");
   line("}");
   return std::move(out_);
+}
+
+std::vector<Line> Writer::structure(const Structure& s, bool in_lanes) {
+  out_.clear();
+  const std::string& name = in_lanes ? s.lanes : s.name;
+  const auto declared = [&](const Member& m) {
+    const bool is_array = m.type.is_array();
+    const std::string type = type_text(is_array ? *m.type.of : m.type, in_lanes);
+    return fmt::format("{} {}{};", type, m.name, is_array ? fmt::format("[{}]", m.type.length) : "");
+  };
+  member_lines(s, fmt::format("typedef struct {} {{", name), declared, ("} " + name + ";").c_str());
+  if (!in_lanes) return std::move(out_);
+  const auto joined = [&](const Type& type, const std::string& at) {
+    const std::string a = "a." + at, b = "b." + at;
+    if (type.joins()) return fmt::format("r.{} = {}; {}(&r.{}, &{}, m);", at, a, type.structure->join, at, b);
+    return fmt::format("r.{} = {};", at, selected(type, a, b, "m", s.place));
+  };
+  return structure_function(s, fmt::format("select_{0}({1} a, {1} b, MASK m)", s.name, s.lanes), joined);
 }
 
 /// One path's, the same in all lanes.
 std::vector<Line> Writer::spread_structure(const Structure& s) {
   out_.clear();
-  const auto spread_part = [&](const Part& m) {
-    const std::string from = "a." + m.name;
-    return fmt::format("{}r.{} = {};", m.each, m.name, m.member.uniform ? from : spread(from, m.type));
+  const auto spread_part = [&](const Type& type, const std::string& at) {
+    return fmt::format("r.{} = {};", at, spread("a." + at, type));
   };
-  line("static inline {} all_{}({} a) {{", s.lanes, s.name, s.name);
-  structure_lines(s, fmt::format("  {} r;", s.lanes), spread_part, "  return r;");
-  line("}");
-  return std::move(out_);
+  return structure_function(s, fmt::format("all_{0}({0} a)", s.name), spread_part);
 }
 
 }  // namespace sundog::spmd

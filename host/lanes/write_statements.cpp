@@ -19,13 +19,13 @@ Type settable(Type type) {
 
 Exits exits_of(const Statement& s) {
   Exits out{s.is(StatementKind::leave_loop), s.is(StatementKind::next_round), s.is(StatementKind::give),
-            s.is_loop()};
+            s.is(StatementKind::loop)};
   for (const StatementPtr& part : s.body) {
     const Exits inner = exits_of(*part);
     out.gives |= inner.gives;
     out.loops |= inner.loops;
-    out.leaves |= inner.leaves && !s.is_loop();
-    out.next |= inner.next && !s.is_loop();
+    out.leaves |= inner.leaves && !s.is(StatementKind::loop);
+    out.next |= inner.next && !s.is(StatementKind::loop);
   }
   return out;
 }
@@ -41,10 +41,12 @@ double Writer::weight(const Expression& e) {
 }
 
 double Writer::weight(const Statement& s) {
-  double all = s.is(StatementKind::give) ? 1 : 0;
-  for (const ExpressionPtr& e : s.expressions)
-    if (e) all += weight(*e);
-  for (const StatementPtr& part : s.body) all += weight(*part);
+  double all = 0;
+  each_within(s, [&](const Statement& part) {
+    if (part.is(StatementKind::give)) ++all;
+    for (const ExpressionPtr& e : part.expressions)
+      if (e) all += weight(*e);
+  });
   return all;
 }
 
@@ -89,8 +91,12 @@ void Writer::statement(const Statement& s) {
   place_ = s.place;
   switch (s.kind) {
     case StatementKind::block:
-      if (!s.body.empty()) in_braces([&] { block(s.body, false); });
-      return;
+      if (s.body.empty()) return;
+      line("{");
+      ++depth_;
+      block(s.body, false);
+      --depth_;
+      return line("}");
     case StatementKind::declare:
       for (std::size_t i = 0; i < s.variables.size(); ++i)
         declaration(*s.variables[i], s.expressions[i].get());
@@ -98,7 +104,6 @@ void Writer::statement(const Statement& s) {
     case StatementKind::branch:
       return branch(s);
     case StatementKind::loop:
-    case StatementKind::do_loop:
       return loop(s);
     case StatementKind::each_alike:
       return each_alike(s);
@@ -117,19 +122,18 @@ void Writer::block(const std::vector<StatementPtr>& all, bool in_loop) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Statement& s = *all[i];
     statement(s);
-    const bool leaves = in_loop && !loops_.empty() && loops_.back().node == all_loops_.back().node &&
-                        s.is(StatementKind::branch) && exits_of(s).any() && s.feature.empty() &&
-                        varies(*s.expressions[0]);
+    const bool leaves = in_loop && loops_.back().masked && s.is(StatementKind::branch) && exits_of(s).any() &&
+                        s.feature.empty() && varies(*s.expressions[0]);
     if (!leaves || !is_long(all, i + 1)) continue;
-    const Loop& l = loops_.back();
+    Loop& l = loops_.back();
     line("if (!any_lane({})) {}", l.going, l.going == l.lanes ? "break;" : "continue;");
-    if (i == 0 && l.going == l.lanes) checked_.insert(l.lanes);  // the loop itself need not ask
+    if (i == 0 && l.going == l.lanes) l.checked = true;  // the loop itself need not ask
   }
 }
 
 /// Whether this place is reached several times.
 bool Writer::comes_again() const {
-  return !all_loops_.empty() || std::ranges::any_of(frames_, [](const Frame& f) {
+  return !loops_.empty() || std::ranges::any_of(frames_, [](const Frame& f) {
     return f.kind == Frame::Kind::alike && f.divergent;
   });
 }
@@ -155,13 +159,13 @@ void Writer::declaration(const Variable& v, const Expression* first) {
   const bool is_array = type.is_array(), constant = v.type.constant && !type.is_pointer() && first;
   // Nothing stays undefined: to hand that to select() would be undefined behaviour, for which LLVM drops a
   // kernel.
-  std::string value;
+  std::string start;
   if (first)
-    value = " = " + (vary ? lanes(*first) : plain(*first));
+    start = " = " + (vary ? lanes(*first) : value(*first));
   else if (vary && !(type.is_structure() && (type.is_by_hand() || s_.set_by_call.contains(&v))))
-    value = " = " + nothing(type);
+    start = " = " + nothing(type);
   line("{}{} {}{}{};", constant ? "const " : "", type_text(is_array ? *type.of : type, vary), v.name,
-       is_array ? fmt::format("[{}]", type.length) : "", value);
+       is_array ? fmt::format("[{}]", type.length) : "", start);
 }
 
 /// An expression for what it does.
@@ -169,13 +173,13 @@ std::string Writer::computed(const Expression& e) {
   if (e.kind != Expression::Kind::assign && !e.steps()) return value(e);
   const Expression& to = *e.of[0];
   const bool scatters = to.kind == Expression::Kind::index && varies(*to.of[1]);
-  if (!varies(to) && !scatters) return plain(e);
+  if (!varies(to) && !scatters) return value(e);
   if (e.kind == Expression::Kind::assign) {
     const std::string value = lanes(*e.of[1]);
     return scatters ? scatter(to, value) : store(to, value);
   }
   if (scatters) return scatter(to, fmt::format("({} {} 1)", lanes(to), e.text[0]));
-  const std::string place = place_of(to);
+  const std::string place = value(to);
   const auto [root, through] = s_.root_of(to);
   if (to.type.is(Type::Kind::integer) && (through || !s_.between(root, frames_).empty()))
     return fmt::format("{} {}= {}", place, e.text == "++" ? '-' : '+', mask_);
@@ -183,22 +187,22 @@ std::string Writer::computed(const Expression& e) {
 }
 
 /// `to = value` in the lanes that are there, and that the variable still matters to.
-std::string Writer::store(const Expression& to, const std::string& value) {
+std::string Writer::store(const Expression& to, const std::string& what) {
   const auto [root, through] = s_.root_of(to);
-  const std::string place = place_of(to);
+  const std::string place = value(to);
   const std::vector<const Frame*> divergent = s_.between(root, frames_);
   std::string mask = mask_;
   const bool is_result = root == s_.only_result && s_.divergent_return && (returned_ || comes_again());
   const bool is_out = root->out && divergent.empty() && !returned_ && !comes_again();
-  if (is_out) return fmt::format("{} = {}", place, value);
+  if (is_out) return fmt::format("{} = {}", place, what);
   if (!through && !is_result) {
-    if (divergent.empty()) return fmt::format("{} = {}", place, value);
+    if (divergent.empty()) return fmt::format("{} = {}", place, what);
     if (divergent.size() == 1 && divergent[0] == &frames_.back() && !divergent[0]->only.empty())
       mask = divergent[0]->only;
   }
-  if (!to.type.joins()) return fmt::format("{} = {}", place, selected(to.type, place, value, mask, to.place));
+  if (!to.type.joins()) return fmt::format("{} = {}", place, selected(to.type, place, what, mask, to.place));
   const std::string name = fresh("other");
-  line("const {} {} = {};", type_text(to.type, true), name, value);
+  line("const {} {} = {};", type_text(to.type, true), name, what);
   return fmt::format("{}(&{}, &{}, {})", to.type.structure->join, place, name, mask);
 }
 
@@ -235,15 +239,15 @@ void Writer::branch(const Statement& s) {
     for (std::size_t i = 0; i < s.body.size(); ++i) {
       directive(i == 0 ? "#if " + s.feature : "#else");
       line("{");
-      inside({Frame::Kind::branch, &s, false, i}, mask_, *s.body[i]);
+      inside({Frame::Kind::branch, &s, false}, mask_, *s.body[i]);
       line("}");
     }
     return directive("#endif");
   }
   if (!varies(*s.expressions[0])) {
     for (std::size_t i = 0; i < s.body.size(); ++i) {
-      line(i == 0 ? fmt::format("if ({}) {{", plain(*s.expressions[0])) : "} else {");
-      inside({Frame::Kind::branch, &s, false, i}, mask_, *s.body[i]);
+      line(i == 0 ? fmt::format("if ({}) {{", value(*s.expressions[0])) : "} else {");
+      inside({Frame::Kind::branch, &s, false}, mask_, *s.body[i]);
     }
     return line("}");
   }
@@ -256,7 +260,7 @@ void Writer::branch(const Statement& s) {
     const std::size_t at = out_.size();
     line("{}MASK {} = {} & {};", exits.any() ? "" : "const ", mask, mask_, name);
     line(weight(part) > cheap || exits.loops ? fmt::format("if (any_lane({})) {{", mask) : "{");
-    inside({Frame::Kind::branch, &s, true, i, only}, mask, part);
+    inside({Frame::Kind::branch, &s, true, only}, mask, part);
     line("}");
     drop_unused(at, mask);
   }

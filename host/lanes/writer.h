@@ -30,6 +30,8 @@ class Writer {
   struct Loop {
     const Statement* node;
     std::string going, lanes;
+    bool masked;           // lanes leave it at different times
+    bool checked = false;  // its body asks first whether any is left
   };
   using Write = std::function<std::string()>;
 
@@ -40,36 +42,25 @@ class Writer {
     line(fmt::format(text, first, others...));
   }
   void directive(std::string text) { out_.push_back({0, std::move(text), {}}); }
-  template <class Body>
-  void in_braces(const Body& body) {
-    line("{");
-    ++depth_;
-    body();
-    --depth_;
-    line("}");
-  }
   std::string fresh(const char* stem) { return fmt::format("{}_{}", stem, ++count_); }
   bool varies(const Expression& e);
   std::string type_text(const Type& type, bool varying);
 
   template <class Text>
-  void structure_lines(const Structure& s, const std::string& head, const Text& text, const std::string& end);
+  void member_lines(const Structure& s, const std::string& head, const Text& text, const char* end);
+  template <class Text>
+  std::vector<Line> structure_function(const Structure& s, const std::string& head, const Text& text);
 
   // Expressions (write_expressions.cpp).
-  std::string value(const Expression& e);  // unchanged: for one lane or all
+  std::string value(const Expression& e);  // one value, or one per lane if it varies
   std::string lanes(const Expression& e);  // one value per lane
-  std::string plain(const Expression& e);  // of a uniform expression
-  std::string varying(const Expression& e);
   std::string varying_cast(const Expression& e);
-  std::string varying_unary(const Expression& e);
   std::string varying_binary(const Expression& e);
   std::string varying_vector_binary(const Expression& e);
   std::string parts_of(const Expression& e, std::string_view wanted = "");
-  std::string place_of(const Expression& e);
   std::string spread(const std::string& text, const Type& type);
   std::string simple(const Expression& e);  // may be repeated
 
-  // Conditions (write_conditions.cpp).
   std::string mask_of(const Expression& e);
   std::string joined_masks(const Expression& e);
   std::string varying_choice(const Expression& e);
@@ -102,7 +93,7 @@ class Writer {
   void drop_unused(std::size_t line_at, const std::string& name);
   bool is_long(const std::vector<StatementPtr>& all, std::size_t from);
   bool comes_again() const;
-  std::string alive() const { return loops_.empty() ? "m_" : loops_.back().going; }
+  std::string alive() const;  // the lanes that are left
   double weight(const Statement& s);
   double weight(const Expression& e);
 
@@ -119,11 +110,9 @@ class Writer {
   int depth_ = 1, count_ = 0;
   std::string mask_;
   Frames frames_;
-  std::vector<Loop> loops_;      // left by lanes at different times
-  std::vector<Loop> all_loops_;  // all, including the others
+  std::vector<Loop> loops_;
   bool returned_ = false;
   std::map<const Variable*, std::string> tables_;  // for pointers kept as an index
-  std::set<std::string> checked_;                  // of loops whose body tests them first
   Place place_;
 };
 

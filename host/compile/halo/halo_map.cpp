@@ -85,7 +85,7 @@ std::size_t cell_at(int side, int column, int row) {
   return std::size_t(row) * std::size_t(side) + std::size_t(column);
 }
 
-/// As halo_cell() in kernels/lib/halo/sky_map.cl: the position in the square, [0, 1].
+/// As equal_area_cell() in kernels/plain/halo/sky_map.cl: the position in the square, [0, 1].
 glm::dvec2 place_of(const dvec3& d) {
   const double x = std::abs(d.x), y = std::abs(d.y), radius = std::sqrt(std::max(1 - std::abs(d.z), 0.0));
   const double v = radius * std::atan2(y, x) * 2 / pi, u = radius - v;

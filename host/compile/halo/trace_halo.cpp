@@ -9,7 +9,7 @@ namespace sundog {
 namespace {
 
 #include "compile/halo/host_lanes.h"
-#include "lib/halo/trace.cl"
+#include "halo_lanes.inc"
 
 /// One thread's counts.
 struct Counts {
@@ -27,10 +27,12 @@ void trace_halo_launch(const HaloLaunch& launch, std::span<u32> cells, std::span
   constexpr u32 rays_an_item = LANES * HALO_RAYS_A_LANE;
   for (u32 item = 0; item * rays_an_item < launch.count; ++item) {
     HaloSums sums{};
-    halo_item(&launch, cells.data(), item, &sums);
+    const u32 first = item * rays_an_item;
+    trace_crystals(&launch, cells.data(), UINTS::Vector{first, first + 1, first + 2, first + 3}, LANES, &sums,
+                   ALL_LANES);
     for (std::size_t which = 0; which < HALO_TALLIES; ++which)
-      for (u32 lane = 0; lane < LANES; ++lane)
-        add_wide(tallies, which, static_cast<u32>(MASK_LANE(sums.sum[which], lane)), 0);
+      for (int lane = 0; lane < LANES; ++lane)
+        add_wide(tallies, which, static_cast<u32>(sums.weights[which].v[lane]), 0);
   }
 }
 

@@ -5,7 +5,7 @@
 // The line leaves `medium`: one that it entered, or one that contains the camera. Of the latter, media left
 // later were entered earlier, so they go to the far end.
 static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* holding) {
-  if (!cross_one(entered, (int)medium, false, ALL_LANES)) put_below(holding, (int)medium, ALL_LANES);
+  if (!cross_one(entered, (int)medium, false)) put_below(holding, (int)medium);
 }
 
 #if HAS_TOUCHING
@@ -54,7 +54,7 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
     __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);
     if (!(material->flags & MATERIAL_TRANSMITS) || (material->flags & MATERIAL_THIN)) continue;
     if (MASK_LANE(faces.entering, 0))
-      cross_one(&entered, (int)material->medium, true, ALL_LANES);
+      cross_one(&entered, (int)material->medium, true);
     else
       leave_medium(material->medium, &entered, &holding);
   }

@@ -175,7 +175,7 @@ static inline u32 enter_all(const Scene* scene, const Stretch* met, u32 entered,
   for (u32 left = entered; left;) {
     const u32 outer = pick_face(scene, met, left, true);
     left &= ~(1u << outer);
-    if (!cross_one(stack, (int)medium_inside(scene, &met->hits[outer]), true, ALL_LANES)) ++lost;
+    if (!cross_one(stack, (int)medium_inside(scene, &met->hits[outer]), true)) ++lost;
   }
   return lost;
 }
@@ -239,7 +239,7 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
   for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_one(&seen->behind, (int)medium_inside(scene, &met->hits[lowest_bit(left)]), false, ALL_LANES))
+    if (!cross_one(&seen->behind, (int)medium_inside(scene, &met->hits[lowest_bit(left)]), false))
       ++seen->strays;
   seen->overflows = enter_all(scene, met, changes.entered, &seen->behind);
   seen->after = (u32)current_of_one(scene->media, &seen->behind);

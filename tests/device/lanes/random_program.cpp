@@ -212,10 +212,10 @@ class Generator {
     } else if (c < 0.8) {
       put(fmt::format("int {} = 0;", i));
       names_.emplace_back(i, Sort::fixed);
-      put("do {");
-      put(fmt::format("  ++{};", i));
+      put("while (true) {");
+      put(fmt::format("  ++{0};\n  if ({0} > {1}) break;", i, bound));
       block(3);
-      put(fmt::format("}} while ({} < {});", i, bound));
+      put("}");
     } else if (c < 0.9) {
       // In lanes that do not ask it would never end.
       put(fmt::format("int {} = k;", i));

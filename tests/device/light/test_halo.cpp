@@ -23,25 +23,26 @@ constexpr int basal = -1;
 /// Follows each ray to its first face inside, which it leaves there or not: where it is seen (world, z up)
 /// and its weight; then the faces where it entered and left.
 const char* const meet_kernel = R"(
-#include "lib/halo/exits.cl"
+#include "lib/core/lanes.h"
+#include "shared/halo.h"
+#include "plain/halo/exits.cl"
+int face_at(const HaloLaunch* launch, REAL3 o) {
+  const REAL3 s = along_sides(o);
+  const float most = fmax(fabs(s.x), fmax(fabs(s.y), fabs(s.z)));
+  if (fabs(o.z) / launch->half_height > most) return -1;
+  return fabs(s.x) == most ? 0 : fabs(s.y) == most ? 1 : 2;
+}
 __kernel void meet(HaloLaunch launch, __global float4* seen, __global int* faces, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
-  HaloRays rays;
-  halo_enter(&launch, (int)i, &rays);
-  const REAL3 a = halo_sides(rays.at);
-  int entered = fabs(rays.at.z) > launch.half_height * 0.99999f ? -1 : 0;
-  if (entered == 0) {
-    if (fabs(a.y) > 0.99999f) entered = 1;
-    if (fabs(a.z) > 0.99999f) entered = 2;
-  }
-  int left;
-  const HaloExits e = halo_bounce(&launch, &rays, &left);
-  seen[i] = (float4)(-(e.d.x * rays.a.x + e.d.y * rays.b.x + e.d.z * rays.c.x),
-                     -(e.d.x * rays.a.y + e.d.y * rays.b.y + e.d.z * rays.c.y),
-                     -(e.d.x * rays.a.z + e.d.y * rays.b.z + e.d.z * rays.c.z), e.weight);
-  faces[2u * i] = entered;
-  faces[2u * i + 1u] = left;
+  CrystalRays ray;
+  enter_crystal(&launch, i, &ray, ALL_LANES);
+  faces[2u * i] = face_at(&launch, ray.o);
+  const LeavingLights light = reflect_inside(&launch, &ray, ALL_LANES);
+  faces[2u * i + 1u] = face_at(&launch, ray.o);
+  const REAL3 d = light.d, x = ray.x, y = ray.y, z = ray.z;
+  seen[i] = (float4)(-(d.x * x.x + d.y * y.x + d.z * z.x), -(d.x * x.y + d.y * y.y + d.z * z.y),
+                     -(d.x * x.z + d.y * y.z + d.z * z.z), light.weight);
 }
 )";
 

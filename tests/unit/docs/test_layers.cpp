@@ -38,7 +38,7 @@ const std::map<std::string, std::vector<std::string>> folders = {
     {"bench",
      {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune", "commands", "peers"}},
     {"host/app", {"process", "options", "job", "render", "bake", "commands", "serve"}},
-    {"kernels/lib", {"core", "halo", "solids", "sdf", "trace", "path", "shade", "whitted", "pathtracer"}},
+    {"kernels/lib", {"core", "solids", "sdf", "trace", "path", "shade", "whitted", "pathtracer"}},
 };
 
 struct Include {

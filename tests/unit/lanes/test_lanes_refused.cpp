@@ -10,8 +10,10 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
     std::string text, message;
   };
   const Case cases[] = {
-      {function("goto end;"), "plain/t.cl:2:1: 'goto' has no lanes: use if"},
+      {function("goto end;"), "plain/t.cl:2:1: 'goto' has no lanes: use if, while"},
       {function("switch (k) {}"), "2:1: 'switch' has no lanes"},
+      {function("do k = 0; while (k > 0);"), "2:1: 'do' has no lanes"},
+      {function("int2 j; return x;"), "2:1: 'int2' is no type"},
       {function("return 1.0 * x;"), "2:8: 1.0 is a double: write 1.0f"},
       {function("return y;"), "2:8: 'y' is not known"},
       {function("return far(x);"), "2:8: there is no function 'far' for lanes"},
@@ -38,9 +40,6 @@ TEST_CASE("plain text that has no lanes is refused at its place") {
       {function("int j = 0; int* p = &j; *p = 5; return x;"),
        "a pointer to what may be set is a parameter alone"},
       {function("float is_3 = x; return is_3;"), "names that end in _ and a number are the translator's"},
-      {"typedef struct S { float a; UNIFORM int k; } S;\n" +
-           function("S s; s.a = x; s.k = n; if (x > 0.0f) s.k = 2; return s.a;"),
-       "'k' is uniform, but is set a lane at a time"},
       {"static void g(float* p) { *p = 1.0f; }\n" +
            function("float a[4] = {x, x, x, x}; g(&a[k & 3]); return a[0];"),
        "a pointer to an element that varies"},

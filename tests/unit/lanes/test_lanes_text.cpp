@@ -137,6 +137,11 @@ TEST_CASE("an entry with a uniform result takes no mask") {
   const std::string made =
       in_lanes("ENTRY static UNIFORM float twice(UNIFORM float x) { return x * 2.0f; }\n");
   CHECK_THAT(made, ContainsSubstring("float twice(float x) {"));
+  const std::string set = in_lanes(
+      "static bool put(int* to, int k) { if (k > 0) *to = k; return k > 0; }\n"
+      "ENTRY static UNIFORM bool put_one(UNIFORM int* to, UNIFORM int k) { return put(to, k); }\n");
+  CHECK_THAT(set, ContainsSubstring("bool put_uu(int* to, int k) {"));
+  CHECK_THAT(set, ContainsSubstring("bool put_one(int* to, int k) {"));
 }
 
 TEST_CASE("a folder's include has all files of it") {
