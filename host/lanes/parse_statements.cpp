@@ -67,9 +67,10 @@ StatementPtr Parser::unscoped_statement() {
   if (at("{")) return block();
   if (at("if")) return branch();
   if (at("for") || at("while")) return loop();
+  if (at("do")) return do_loop();
   if (at("EACH_ALIKE")) return each_alike();
   if (at("return")) return given();
-  if (at("goto") || at("switch") || at("do")) fail(place(), "'{}' has no lanes: use if, while", word().text);
+  if (at("goto") || at("switch")) fail(place(), "'{}' has no lanes: use if", word().text);
   StatementPtr s = made(Statement::Kind::block);
   if (take("break"))
     s->kind = Statement::Kind::leave_loop;
@@ -125,6 +126,34 @@ StatementPtr Parser::branch() {
   std::swap(outer->feature, s->feature);
   outer->body.push_back(std::move(s));
   return outer;
+}
+
+// `do s while (c);` is `bool first = true; while (first || c) { first = false; s }`.
+StatementPtr Parser::do_loop() {
+  const Place where = place();
+  const Type& truths = type("bool");
+  const Variable* first = declare(fmt::format("first{}_", at_), truths, where);
+  const ExpressionPtr is_first = made(Expression::Kind::variable, truths, where, first->name);
+  is_first->variable = first;
+  const auto set = [&](const char* value) { return made(Expression::Kind::constant, truths, where, value); };
+  StatementPtr all = made(Statement::Kind::block), begin = made(Statement::Kind::declare),
+               loop = made(Statement::Kind::loop), body = made(Statement::Kind::block),
+               mark = made(Statement::Kind::compute);
+  begin->variables.push_back(first);
+  begin->expressions.push_back(set("true"));
+  mark->expressions.push_back(made(Expression::Kind::assign, truths, where, "", is_first, set("false")));
+  want("do");
+  body->body.push_back(std::move(mark));
+  body->body.push_back(statement());
+  want("while");
+  loop->expressions.push_back(
+      made(Expression::Kind::binary, truths, where, "||", is_first, truth(in_brackets())));
+  want(";");
+  loop->body.push_back(made(Statement::Kind::block));
+  loop->body.push_back(std::move(body));
+  all->body.push_back(std::move(begin));
+  all->body.push_back(std::move(loop));
+  return all;
 }
 
 StatementPtr Parser::loop() {

@@ -56,6 +56,7 @@ class Parser {
   StatementPtr declared();
   StatementPtr branch();
   StatementPtr loop();
+  StatementPtr do_loop();
   StatementPtr each_alike();
   StatementPtr given();
   StatementPtr unscoped_statement();

@@ -212,10 +212,10 @@ class Generator {
     } else if (c < 0.8) {
       put(fmt::format("int {} = 0;", i));
       names_.emplace_back(i, Sort::fixed);
-      put("while (true) {");
-      put(fmt::format("  ++{0};\n  if ({0} > {1}) break;", i, bound));
+      put("do {");
+      put(fmt::format("  ++{};", i));
       block(3);
-      put("}");
+      put(fmt::format("}} while ({} < {});", i, bound));
     } else if (c < 0.9) {
       // In lanes that do not ask it would never end.
       put(fmt::format("int {} = k;", i));

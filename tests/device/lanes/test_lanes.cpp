@@ -94,10 +94,10 @@ const std::vector<std::string> rare{
     R"(if (x > 0.0f) { EACH_ALIKE(int, j, k & 3) { if (j > 1) return q[j]; } *o += 1.0f; } return 0.0f;)",
     R"(if (x > -1.0f) { for (int i = 0; i < 4; ++i) if (y < (float)i - 1.0f) return y; *o += 1.0f; } return 2.0f;)",
     R"(if (x > 0.0f) { if (y > 0.0f) return 1.0f; *o += 1.0f; } return 2.0f;)",
-    R"(float t = 1.0f; for (;;) { t += 1.0f; if (!(t < x)) break; } return t;)",
+    R"(float t = 1.0f; do { t += 1.0f; } while (t < x); return t;)",
     R"(int j = 0; if (x > 0.0f) j++; if (y > 0.5f) --j; return (float)j + side(x);)",
     R"(const bool b = !(x > 0.0f); return (float)b + (float)(y > 0.0f) * 4.0f + x - y * 2.0f - (b ? 1.0f : y);)",
-    R"(float t = 0.0f; while (t < y + 2.0f) { t += 1.0f; if (x > 0.5f) continue; t += 0.25f; } return t;)",
+    R"(float t = 0.0f; do { t += 1.0f; if (x > 0.5f) continue; t += 0.25f; } while (t < y + 2.0f); return t;)",
 };
 std::string rare_program() {
   std::string text = R"(
