@@ -23,7 +23,8 @@ struct HaloDescription {
   int size = 1024;              // cells per side of the map
 };
 
-/// Light scattered by crystals, by direction: the sphere as kernels/plain/halo/sky_map.cl maps it to a square.
+/// Light scattered by crystals, by direction: the sphere as kernels/plain/halo/sky_map.cl maps it to a
+/// square.
 struct HaloMap {
   int side = 0;
   std::vector<float> cells;  // 3 each, row by row: red, green, blue per steradian; their integral is 1
