@@ -49,7 +49,7 @@ for ((i = 0; i < ${1:-24}; ++i)); do
   done
   for pair in $brings; do [ "${has[${pair%:*}]}" = 0 ] || has[${pair#*:}]=1; done
   maps=${has[MAPS]}
-  numbers="-DSAMPLER=$((RANDOM % 6)) -DSAMPLE_ROOM=4 -DTEXTURE_MAPPINGS=$((maps * (RANDOM % 256))) -DTEXTURE_KINDS=$((maps * RANDOM))
+  numbers="-DSAMPLER=$((RANDOM % 6)) -DSAMPLE_ROOM=4 -DTEXTURE_MAPPINGS=$((maps * (RANDOM % 256))) -DTEXTURE_KINDS=$((maps * RANDOM)) -DMAP_SLOTS_USED=$((maps * 4 * RANDOM))
     -DTEXTURE_STACK=$((maps * (RANDOM % 4))) -DTEXEL_FORMATS=$((maps * (RANDOM % 16))) -DEXTRA_UVS=$((has[UV] * (RANDOM % 2)))
     -DSDF_TWO_SIDED=$((has[SDF] * (RANDOM % 2))) -DSDF_FLAGS=$((has[SDF] * (RANDOM % 4)))"
   options=""

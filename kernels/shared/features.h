@@ -57,6 +57,7 @@
   FEATURE(bool, HAS_METAL_ROUGH, metal_rough, same)     /* some material is given by metalness, roughness */      \
   FEATURE(u32, TEXTURE_MAPPINGS, texture_mappings, mask) /* bit i: some texture has the mapping i */              \
   FEATURE(u32, TEXTURE_KINDS, texture_kinds, mask)      /* bit i: some texture has a node of kind i */            \
+  FEATURE(u32, MAP_SLOTS_USED, map_slots, mask)         /* bit i: some material has a texture in slot i */        \
   FEATURE(u32, TEXTURE_STACK, texture_stack, room)      /* maximum stack depth of a texture */                    \
   FEATURE(u32, TEXEL_FORMATS, texel_formats, mask)      /* bit i: some image has the format i */                  \
   FEATURE(bool, HAS_TEXEL_PAGES, texel_pages, rounds)   /* images exceed texels0 */                               \

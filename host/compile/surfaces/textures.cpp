@@ -67,7 +67,9 @@ class TextureCompiler {
     MaterialMaps maps{};
     std::fill(std::begin(maps.slot), std::end(maps.slot), NO_TEXTURE);
     const MaterialTextures& textures = material.textures;
-#define SUNDOG_ADD_MAP(constant, name) maps.slot[MAP_##constant] = first_node(textures.name, material);
+#define SUNDOG_ADD_MAP(constant, name)                             \
+  maps.slot[MAP_##constant] = first_node(textures.name, material); \
+  if (textures.name >= 0) out_.features.map_slots |= 1u << MAP_##constant;
     MAP_SLOTS(SUNDOG_ADD_MAP)
 #undef SUNDOG_ADD_MAP
     maps.opacity = static_cast<float>(material.opacity);

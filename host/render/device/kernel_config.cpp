@@ -195,7 +195,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   if (!calls_functions(device)) return general_config(scene, device, tuning);
   KernelConfig config = deep_config(scene, device, tuning, draft_depth);
-  constexpr unsigned all_kinds = 65535;
+  constexpr unsigned all_kinds = (1u << 17) - 1;
   for (auto& [name, number] : config.numbers) {
     const Effect effect = effect_of(name);
     if (effect == Effect::mask) number = all_kinds;

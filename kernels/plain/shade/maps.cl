@@ -10,6 +10,10 @@ typedef struct LANES(SlotValues) {
 } SlotValues;
 
 HAVING(HAS_MAPS);
+CONSTANT u32 MAP_SLOTS_USED;
+
+// Where the value of a slot that is used stands.
+UNIFORM u32 place_of_slot(UNIFORM u32 slot);
 
 // The texture inputs of a surface. Some need the position on an object, not only u and v; heights need its
 // size.
@@ -44,7 +48,7 @@ ENTRY static inline TexturePoint texture_points(UNIFORM const Scene* scene, cons
 }
 
 static inline bool has_slot(UNIFORM __global const MaterialMaps* maps, UNIFORM u32 slot) {
-  return TEXTURE_KINDS != 0u && maps->slot[slot] != NO_TEXTURE;
+  return (MAP_SLOTS_USED >> slot & 1u) != 0u && maps->slot[slot] != NO_TEXTURE;
 }
 
 // The value of one slot, 1 without a texture.
@@ -61,7 +65,7 @@ ENTRY static inline void read_slots(UNIFORM const Scene* scene, UNIFORM __global
   if (HAS_CONES)
     for (u32 slot = 0; slot < MAP_COUNT; ++slot)
       if ((wanted >> slot & 1u) != 0u && has_slot(maps, slot))
-        values->of[slot] = value_of_texture(scene, maps->slot[slot], at);
+        values->of[place_of_slot(slot)] = value_of_texture(scene, maps->slot[slot], at);
 }
 
 static inline float part_of_one(float x) { return real_clamp(x, 0.0f, 1.0f); }
@@ -72,7 +76,7 @@ static inline float3 parts_of_one(float4 a) {
 // A slot's value, 1 without a texture.
 static inline float4 slot_value(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
                                 UNIFORM u32 slot) {
-  if (has_slot(maps, slot)) return values->of[slot];
+  if (has_slot(maps, slot)) return values->of[place_of_slot(slot)];
   return (float4)(1.0f);
 }
 static inline float first_value(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
@@ -89,7 +93,7 @@ static inline float opacity_of(UNIFORM __global const MaterialMaps* maps, const 
 
 static inline void map_term(UNIFORM __global const MaterialMaps* maps, const SlotValues* values,
                             UNIFORM u32 slot, float3* term) {
-  if (has_slot(maps, slot)) *term *= values->of[slot].xyz;
+  if (has_slot(maps, slot)) *term *= values->of[place_of_slot(slot)].xyz;
 }
 
 // The terms of a metal-rough material (shared/metal_rough.h).
@@ -193,12 +197,15 @@ static inline void map_material(UNIFORM const Scene* scene, UNIFORM u32 index, c
   map_term(maps, &values, MAP_TRANSMISSION, &bsdf->transmission);
   map_term(maps, &values, MAP_EMISSION, &bsdf->emission);
   if (HAS_LAYER_MAPS) map_base_terms(scene, index, maps, &values, bsdf);
-  if (HAS_COAT_MAPS && has_slot(maps, MAP_COAT)) bsdf->coat = part_of_one(values.of[MAP_COAT].x);
-  if (HAS_SPECULAR_MAPS && has_slot(maps, MAP_SPECULAR)) bsdf->tint = parts_of_one(values.of[MAP_SPECULAR]);
-  if (HAS_FUZZ_MAPS && has_slot(maps, MAP_FUZZ)) bsdf->fuzz = parts_of_one(values.of[MAP_FUZZ]);
-  if (has_slot(maps, MAP_EXPONENT)) bsdf->exponent *= values.of[MAP_EXPONENT].x;
+  if (HAS_COAT_MAPS && has_slot(maps, MAP_COAT))
+    bsdf->coat = part_of_one(first_value(maps, &values, MAP_COAT));
+  if (HAS_SPECULAR_MAPS && has_slot(maps, MAP_SPECULAR))
+    bsdf->tint = parts_of_one(slot_value(maps, &values, MAP_SPECULAR));
+  if (HAS_FUZZ_MAPS && has_slot(maps, MAP_FUZZ))
+    bsdf->fuzz = parts_of_one(slot_value(maps, &values, MAP_FUZZ));
+  if (has_slot(maps, MAP_EXPONENT)) bsdf->exponent *= first_value(maps, &values, MAP_EXPONENT);
   if (has_slot(maps, MAP_OCCLUSION))
-    bsdf->ambient *= fma(maps->occlusion, values.of[MAP_OCCLUSION].x - 1.0f, 1.0f);
+    bsdf->ambient *= fma(maps->occlusion, first_value(maps, &values, MAP_OCCLUSION) - 1.0f, 1.0f);
   if (maps->coat > 0.0f) map_coat(maps->coat * first_value(maps, &values, MAP_COAT), bsdf);
   const bool one_sided = (flags & MATERIAL_ONE_SIDED) != 0u;
   if (maps->opacity == 1.0f && !has_slot(maps, MAP_OPACITY) && !one_sided) return;

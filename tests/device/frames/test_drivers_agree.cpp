@@ -29,24 +29,11 @@ SceneDescription scene_named(const std::string& name) {
 /// Compared elsewhere: of images and textures, by small kernels on every driver (test_textures, test_relief,
 /// test_parallax); and those that some drivers compile for half a minute each, of the first device
 /// (test_touching, test_fields_in_scene, test_caustics, test_layer_maps, test_gltf_layers).
-const std::set<std::string> tried_elsewhere = {"maps",
-                                               "fuzz_maps",
-                                               "surface_coordinates",
-                                               "relief",
-                                               "parallax",
-                                               "metal_rough",
-                                               "layer_maps",
-                                               "coat_maps",
-                                               "specular_maps",
-                                               "texture_mappings",
-                                               "texture_kinds",
-                                               "texture_stack",
-                                               "texel_formats",
-                                               "texel_pages",
-                                               "extra_uvs",
-                                               "touching",
-                                               "two_sided_fields",
-                                               "caustics"};
+const std::set<std::string> tried_elsewhere = {
+    "maps",          "fuzz_maps",     "surface_coordinates", "relief",        "parallax",
+    "metal_rough",   "layer_maps",    "coat_maps",           "specular_maps", "texture_mappings",
+    "texture_kinds", "texture_stack", "map_slots",           "texel_formats", "texel_pages",
+    "extra_uvs",     "touching",      "two_sided_fields",    "caustics"};
 
 }  // namespace
 

@@ -132,6 +132,7 @@ inline KernelDefines defines_of(const DeviceInfo& info, Part part, bool images, 
   features.texture_kinds = images                ? 1u << TEXTURE_IMAGE
                            : part == Part::value ? patterns
                                                  : 1u << TEXTURE_GRADIENT;
+  features.map_slots = (1u << MAP_COUNT) - 1;
   features.texture_mappings = part == Part::projected ? 0x1C : images ? 1 : 2;
   features.texture_stack = !images && part == Part::value ? 4 : 1;
   const u32 few = 1u << TEXEL_GREY8 | 1u << TEXEL_RGBA8;
