@@ -56,6 +56,10 @@ class DataReader {
         skip(element);
       }
     }
+    // Of several elements of faces, some may have neither.
+    const std::size_t triangles = content_.mesh.triangles.size();
+    if (!content_.face_colors.empty()) content_.face_colors.resize(triangles, glm::vec3(1));
+    if (!content_.corner_uvs.empty()) content_.corner_uvs.resize(3 * triangles);
     return std::move(content_);
   }
 
@@ -105,6 +109,7 @@ class DataReader {
     const bool plain = !strips && !layout.colors() && !layout.has[image] && uvs == none;
     if (plain && content_.mesh.triangles.empty() && read_triangles(element, list)) return;
     content_.mesh.triangles.reserve(element.count);
+    if (uvs != none) content_.corner_uvs.resize(3 * content_.mesh.triangles.size());
     Values values{};
     for (std::uint64_t i = 0; i < element.count; ++i) {
       corners_.clear();

@@ -290,3 +290,28 @@ TEST_CASE("a PLY's faces have texture coordinates and images, as MeshLab writes 
   REQUIRE(model.warnings.size() == 1);
   CHECK_THAT(model.warnings[0], ContainsSubstring("line 4: the image") && ContainsSubstring("b c.png"));
 }
+
+TEST_CASE("of several elements of faces in a PLY, some may have no colours or texture coordinates",
+          "[models]") {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string plain = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string uvs = "property list uchar float texcoord\n", vertices = "0 0 0\n1 0 0\n0 1 0\n";
+  const auto mesh_of = [&](const std::string& elements, const std::string& faces) {
+    return load_text("a.ply", head + elements + "end_header\n" + vertices + faces).meshes.at(0);
+  };
+  const std::string face = "3 0 1 2", red = face + " 255 0 0", mapped = face + " 6 0 0 1 0 0 1";
+  for (const auto& [elements, faces] : std::vector<std::pair<std::string, std::string>>{
+           {plain + colors + plain, red + "\n" + face}, {plain + plain + colors, face + "\n" + red}}) {
+    const Mesh mesh = mesh_of(elements, faces + "\n");
+    CHECK(mesh.triangles.size() == 2);
+    CHECK(mesh.colors.size() == mesh.positions.size());
+  }
+  for (const auto& [elements, faces] : std::vector<std::pair<std::string, std::string>>{
+           {plain + uvs + plain, mapped + "\n" + face}, {plain + plain + uvs, face + "\n" + mapped}}) {
+    const Mesh mesh = mesh_of(elements, faces + "\n");
+    CHECK(mesh.triangles.size() == 2);
+    CHECK(mesh.uvs.size() == mesh.positions.size());
+  }
+}
