@@ -115,5 +115,9 @@ while IFS= read -r line || [ -n "$line" ]; do
   esac
 done < "$root/tests/kernel_changes.txt"
 finish_change
-echo "$done_count changes of $number, $noticed noticed"
+if [ $check = 1 ]; then
+  echo "$((done_count - bad)) of $done_count changes fit"
+else
+  echo "$done_count changes of $number, $noticed noticed"
+fi
 [ $bad = 0 ] || exit 6
