@@ -211,6 +211,8 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
                                                 instances.value.instances.rows(), instances.value.boxes);
   const bool media = out.features.media;
+  if (!media)  // materials that no object has may name some
+    out.features.absorption = out.features.scattering = out.features.dispersion = false;
   if (media)
     work_.touching += memo(touching, touching_inputs(scene, origin, instances.known()), compile_touching);
   out.features.touching = media && touching.value.any;

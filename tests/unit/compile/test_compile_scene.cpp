@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "compile/compiled_scene.h"
+#include "models/values/refraction.h"
 #include "scene_text.h"
 #include "test_meshes.h"
 
@@ -188,6 +189,16 @@ TEST_CASE("features follow the materials that are used") {
   CHECK_FALSE(flat.features.secondary_rays);
   CHECK_FALSE(flat.features.media);
   CHECK_FALSE(flat.features.absorption);
+  // Kernels without media have no members for these.
+  scene.render.integrator = "path";
+  scene.media.at(1).absorption = scene.media.at(1).scattering = {0.5, 0.1, 0};
+  scene.media.at(1).dispersion = cauchy_of_abbe(1.5, 40);
+  flat = compile(scene);
+  CHECK_FALSE((flat.features.absorption || flat.features.scattering || flat.features.dispersion));
+  scene = glass_sphere();
+  scene.materials.emplace_back();
+  scene.objects[0].material = 1;
+  flat = compile(scene);
   scene.media[0].absorption = {0, 0.1, 0};
   CHECK(compile(scene).features.media);
   CHECK(compile(scene).features.absorption);
