@@ -87,7 +87,7 @@ void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) 
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures)
+GltfMaterials::GltfMaterials(const JsonAt& root, TextureSource& textures)
     : textures_(textures), document_(root.list("materials")) {
   for (const JsonAt& at : document_) materials_.push_back(read(at, VertexColors::none));
   const nlohmann::json empty = nlohmann::json::object();

@@ -5,13 +5,10 @@
 #include <string_view>
 
 #include "models/model.h"
-#include "models/mtl_maps.h"
+#include "models/obj/mtl_statements.h"
 #include "models/text.h"
 
 namespace sundog::models {
-
-/// A material's statements in a library (mtl.cpp).
-struct MtlStatements;
 
 /// The materials available to an OBJ file, by name.
 class MaterialLibrary {
