@@ -192,6 +192,12 @@ void GltfMaterials::read_textures(const JsonAt& at, Entry& entry) const {
     if (const auto base = pbr->find("baseColorTexture")) entry.base = textures_.read(*base);
     if (const auto both = pbr->find("metallicRoughnessTexture")) entry.metal_rough = textures_.read(*both);
   }
+  const auto gloss = at.extension("KHR_materials_pbrSpecularGlossiness");
+  if (gloss && entry.metal_rough) {  // see convert_specular_glossiness()
+    entry.metal_rough->channel = 3;
+    entry.metal_rough->factor = glm::dvec4(-gloss->number("glossinessFactor", 1, unit_range));
+    entry.metal_rough->offset = glm::dvec4(1);
+  }
   if (const auto emission = at.find("emissiveTexture"))
     if (m.emission != dvec3(0)) entry.emission = textures_.read(*emission);
   if (const auto normal = at.find("normalTexture")) {

@@ -169,3 +169,54 @@ TEST_CASE("colours of an OBJ's vertices are for path tracing too", "[models]") {
   CHECK(obj.materials.at(0).vertex_color);
   CHECK(obj.materials.at(0).by_paths->vertex_color);
 }
+
+// A grey base between matte and metal has both reflectances exactly.
+TEST_CASE("specular-glossiness becomes metallic-roughness", "[models]") {
+  const auto converted = [](const std::string& members) {
+    const Model model =
+        with_gltf(R"({"extensions":{"KHR_materials_pbrSpecularGlossiness":{)" + members + "}}}");
+    CHECK(model.warnings.empty());
+    return *model.materials.at(0).by_paths->layers;
+  };
+  const OpenPbr plastic = converted(
+      R"("diffuseFactor":[0.5,0.25,0.125,1],"specularFactor":[0.04,0.04,0.04],"glossinessFactor":0.75)");
+  CHECK(plastic.base_metalness < 1e-9);
+  CHECK(glm::distance(plastic.base_color, dvec3(0.5, 0.25, 0.125)) < 1e-9);
+  CHECK(plastic.specular_roughness == 0.25);
+  const OpenPbr gold = converted(R"("diffuseFactor":[0,0,0,1],"specularFactor":[1,0.75,0.25])");
+  CHECK(gold.base_metalness == Approx(1));
+  CHECK(glm::distance(gold.base_color, dvec3(1, 0.75, 0.25)) < 1e-9);
+  CHECK(gold.specular_roughness == 0);
+  const OpenPbr between = converted(R"("diffuseFactor":[0.5,0.5,0.5,1],"specularFactor":[0.25,0.25,0.25])");
+  const double metal = between.base_metalness, base = between.base_color.x;
+  CHECK(base * (1 - metal) * (1 - 0.04) == Approx(0.5 * (1 - 0.25)));  // diffuse
+  CHECK(0.04 * (1 - metal) + base * metal == Approx(0.25));            // specular
+  CHECK_THAT(load_error("a.gltf", quad(R"("materials":[{"extensions":{"KHR_materials_pbrSpecularGlossiness":
+      {"glossinessFactor":2}}}],)" + one_node)),
+             ContainsSubstring(
+                 "/materials/0/extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor"));
+}
+
+TEST_CASE("a specular-glossiness texture is the reflectance, and its alpha the smoothness", "[models]") {
+  const std::string png = base64(encode_image(Image(1, 1, 4), "a.png"));
+  const Model model = with_gltf(
+      R"({"extensions":{"KHR_materials_pbrSpecularGlossiness":{"glossinessFactor":0.5,"diffuseTexture":{"index":0},
+         "specularFactor":[0.5,0.25,0.25],"specularGlossinessTexture":{"index":0}}}})",
+      R"("textures":[{"source":0}],"images":[{"mimeType":"image/png","uri":"data:image/png;base64,)" + png +
+          R"("}],)");
+  CHECK(model.unread == std::vector<std::string>{"specular-glossiness mirrors with whitted"});
+  const MaterialDescription& whitted = model.materials.at(0);
+  const MaterialDescription& paths = *whitted.by_paths;
+  CHECK(whitted.metal_rough->reflectance == Approx(0.5));
+  CHECK(paths.layers->base_metalness == 0);
+  CHECK(std::pow((paths.layers->specular_ior - 1) / (paths.layers->specular_ior + 1), 2) == Approx(0.5));
+  CHECK(glm::distance(paths.layers->specular_color, dvec3(1, 0.5, 0.5)) < 1e-9);
+  CHECK(paths.layers->specular_roughness == 1);
+  CHECK(paths.textures.specular >= 0);
+  CHECK(paths.textures.metalness == -1);
+  for (const int rough : {whitted.textures.metal_rough, paths.textures.roughness}) {
+    CHECK(texture_of(model, rough).channel == 3);
+    CHECK(texture_of(model, rough).factor == glm::dvec4(-0.5));
+    CHECK(texture_of(model, rough).offset == glm::dvec4(1));
+  }
+}
