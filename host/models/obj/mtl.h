@@ -5,10 +5,13 @@
 #include <string_view>
 
 #include "models/model.h"
-#include "models/obj/mtl_statements.h"
+#include "models/obj/mtl_maps.h"
 #include "models/text.h"
 
 namespace sundog::models {
+
+/// A material's statements in a library (mtl_pbr.h).
+struct MtlStatements;
 
 /// The materials available to an OBJ file, by name.
 class MaterialLibrary {

@@ -1,9 +1,32 @@
-// Converts MTL's statements for physically based materials (Pr, Pm, map_Pr and others; Exocortex, 2015), as
-// Blender and Rhino write them, to glTF's materials.
+// Converts MTL's statements for physically based materials (Pr, Pm, map_Pr and others, by Exocortex), as
+// Blender writes them, to glTF's materials.
 #pragma once
-#include "models/obj/mtl_statements.h"
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "models/obj/mtl_maps.h"
 
 namespace sundog::models {
+
+/// A material's statements in a library.
+struct MtlStatements {
+  std::string name;
+  std::filesystem::path library;
+  bool of_blender = false;
+  std::optional<glm::dvec3> ambient, diffuse, specular, filter;
+  std::optional<glm::dvec3> emission;
+  std::map<std::string, MtlMap, std::less<>> maps;  // by keyword
+  std::map<std::string, double, std::less<>> pbr;   // Pr and others, by keyword
+  std::map<std::string, const char*> unread;        // by keyword: the feature
+  double exponent = 32, ior = 1;
+  std::optional<double> opacity, transparency;  // d, Tr
+  int illumination = 2;
+
+  bool has_map(const char* key) const { return maps.contains(key); }
+};
 
 /// The keywords of numbers, in lower case.
 inline constexpr std::string_view pbr_numbers[] = {"pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"};
