@@ -20,7 +20,10 @@ bool has_alpha(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return png_has_alpha(bytes);
   if (bytes.starts_with("\x76\x2f\x31\x01")) return exr_has_alpha(bytes);
   WebPBitstreamFeatures features{};
-  if (!bytes.starts_with("RIFF")) return channels_of_bmp_or_tga(bytes) == 4;
+  if (!bytes.starts_with("RIFF")) {
+    const int channels = channels_of_bmp_or_tga(bytes);
+    return channels == 2 || channels == 4;
+  }
   return WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &features) ==
              VP8_STATUS_OK &&
          features.has_alpha != 0;

@@ -11,6 +11,7 @@
 
 #include "base/json_memory.h"
 #include "models/gltf/gltf_animations.h"
+#include "models/gltf/gltf_layers.h"
 #include "models/gltf/gltf_meshes.h"
 #include "models/gltf/gltf_unread.h"
 #include "models/gltf/gltf_views.h"
@@ -358,6 +359,7 @@ Model load_gltf(Source from, const ModelOptions& options) {
   if (const auto least = root.member("asset").find("minVersion"))
     if (least->text() != "2.0") least->fail(fmt::format("glTF {} at least; 2.0 is read", least->text()));
   check_extensions(root);
+  convert_specular_glossiness(source, file->json);
   file->reader.emplace(source, file->container, root, options.crease_angle.value_or(0));
   Model model = file->reader->read();
   find_unread(file->json, model);

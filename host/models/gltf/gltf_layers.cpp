@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace sundog::models {
@@ -70,7 +71,55 @@ void add_gltf_layers(const JsonAt& material, OpenPbr& values) {
   values.coat_bends = false;
 }
 
+/// The base colour and metalness that come nearest to a diffuse and a specular colour: the metalness at
+/// which the base has the brightness of both solves a quadratic equation.
+MetalRough metal_of(const glm::dvec3& diffuse, const glm::dvec3& specular) {
+  constexpr double plain = 0.04;
+  const auto brightness = [](const glm::dvec3& c) {
+    return std::sqrt(glm::dot(c * c, glm::dvec3(0.299, 0.587, 0.114)));
+  };
+  const double left = (1 - std::max({specular.x, specular.y, specular.z})) / (1 - plain),
+               shine = brightness(specular), b = brightness(diffuse) * left + shine - 2 * plain,
+               root = std::sqrt(std::max(b * b + 4 * plain * (shine - plain), 0.0)),
+               metal = shine < plain ? 0 : std::clamp((root - b) / (2 * plain), 0.0, 1.0);
+  const glm::dvec3 of_matte = diffuse * left / std::max(1 - metal, 1e-6),
+                   of_metal = (specular - plain * (1 - metal)) / std::max(metal, 1e-6);
+  return {.base = glm::clamp(glm::mix(of_matte, of_metal, metal * metal), 0.0, 1.0), .metalness = metal};
+}
+
+nlohmann::json listed(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
 }  // namespace
+
+void convert_specular_glossiness(const Source& source, nlohmann::json& document) {
+  const std::vector<JsonAt> materials = JsonAt(source, document, "").list("materials");
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const auto at = materials[i].extension("KHR_materials_pbrSpecularGlossiness");
+    if (!at) continue;
+    const auto factor = at->find("diffuseFactor");
+    const std::vector<double> rgba = factor ? factor->numbers(4, unit_range) : std::vector<double>(4, 1);
+    const glm::dvec3 diffuse(rgba[0], rgba[1], rgba[2]),
+        specular = at->vector("specularFactor", glm::dvec3(1), unit_range);
+    const double glossiness = at->number("glossinessFactor", 1, unit_range);
+    nlohmann::json& extensions = document["materials"][i]["extensions"];
+    const nlohmann::json stated = extensions["KHR_materials_pbrSpecularGlossiness"];
+    MetalRough values = metal_of(diffuse, specular);
+    nlohmann::json pbr = {{"roughnessFactor", 1 - glossiness}};
+    if (at->find("specularGlossinessTexture")) {
+      const nlohmann::json& texture = stated["specularGlossinessTexture"];
+      const double most = std::clamp(std::max({specular.x, specular.y, specular.z}), 1e-4, 0.99);
+      values = {.base = diffuse, .metalness = 0};
+      pbr = {{"roughnessFactor", 1}, {"metallicRoughnessTexture", texture}};
+      extensions["KHR_materials_ior"] = {{"ior", (1 + std::sqrt(most)) / (1 - std::sqrt(most))}};
+      extensions["KHR_materials_specular"] = {{"specularColorFactor", listed(specular / most)},
+                                              {"specularColorTexture", texture}};
+    }
+    pbr["baseColorFactor"] = {values.base.x, values.base.y, values.base.z, rgba[3]};
+    pbr["metallicFactor"] = values.metalness;
+    if (at->find("diffuseTexture")) pbr["baseColorTexture"] = stated["diffuseTexture"];
+    document["materials"][i]["pbrMetallicRoughness"] = pbr;
+  }
+}
 
 bool has_layers(const JsonAt& material) {
   const auto pbr = material.find("pbrMetallicRoughness");

@@ -1,10 +1,17 @@
 // Converts glTF materials with layers (KHR_materials_clearcoat, _sheen, _iridescence, _anisotropy, _specular)
-// to OpenPBR.
+// to OpenPBR, and KHR_materials_pbrSpecularGlossiness to metallic-roughness.
 #pragma once
+#include <nlohmann/json_fwd.hpp>
+
 #include "models/gltf/gltf_json.h"
 #include "models/values/material.h"
 
 namespace sundog::models {
+
+/// Writes a document's specular-glossiness materials as metallic-roughness, by Khronos's formula, which needs
+/// numbers. With a specular-glossiness texture, such a material is a non-metal of the greatest specular
+/// reflectance, times the texture; GltfMaterials takes the roughness from the texture's alpha.
+void convert_specular_glossiness(const Source& source, nlohmann::json& document);
 
 /// Whether a material's extensions require layers with every integrator. Excludes materials with a texture
 /// for the coat or its roughness.

@@ -87,7 +87,7 @@ void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) 
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const JsonAt& root, GltfTextures& textures)
+GltfMaterials::GltfMaterials(const JsonAt& root, TextureSource& textures)
     : textures_(textures), document_(root.list("materials")) {
   for (const JsonAt& at : document_) materials_.push_back(read(at, VertexColors::none));
   const nlohmann::json empty = nlohmann::json::object();
@@ -191,6 +191,12 @@ void GltfMaterials::read_textures(const JsonAt& at, Entry& entry) const {
   if (const auto pbr = at.find("pbrMetallicRoughness")) {
     if (const auto base = pbr->find("baseColorTexture")) entry.base = textures_.read(*base);
     if (const auto both = pbr->find("metallicRoughnessTexture")) entry.metal_rough = textures_.read(*both);
+  }
+  const auto gloss = at.extension("KHR_materials_pbrSpecularGlossiness");
+  if (gloss && entry.metal_rough) {  // see convert_specular_glossiness()
+    entry.metal_rough->channel = 3;
+    entry.metal_rough->factor = glm::dvec4(-gloss->number("glossinessFactor", 1, unit_range));
+    entry.metal_rough->offset = glm::dvec4(1);
   }
   if (const auto emission = at.find("emissiveTexture"))
     if (m.emission != dvec3(0)) entry.emission = textures_.read(*emission);

@@ -26,7 +26,7 @@ enum class VertexColors { none, opaque, with_alpha };
 /// whose alpha multiplies the opacity. Path tracing uses OpenPBR layers for most materials (gltf_layers.h).
 class GltfMaterials {
  public:
-  GltfMaterials(const JsonAt& root, GltfTextures& textures);
+  GltfMaterials(const JsonAt& root, TextureSource& textures);
 
   std::size_t count() const { return materials_.size(); }
   /// The index in `model` of material `index` (`count()`: the default one) on primitives with such vertex
@@ -67,7 +67,7 @@ class GltfMaterials {
   static void use_vertex_colors(const Entry& entry, MaterialDescription& material, Model& model);
   static void blend(const JsonAt& at, Entry& entry, double alpha);
 
-  GltfTextures& textures_;
+  TextureSource& textures_;
   std::vector<JsonAt> document_;
   std::vector<Entry> materials_;  // the default one is last
   std::map<std::pair<std::size_t, VertexColors>, int> used_;

@@ -97,7 +97,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
   if (other->vertex_color) use_vertex_colors(entry, *other, model);
   if (entry.metal_rough) {
     TextureDescription packed = *entry.metal_rough;
-    packed.channel = 1;
+    if (packed.channel < 0) packed.channel = 1;
     to.roughness = textures_.use(packed, false, model);
     packed.channel = 2;
     if (entry.values.metalness > 0) to.metalness = textures_.use(packed, false, model);

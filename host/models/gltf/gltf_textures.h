@@ -14,18 +14,27 @@ namespace sundog::models {
 /// Maximum number of texture coordinate sets.
 inline constexpr std::uint64_t most_uv_sets = 4;
 
-class GltfTextures {
+/// What a material's textures are read from.
+class TextureSource {
+ public:
+  virtual ~TextureSource() = default;
+
+  /// Validates a material's texture reference and returns it without the image (`image` is the document's
+  /// index). v points up, as in all models.
+  virtual TextureDescription read(const JsonAt& info) const = 0;
+
+  /// Adds a texture returned by read() to a model, its image as colours or data. Returns its index; -1, with
+  /// a warning, if the image is unavailable.
+  virtual int use(const TextureDescription& texture, bool srgb, Model& model) = 0;
+};
+
+class GltfTextures final : public TextureSource {
  public:
   /// Validates the document's textures, samplers and images. Throws SceneError.
   GltfTextures(const JsonAt& root, const GltfAccessors& accessors);
 
-  /// Validates a material's texture reference and returns it without the image (`image` is the document's
-  /// index). v points up, as in all models.
-  TextureDescription read(const JsonAt& info) const;
-
-  /// Adds a texture returned by read() to a model, its image as colours or data. Returns its index; -1, with
-  /// a warning, if the image is unavailable.
-  int use(const TextureDescription& texture, bool srgb, Model& model);
+  TextureDescription read(const JsonAt& info) const override;
+  int use(const TextureDescription& texture, bool srgb, Model& model) override;
 
   /// Adds the product of two of a model's textures; returns the other if one is -1.
   static int product(int a, int b, Model& model);

@@ -37,6 +37,8 @@ struct Named {
 };
 
 constexpr std::array textures{Named{"baseColorTexture", nullptr},  // supported
+                              Named{"diffuseTexture", nullptr},
+                              Named{"specularGlossinessTexture", "specular-glossiness mirrors with whitted"},
                               Named{"emissiveTexture", nullptr},
                               Named{"metallicRoughnessTexture", nullptr},
                               Named{"normalTexture", nullptr},
@@ -49,20 +51,19 @@ constexpr std::array textures{Named{"baseColorTexture", nullptr},  // supported
                               Named{"specularTexture", nullptr},
                               Named{"specularColorTexture", nullptr}};
 
-constexpr std::array material_extensions{
-    Named{"KHR_materials_ior", nullptr},  // supported
-    Named{"KHR_materials_transmission", nullptr},
-    Named{"KHR_materials_volume", nullptr},
-    Named{"KHR_materials_emissive_strength", nullptr},  // for emission
-    Named{"KHR_materials_sheen", "sheen"},
-    Named{"KHR_materials_clearcoat", nullptr},
-    Named{"KHR_materials_specular", nullptr},
-    Named{"KHR_materials_iridescence", "iridescence"},
-    Named{"KHR_materials_anisotropy", "anisotropy"},
-    Named{"KHR_materials_dispersion", nullptr},
-    Named{"KHR_materials_diffuse_transmission", "diffuse transmission"},
-    Named{"KHR_materials_unlit", nullptr},
-    Named{"KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"}};
+constexpr std::array material_extensions{Named{"KHR_materials_ior", nullptr},  // supported
+                                         Named{"KHR_materials_transmission", nullptr},
+                                         Named{"KHR_materials_volume", nullptr},
+                                         Named{"KHR_materials_emissive_strength", nullptr},  // for emission
+                                         Named{"KHR_materials_sheen", "sheen"},
+                                         Named{"KHR_materials_clearcoat", nullptr},
+                                         Named{"KHR_materials_specular", nullptr},
+                                         Named{"KHR_materials_iridescence", "iridescence"},
+                                         Named{"KHR_materials_anisotropy", "anisotropy"},
+                                         Named{"KHR_materials_dispersion", nullptr},
+                                         Named{"KHR_materials_diffuse_transmission", "diffuse transmission"},
+                                         Named{"KHR_materials_unlit", nullptr},
+                                         Named{"KHR_materials_pbrSpecularGlossiness", nullptr}};
 
 /// Extensions nest a few levels; a malicious file could nest deeply.
 void find_textures(const json& value, Model& model, int levels = 8) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/mtl_maps.h"
+#include "models/obj/mtl_maps.h"
 #include "models/source.h"
 
 namespace sundog::models {

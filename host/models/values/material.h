@@ -70,4 +70,14 @@ struct MaterialDescription {
   std::shared_ptr<const MaterialDescription> by_paths{};
 };
 
+/// Calls change(material) for every variant of a material.
+template <class Change>
+void change_all(MaterialDescription& material, const Change& change) {
+  change(material);
+  if (!material.by_paths) return;
+  auto other = std::make_shared<MaterialDescription>(*material.by_paths);
+  change(*other);
+  material.by_paths = std::move(other);
+}
+
 }  // namespace sundog

@@ -13,16 +13,6 @@ inline const MaterialDescription& surface_for(bool paths, const MaterialDescript
   return material.by_paths && paths ? *material.by_paths : material;
 }
 
-/// Calls change(material) for every variant of a material.
-template <class Change>
-void change_all(MaterialDescription& material, const Change& change) {
-  change(material);
-  if (!material.by_paths) return;
-  auto other = std::make_shared<MaterialDescription>(*material.by_paths);
-  change(*other);
-  material.by_paths = std::move(other);
-}
-
 /// The part of uniform white light that a highlight of white sends to a viewer along the normal, its maximum;
 /// with a texture of exponents an estimate.
 inline double highlight_albedo(const MaterialDescription& m) {

@@ -166,6 +166,9 @@ TEST_CASE("BMP and TGA files are read, the first row above, and damaged ones are
   CHECK_FALSE(has_alpha(bmp));
   CHECK_FALSE(has_alpha(tga));
   CHECK(has_alpha(runs));
+  const std::string grey_with_alpha = from_hex("000003000000000000000000010001001028ff80");
+  CHECK(decode_stored(grey_with_alpha).data == std::vector<std::uint8_t>{255, 255, 255, 128});
+  CHECK(has_alpha(grey_with_alpha));
   CHECK_FALSE(has_alpha("any other file"));
   CHECK_THROWS_WITH(decode_stored(tga.substr(0, tga.size() - 3)), "the BMP or TGA image is cut short");
   for (const std::string& good : {bmp, tga, runs}) damage(good, true);

@@ -1,4 +1,4 @@
-#include "models/mtl_maps.h"
+#include "models/obj/mtl_maps.h"
 
 #include <fmt/format.h>
 

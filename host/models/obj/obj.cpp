@@ -10,8 +10,8 @@
 
 #include "base/numbers.h"
 #include "models/far_mesh.h"
-#include "models/mtl.h"
 #include "models/normals.h"
+#include "models/obj/mtl.h"
 #include "models/polygon.h"
 #include "models/readers.h"
 #include "models/text.h"
@@ -265,7 +265,8 @@ class ObjReader {
     }
     if (wanted) model_.materials.emplace_back().name = "default";
     if (any_color_)
-      for (MaterialDescription& material : model_.materials) material.vertex_color = true;
+      for (MaterialDescription& material : model_.materials)
+        change_all(material, [](MaterialDescription& m) { m.vertex_color = true; });
   }
 
   TextReader text_;

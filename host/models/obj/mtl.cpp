@@ -1,6 +1,7 @@
 // Reads MTL material libraries (Wavefront, "MTL material format", 1995). Colours are taken as linear. In: a
-// library's text. Out: phong materials, dielectrics and their media.
-#include "models/mtl.h"
+// library's text. Out: phong materials, dielectrics and their media; glTF's materials of PBR statements
+// (mtl_pbr.h).
+#include "models/obj/mtl.h"
 
 #include <fmt/format.h>
 
@@ -10,24 +11,12 @@
 #include <optional>
 
 #include "models/beside.h"
-#include "models/mtl_maps.h"
+#include "models/obj/mtl_pbr.h"
 #include "models/readers.h"
 #include "models/text.h"
 
 namespace sundog::models {
 namespace fs = std::filesystem;
-
-struct MtlStatements {
-  std::string name;
-  fs::path library;
-  std::optional<dvec3> ambient, diffuse, specular, filter;
-  std::optional<dvec3> emission;
-  std::map<std::string, MtlMap, std::less<>> maps;  // by keyword
-  std::map<std::string, const char*> unread;        // by keyword: the feature
-  double exponent = 32, ior = 1;
-  std::optional<double> opacity, transparency;  // d, Tr
-  int illumination = 2;
-};
 
 namespace {
 
@@ -43,20 +32,13 @@ std::optional<dvec3> read_color(TextReader& text) {
 }
 
 /// Statements that affect the picture.
-constexpr std::string_view read_maps[] = {"map_kd", "map_ka", "map_ks", "map_ke",   "map_d", "map_bump",
-                                          "bump",   "norm",   "map_kn", "map_disp", "disp",  "map_ns"};
-constexpr std::pair<std::string_view, const char*> unread_properties[] = {{"map_tr", "alpha of textures"},
-                                                                          {"decal", "decals"},
-                                                                          {"refl", "reflection maps"},
-                                                                          {"map_refl", "reflection maps"},
-                                                                          {"map_pr", "roughness textures"},
-                                                                          {"map_pm", "roughness textures"},
-                                                                          {"map_ps", "sheen"},
-                                                                          {"pr", "roughness"},
-                                                                          {"pm", "metalness"},
-                                                                          {"ps", "sheen"},
-                                                                          {"pc", "clearcoat"},
-                                                                          {"aniso", "anisotropy"}};
+constexpr std::string_view read_maps[] = {"map_kd",   "map_ka", "map_ks", "map_ke", "map_d",
+                                          "map_bump", "bump",   "norm",   "map_kn", "map_disp",
+                                          "disp",     "map_ns", "map_pr", "map_pm", "map_ps"};
+constexpr std::pair<std::string_view, const char*> unread_properties[] = {
+    {"map_tr", "alpha of textures"},  {"decal", "decals"},
+    {"refl", "reflection maps"},      {"map_refl", "reflection maps"},
+    {"map_pc", "clearcoat textures"}, {"map_pcr", "clearcoat textures"}};
 
 /// Zeros mean that the feature is unused.
 void note_unread(TextReader text, std::string_view key, MtlStatements& m) {
@@ -84,7 +66,11 @@ void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
   if (key == "tf") m.filter = read_color(text);
   if (key == "ke") m.emission = read_color(text);
   if (std::ranges::count(read_maps, key) > 0)
-    if (const auto map = read_mtl_map(text)) m.maps.insert_or_assign(std::string(key), *map);
+    if (const auto map = read_mtl_map(text)) {
+      const bool normals = m.of_blender && key == "map_bump";  // Blender writes its normal maps so
+      m.maps.insert_or_assign(std::string(normals ? "norm" : key), *map);
+    }
+  if (std::ranges::count(pbr_numbers, key) > 0) m.pbr.insert_or_assign(std::string(key), text.number(key));
   if (key == "ns") m.exponent = std::max(text.number("Ns"), 0.0);
   if (key == "ni") m.ior = text.number("Ni");
   if (key == "d") m.opacity = read_opacity(text);
@@ -128,8 +114,10 @@ void add_displacement(const MtlStatements& m, const Source& obj, MtlTextures& te
 void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures,
                      MaterialDescription& out) {
   for (const char* key : {"norm", "map_kn"})
-    if (const auto found = m.maps.find(key); found != m.maps.end())
+    if (const auto found = m.maps.find(key); found != m.maps.end()) {
       out.textures.normal = textures.use(found->second, false, obj, m.library);
+      out.normal_scale = found->second.bump;
+    }
   for (const char* key : {"bump", "map_bump"})
     if (const auto found = m.maps.find(key); found != m.maps.end()) {
       MtlMap map = found->second;
@@ -142,6 +130,17 @@ void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& tex
 
 // Illumination models 0 and 1 have none. Exporters write "Ns 0" for dull materials, whatever Ks they write.
 bool has_highlight(const MtlStatements& m) { return m.illumination >= 2 && m.exponent > 0; }
+
+void add_opacity_map(const MtlStatements& m, const Source& obj, MtlTextures& textures,
+                     MaterialDescription& out) {
+  const auto alpha = m.maps.find("map_d");
+  if (alpha == m.maps.end() || out.medium >= 0) return;
+  MtlMap map = alpha->second;
+  const auto color = m.maps.find("map_kd");
+  const bool of_color = color != m.maps.end() && color->second.file == map.file;
+  if (map.channel < 0) map.channel = of_color ? 3 : 0;
+  out.textures.opacity = textures.use(map, of_color, obj, m.library);
+}
 
 /// The textures of a material; a term with a texture and no colour is white.
 void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, MaterialDescription& out) {
@@ -161,13 +160,7 @@ void add_maps(const MtlStatements& m, const Source& obj, MtlTextures& textures, 
     to.exponent = textures.use(shine->second, false, obj, m.library);
   add_relief_maps(m, obj, textures, out);
   add_displacement(m, obj, textures, out);
-  const auto alpha = m.maps.find("map_d");
-  if (alpha == m.maps.end() || out.medium >= 0) return;
-  MtlMap map = alpha->second;
-  const auto color = m.maps.find("map_kd");
-  const bool of_color = color != m.maps.end() && color->second.file == map.file;
-  if (map.channel < 0) map.channel = of_color ? 3 : 0;
-  to.opacity = textures.use(map, of_color, obj, m.library);
+  add_opacity_map(m, obj, textures, out);
 }
 
 // Illumination models: 3 to 8 trace reflections; 4, 6, 7 and 9 are glass; 5 and 7 use Fresnel's equations.
@@ -204,6 +197,24 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
     }
   }
   return out;
+}
+
+/// A material of PBR statements with its relief and opacity.
+int add_pbr_material(const MtlStatements& m, const Source& obj, MtlTextures& textures, Model& model) {
+  const double opacity = opacity_of(m);
+  const int index = add_pbr(m, m.has_map("map_d") ? 1 : opacity, obj, textures, model);
+  MaterialDescription mapped;
+  add_relief_maps(m, obj, textures, mapped);
+  add_displacement(m, obj, textures, mapped);
+  add_opacity_map(m, obj, textures, mapped);
+  change_all(model.materials[static_cast<std::size_t>(index)], [&](MaterialDescription& to) {
+    to.textures.normal = mapped.textures.normal, to.normal_scale = mapped.normal_scale;
+    to.textures.height = mapped.textures.height, to.bump = mapped.bump, to.bump_uv = mapped.bump_uv;
+    to.displaced_by = mapped.displaced_by, to.displacement = mapped.displacement;
+    to.textures.opacity = mapped.textures.opacity;
+    if (m.has_map("map_d")) to.opacity = opacity;
+  });
+  return index;
 }
 
 // An mtllib line holds one name, perhaps with blanks, or several names that end in ".mtl".
@@ -251,6 +262,7 @@ void MaterialLibrary::read(const fs::path& path) {
       material = added ? &stated->second : &again;
       material->name = name;
       material->library = path;
+      material->of_blender = source.bytes.starts_with("# Blender");
     } else if (material) {
       read_statement(text, key, *material);
       note_unread(text, key, *material);
@@ -297,6 +309,7 @@ int MaterialLibrary::add(const Source& obj, const MtlStatements& stated) {
     model_.warnings.push_back(
         fmt::format("{}: the material '{}' has d {:g} and Tr {:g}, which differ: d counts",
                     stated.library.string(), stated.name, *stated.opacity, *stated.transparency));
+  if (has_pbr(stated)) return add_pbr_material(stated, obj, textures_, model_);
   MaterialDescription material = make_material(stated, model_);
   add_maps(stated, obj, textures_, material);
   const auto index = static_cast<int>(model_.materials.size());

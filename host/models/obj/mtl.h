@@ -5,12 +5,12 @@
 #include <string_view>
 
 #include "models/model.h"
-#include "models/mtl_maps.h"
+#include "models/obj/mtl_maps.h"
 #include "models/text.h"
 
 namespace sundog::models {
 
-/// A material's statements in a library (mtl.cpp).
+/// A material's statements in a library (mtl_pbr.h).
 struct MtlStatements;
 
 /// The materials available to an OBJ file, by name.
