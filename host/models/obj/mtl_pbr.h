@@ -32,12 +32,11 @@ struct MtlStatements {
 inline constexpr std::string_view pbr_numbers[] = {"pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"};
 
 /// Whether such statements make a material. Numbers that are all zeros mean that they are unused.
-bool has_pbr(const MtlStatements& stated);
+bool has_pbr(const MtlStatements& m);
 
 /// Adds the material that glTF has for the statements (gltf/gltf_materials.h), without relief and a texture
 /// of opacity; returns its index. Kd is the base colour, `opacity` its alpha, Ni the index above 1, Tf
 /// transmits through a thin wall. Without Pr, Ns gives the roughness by Blender's formula.
-int add_pbr(const MtlStatements& stated, double opacity, const Source& obj, MtlTextures& textures,
-            Model& model);
+int add_pbr(const MtlStatements& m, double opacity, const Source& obj, MtlTextures& textures, Model& model);
 
 }  // namespace sundog::models
