@@ -104,6 +104,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   if (!(passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0)) {
     path->pdf = sample.specular ? 0.0f : sample.pdf;
     path->from = at->s.p;
+    if (HAS_FOG) path->unfog = 1.0f;
     if (HAS_SCATTERING) path->scattered.is = false;
     if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }

@@ -22,14 +22,18 @@ static inline float cone_to_guide(UNIFORM float4 ball, float3 p, float3* axis) {
   return sine2 < 1.0f ? sine2 / (1.0f + cosine) : 0.0f;
 }
 
-// The density of wi for directions to the balls.
-static inline float guide_pdf(UNIFORM const Scene* scene, float3 p, float3 wi) {
+// The density of wi for directions to the balls; a surface within one keeps the direction, and the density
+// `pdf`, of its lobes.
+static inline float guide_pdf(UNIFORM const Scene* scene, float3 p, float3 wi, float pdf) {
   float sum = 0.0f;
   for (u32 i = 0; i < scene->info->guide_count; ++i) {
     float3 axis;
     const float span = cone_to_guide(scene->guides[i], p, &axis);
     const float3 chord = wi - axis;  // its square is 2 - 2 cos: exact for narrow cones
-    if (span > 0.0f && 0.5f * dot(chord, chord) <= span) sum += 1.0f / (2.0f * M_PI_F * span);
+    if (span <= 0.0f)
+      sum += pdf;
+    else if (0.5f * dot(chord, chord) <= span)
+      sum += 1.0f / (2.0f * M_PI_F * span);
   }
   return sum / (float)scene->info->guide_count;
 }
@@ -38,7 +42,7 @@ static inline float guide_pdf(UNIFORM const Scene* scene, float3 p, float3 wi) {
 static inline float guided_pdf(UNIFORM const Scene* scene, const LobeSet* lobes, float3 p, float3 wi,
                                float pdf) {
   if (HAS_GUIDES && is_guided(lobes))
-    return fma(pdf, 1.0f - GUIDED_PART, GUIDED_PART * guide_pdf(scene, p, wi));
+    return fma(pdf, 1.0f - GUIDED_PART, GUIDED_PART * guide_pdf(scene, p, wi, pdf));
   return pdf;
 }
 
@@ -54,9 +58,9 @@ static inline BsdfSample sample_to_guides(UNIFORM const Scene* scene, const Bsdf
     const float count = (float)scene->info->guide_count;
     EACH_ALIKE(int, index, (int)real_min(floor(rest * count), count - 1.0f)) {
       float3 axis;
-      const float down = u->x * cone_to_guide(scene->guides[index], p, &axis);
+      const float span = cone_to_guide(scene->guides[index], p, &axis), down = u->x * span;
       const float sine = real_sqrt(real_max(down * (2.0f - down), 0.0f));
-      sample.wi = direction_at(axis, 1.0f - down, sine, u->y);
+      if (span > 0.0f) sample.wi = direction_at(axis, 1.0f - down, sine, u->y);
     }
     sample.specular = false;
   }

@@ -108,9 +108,10 @@ static inline float3 met_sky(UNIFORM const Scene* scene, const PathState* path, 
 // it.
 HAVING(HAS_FOG)
 static inline SampledSpectrum met_fog(UNIFORM const Scene* scene, const Encounter* met, PathState* path) {
-  const float clear = clear_of_fog(scene, met);
+  const float clear = real_max(clear_of_fog(scene, met), 0x1p-60f);  // it can be undone
   const SampledSpectrum color = spectrum_of(&path->wavelengths, scene->info->fog.xyz);
   const SampledSpectrum light = path->throughput * (1.0f - clear) * color;
   path->throughput *= clear;
+  path->unfog /= clear;
   return light;
 }

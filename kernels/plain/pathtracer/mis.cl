@@ -8,13 +8,16 @@ static inline float power_heuristic(float own, float other) {
   return 1.0f / fma(ratio, ratio, 1.0f);
 }
 
-// The weight of light that a ray has met, which its surface would have chosen with the density `chosen`.
+// The weight of light that a ray has met, which its surface would have chosen with the density `chosen`. Fog
+// dims what rays see, but no shadow rays, so neither this light.
 static inline float weight_of_met(UNIFORM const Scene* scene, const PathState* path, float chosen) {
-  if (scene->info->light_strategy == STRATEGY_SURFACES) return 1.0f;
+  float whole = 1.0f;
+  if (HAS_FOG) whole = path->pdf > 0.0f ? path->unfog : 1.0f;
+  if (scene->info->light_strategy == STRATEGY_SURFACES) return whole;
   const bool found_twice = path->pdf > 0.0f && chosen > 0.0f;
   const float shared =
       scene->info->light_strategy == STRATEGY_LIGHTS ? 0.0f : power_heuristic(path->pdf, chosen);
-  return found_twice ? shared : 1.0f;
+  return found_twice ? whole * shared : 1.0f;
 }
 
 // The weight of a light that a surface has chosen with the density `chosen`, which its scattered ray would

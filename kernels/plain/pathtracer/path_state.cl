@@ -36,6 +36,7 @@ typedef struct PathState {
   bool straight;  // the ray goes straight on from the camera
   SampleAt at;
   SampledWavelengths wavelengths;
+  HAVING(HAS_FOG) float unfog;                // undoes the fog since `from`
   HAVING(HAS_CAUSTICS) int gathered;          // GATHERED_*
   HAVING(HAS_CAUSTICS) float3 narrow;         // the part of the throughput by narrow lobes of what gathered
   HAVING(HAS_MATTES) float clear;             // of the background, straight on, behind its last surface
@@ -66,6 +67,7 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   path.straight = true;
   path.at = *at;
   path.wavelengths = choose_wavelengths(scene, at);
+  if (HAS_FOG) path.unfog = 1.0f;
   if (HAS_SCATTERING) path.scattered.is = false;
   if (HAS_MATTES) {
     path.clear = 1.0f;

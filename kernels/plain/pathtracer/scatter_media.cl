@@ -96,6 +96,7 @@ static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, 
   if (HAS_CAUSTICS) note_gathered(path, false, (float3)(0.0f));
   path->pdf = pdf * phase_pdf(s->g, cosine);
   path->from = along(s->o, at, s->d);
+  if (HAS_FOG) path->unfog = 1.0f;
   path->straight = false;
   if (HAS_LIGHT_PARTS) {
     const LobeShares shares = all_of_medium();

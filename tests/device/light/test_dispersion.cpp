@@ -279,7 +279,7 @@ TEST_CASE("guided paths find the same light, from lamps too that are chosen") {
     scene.render.samples = 128;
     scene.render.light_strategy = strategy;
     // One beside the lamp, one about its middle, one about the surface.
-    scene.render.guides = {{{1, 0.8, 0}, 0.2}, {{0, 0.8, 0}, 0.3}, {{0, 0, 0}, 0.5}};
+    scene.render.guides = {{{1, 0.8, 0}, 0.2}, {{0, 0.8, 0}, 0.3}, {{0, 0.2, 0}, 0.5}};
     LightDescription lamp;
     lamp.type = LightType::rectangle;
     lamp.position = {0, h, 0};

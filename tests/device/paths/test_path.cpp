@@ -37,6 +37,29 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("fog dims what is seen through it, but not the light on surfaces, by each way of finding that") {
+  const double a = 0.6, h = 0.8, albedo = 0.6, density = 0.4, x = a / h, r = std::sqrt(1 + x * x);
+  const double share = 4 / pi * x / r * std::atan(x / r);  // of the plane's light that the lamp's place gives
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const u32 strategy : {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_SURFACES}) {
+      SceneDescription scene = path_scene({0, 0.6, 3}, {0, 0, 0}, strategy == STRATEGY_SURFACES ? 128 : 32);
+      scene.render.light_strategy = strategy;
+      scene.fog.color = dvec3(0);
+      scene.fog.density = density;
+      scene.environment.type = EnvironmentType::gradient;
+      scene.environment.bottom = scene.environment.top = dvec3(0.5);
+      scenes::place(scene, PlaneShape{}, add_matte(scene, albedo));
+      scene.lights.push_back(lamp(LightType::rectangle, {0, h, 0}, 2));
+      scene.lights.back().size = {2 * a, 2 * a};
+      scene.lights.back().hidden = false;
+      add_lamps(scene);
+      INFO("strategy " << strategy);
+      check_mean(mean_on(device, scene),
+                 std::exp(-density * std::hypot(0.6, 3)) * albedo * (2 * share + 0.5 * (1 - share)));
+    }
+  });
+}
+
 TEST_CASE("in a white furnace white things are white for paths too, whether the furnace is chosen or met") {
   const auto white = [](SceneDescription& scene) { return add_matte(scene, 1); };
   const auto grey = [](SceneDescription& scene) { return add_matte(scene, 0.5); };
