@@ -7,6 +7,8 @@ static inline float smooth_step(float s) { return s * s * (3.0f - 2.0f * s); }
 
 // Narrower footprints are not filtered: the difference of two integrals would be mere rounding.
 #define PATTERN_SHARP 1e-3f
+// Moves points off the lattice, so that a face on a cell's border has one colour.
+#define PATTERN_OFF_LATTICE 0x1p-17f
 
 // The fraction of the width w around x in the cell of x, between integers, minus that in the neighbouring
 // cells; 0 above w = 2.
@@ -16,7 +18,8 @@ static inline float own_part(float x, float w) {
 }
 
 // 1 on the last `share` of each unit of x, else 0; filtered.
-static inline float pulse(float x, UNIFORM float share, float w) {
+static inline float pulse(float at, UNIFORM float share, float w) {
+  const float x = at + PATTERN_OFF_LATTICE;
   if (!(w > PATTERN_SHARP)) return fraction(x) >= 1.0f - share ? 1.0f : 0.0f;
   const float a = x - 0.5f * w, b = x + 0.5f * w;
   const float from = real_max(fraction(a) - (1.0f - share), 0.0f),
@@ -34,7 +37,7 @@ static inline float3 sines_to_axes(float3 n) {
 // The visible fraction of odd cells: a box filter along each axis (Quilez 2011, "Checkerboard filtering"),
 // without its ripples above two cells.
 static inline float checker_pattern(float3 q, float3 w) {
-  const float3 at = q + 0x1p-17f;  // off the lattice, so that a face on a cell's border has one colour
+  const float3 at = q + PATTERN_OFF_LATTICE;
   const float wx = real_max(w.x, 1e-5f), wy = real_max(w.y, 1e-5f), wz = real_max(w.z, 1e-5f);
   const float contrast = own_part(at.x, wx) * own_part(at.y, wy) * own_part(at.z, wz) / (wx * wy * wz);
   const bool odd = fraction(0.5f * (floor(at.x) + floor(at.y) + floor(at.z))) > 0.25f;
@@ -42,7 +45,7 @@ static inline float checker_pattern(float3 q, float3 w) {
 }
 
 static inline float brick_pattern(float3 q, float3 w, UNIFORM float mortar_x, UNIFORM float mortar_y) {
-  const float shift = fraction(0.5f * floor(q.y)) > 0.25f ? 0.5f : 0.0f;
+  const float shift = fraction(0.5f * floor(q.y + PATTERN_OFF_LATTICE)) > 0.25f ? 0.5f : 0.0f;
   return 1.0f - (1.0f - pulse(q.x + shift, mortar_x, w.x)) * (1.0f - pulse(q.y, mortar_y, w.y));
 }
 

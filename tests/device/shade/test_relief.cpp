@@ -252,6 +252,20 @@ TEST_CASE("patterns have their values near by, and their means far away") {
   });
 }
 
+TEST_CASE("a plane on the border of two courses or stripes has the colour of one") {
+  on_every_device([&](const DeviceInfo& info) {
+    for (const double off : {-1e-7, 1e-7})  // by rounding
+      for (const TextureKind kind : {TEXTURE_BRICK, TEXTURE_STRIPES}) {
+        SceneDescription scene = white_plane();
+        scene.materials[0].textures.emission = add_pattern(scene, kind);
+        scene.textures[0].placement = glm::translate(glm::dmat4(1), dvec3(off));
+        scene.textures[0].parameter[0] = scene.textures[0].parameter[1] = 0.1;
+        INFO(kind << " " << off);
+        CHECK(pattern_at(info, scene, kind == TEXTURE_BRICK ? 0.25 : 0, 0) == Approx(0).margin(1e-6));
+      }
+  });
+}
+
 TEST_CASE("a formula gives a pattern: a number that mixes two colours, a colour, or a height") {
   SceneDescription scene = scenes::line_of_sight({0.3, 5, 0.2}, {0.3, 0, 0.2}, {0, 0, 1});
   const auto add_formula = [&](const std::string& text, std::vector<FormulaParameter> parameters) {
