@@ -2,6 +2,7 @@
 // that of all balls together, so that one that might have been sent to several counts for each (the balance
 // heuristic of Veach and Guibas 1995 with one sample).
 #include "plain/light/light.cl"
+#include "plain/path/media.cl"
 
 #define NOT_DIMMED (-1)
 #define OFF_LIGHT 0x1p-17f  // how far photons start off a light's surface, of its place's greatest coordinate
@@ -122,7 +123,8 @@ static inline void start_from(UNIFORM const Scene* scene, UNIFORM u32 index, UNI
   start->d = from.d;
   if (!has_place(light)) {
     start->o = place_across(scene, ball, from.d, u->x, u->y);
-    start->flux = from.radiance / pdf_across(scene, targets, start->o, from.d);
+    const float3 arriving = from.radiance * absorb(scene->media, 0, INFINITY);  // the world has no end
+    start->flux = arriving / pdf_across(scene, targets, start->o, from.d);
     start->o -= 1.001f * way_to_planes(scene, targets, start->o, from.d) * from.d;
     return;
   }

@@ -220,6 +220,20 @@ TEST_CASE("lights without extent light mist behind glass") {
   });
 }
 
+TEST_CASE("no photons of suns and skies get through fog that has no end") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const Shining shining : {of_parallel, of_sun, of_sky, of_point}) {
+      SceneDescription scene = ball_scene(shining, 0, 4);
+      scene.render.photons = 4096;
+      scene.fog.color = dvec3(0.8);
+      scene.fog.density = 0.1;
+      scene.fog.anisotropy = 0.3;
+      INFO(int(shining));
+      CHECK((mean_on(device, scene).value.x > 0) == (shining == of_point));
+    }
+  });
+}
+
 TEST_CASE("lights without extent light what is behind glass") {
   on_picture_devices([&](const DeviceInfo& device) {
     for (const Shining shining : {of_point, of_spot, of_parallel}) {
