@@ -200,7 +200,8 @@ TextureLibrary::Entry TextureLibrary::read_ramp(JsonObject& object) {
       RampStop made;
       stop.read("at", made.at, "color", made.color);
       if (!entry.texture.stops.empty() && made.at < entry.texture.stops.back().at)
-        item.wanted("places in their order");
+        stop.at("at").wanted(
+            fmt::format("{} or more, the place of the stop before", entry.texture.stops.back().at));
       entry.texture.stops.push_back(made);
     });
   return entry;
