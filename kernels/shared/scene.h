@@ -25,6 +25,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_WALL 32768u          // thin, with an index: transmission.w
 #define MATERIAL_OFF_CAMERA 65536u    // a lamp invisible to camera rays
 #define MATERIAL_CATCHER 131072u      // path: the camera sees its shadows alone
+#define MATERIAL_ROUGH 262144u        // mirrors by facets
 #define MATERIAL_GROUP_SHIFT 20u      // above: the group of lights that its emission belongs to
 
 // Facets with a smaller alpha are treated as smooth by paths.

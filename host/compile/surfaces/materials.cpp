@@ -201,6 +201,7 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
 #undef SUNDOG_PACK_KEY
   packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
   packed.flags = material_flags(material);
+  if (packed.flags & MATERIAL_REFLECTS && packed.reflection.w > 0) packed.flags |= MATERIAL_ROUGH;
   packed.medium = material.medium < 0 ? 0 : media.at(static_cast<std::size_t>(material.medium));
   return packed;
 }

@@ -7,8 +7,7 @@
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
 // reflected_direction().
 static inline void bend_normal(float3 d, SurfaceInteraction* s) {
-  int glossy = (int)MATERIAL_LAYERED;
-  if (HAS_ROUGH) glossy = (int)(MATERIAL_LAYERED | MATERIAL_REFLECTS);
+  const int glossy = (int)(MATERIAL_LAYERED | MATERIAL_ROUGH);
   const float3 mirrored = reflect_direction(d, s->ns);
   const float height = dot(s->side, mirrored), least = real_min(-0.9f * dot(s->side, d), 0.01f);
   if ((s->flags & glossy) == 0 || !(height < least)) return;

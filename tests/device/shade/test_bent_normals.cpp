@@ -1,9 +1,11 @@
 // Normals of a model that say much else than its faces, as those of bevels do.
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "catch.h"
 #include "devices.h"
+#include "same_bits.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -58,4 +60,18 @@ TEST_CASE("glossy surfaces whose normals mirror the viewer below their faces are
         CHECK(light < 1.01);
       });
     }
+}
+
+TEST_CASE("smooth glass with bent normals has the same bits beside rough metal") {
+  for (const double tilt : {60.0, 75.0}) {
+    SceneDescription scene = square(tilt);
+    scenes::place(scene, MeshShape{0}, scenes::add_dielectric(scene, 1.5));
+    SceneDescription beside = scene;
+    const int metal = scenes::add_mirror(beside, 1);
+    beside.materials.back().roughness = 0.2;
+    scenes::place(beside, SphereShape{1e-3}, metal, glm::translate(glm::dmat4(1), {0, 0, 90}));
+    on_picture_devices([&](const DeviceInfo& device) {
+      CHECK(same_bits(scenes::render_on(device, scene).image, scenes::render_on(device, beside).image));
+    });
+  }
 }
