@@ -78,6 +78,16 @@ TEST_CASE("the menu of what to save lies within a narrow window") {
   v.browser.resize(1100, 760);
 }
 
+TEST_CASE("labels in panels are whole") {
+  Viewer& v = viewer();
+  for (const char* tab : {"camera", "image"}) {
+    v.tab(tab);
+    CHECK(v.run("return [...document.querySelectorAll('#panel .row > label')].filter((l) => l.scrollWidth > "
+                "l.clientWidth).map((l) => l.textContent)") == json::array());
+  }
+  v.tab("build");
+}
+
 TEST_CASE("one finger orbits, two come nearer") {
   Viewer& v = viewer();
   const auto before = v.picture();
