@@ -284,7 +284,8 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
   if (presets) std::ranges::copy(preset_names(), std::back_inserter(known));
   const std::string mend = did_you_mean(
       text, known, presets ? own + ", and docs/guide/materials.md lists presets such as \"ice\"" : own);
-  name.wanted(fmt::format("the name of a {} of this scene ({})", what, mend));
+  const char* plain = what == "texture" ? "; a colour is written [r, g, b], a number without quotes" : "";
+  name.wanted(fmt::format("the name of a {} of this scene ({}{})", what, mend, plain));
 }
 
 MediumDescription read_medium(const JsonValue& value, std::string name) {

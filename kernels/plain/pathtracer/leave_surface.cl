@@ -1,6 +1,6 @@
 // How rays leave surfaces. Photons and features of the denoiser use the same functions.
+#include "plain/light/ray_to_light.cl"
 #include "plain/pathtracer/path_state.cl"
-#include "plain/shade/leaving_ray.cl"
 
 // The path continues in the direction that the surface sampled. `cut_out`: as if no surface were there.
 static inline void leave_surface(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
@@ -21,13 +21,4 @@ static inline void pass_straight(UNIFORM const Scene* scene, const Encounter* me
   behind.t_max = INFINITY;
   cross_further(ray, &behind);
   *ray = behind;
-}
-
-// The shadow ray to a light that was chosen.
-static inline SceneRay ray_to_light(UNIFORM const Scene* scene, const SceneRay* ray, const Encounter* met,
-                                    const SurfaceShading* at, const LightSample* light, bool below) {
-  float way;
-  SceneRay to_light = leaving_ray(scene, ray, met, at, light->wi, below, &way);
-  to_light.t_max = below ? light->distance : light->distance - way;
-  return to_light;
 }

@@ -1,6 +1,7 @@
 // Shadow rays from a surface to the lights, left on a stack with the light that each would bring.
 #include "plain/light/choose_light.cl"
 #include "plain/light/light.cl"
+#include "plain/light/ray_to_light.cl"
 #include "plain/light/relief_shadow.cl"
 #include "plain/light/shadow.cl"
 #include "plain/shade/local_light.cl"
@@ -64,9 +65,7 @@ ENTRY static inline void cast_shadow(UNIFORM const Scene* scene, UNIFORM u32 ind
   if (!(greatest(possible) >= FLT_MIN && greatest(path->throughput * possible) >= share)) return;
   count(counts, COUNT_SHADOW);
   note_pixel_ray(path->pixel, counts);
-  float way;
-  SceneRay to_light = leaving_ray(scene, ray, met, at, light.wi, false, &way);
-  to_light.t_max = light.distance - way;
+  SceneRay to_light = ray_to_light(scene, ray, met, at, &light, false);
   WaitingRay shadow = *path;
   shadow.depth = 0;
   shadow.throughput = path->throughput * possible;

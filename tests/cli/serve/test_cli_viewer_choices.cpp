@@ -103,6 +103,37 @@ TEST_CASE("an object of each type can be added, and a new lathe takes a spline")
   v.open_again();
 }
 
+TEST_CASE("a key takes the place of those that exclude it, brings its partner, and goes with it") {
+  Viewer& v = viewer();
+  v.run(
+      "store.edit([{at: '/objects/0', value: {type: 'cylinder', material: 'red', height: 1, center: [0, 0, "
+      "0]}},"
+      "{at: '/lights/1', value: {type: 'spot', position: [3, 4, 3], direction: [-1, -1, -1]}}])");
+  v.settle();
+  const auto after = [&](const char* label, const char* number) {
+    v.type(label, number);
+    v.wait("return store.edits.idle");
+    CHECK(v.run("return store.state.error").is_null());
+    return v.run("return [store.state.document.objects[0], store.state.document.lights[1]]");
+  };
+  v.tab("build");
+  v.run("store.update({selection: '/objects/0'})");
+  v.wait("return document.querySelector('#panel [aria-label=\"To y\"]')");
+  const json ends = after("To y", "2")[0];
+  CHECK(ends["to"] == json::parse("[0, 2, 0]"));
+  CHECK(ends["from"] == json::parse("[0, 0, 0]"));
+  CHECK(!ends.contains("height"));
+  const json middle = after("Height", "3")[0];
+  CHECK(middle["height"] == 3);
+  CHECK(!middle.contains("from"));
+  CHECK(!middle.contains("to"));
+  v.tab("light");
+  const json aimed = after("Target z", "1")[1];
+  CHECK(aimed["target"] == json::parse("[0, 0, 1]"));
+  CHECK(!aimed.contains("direction"));
+  v.open_again();
+}
+
 TEST_CASE("the page's tracks have the values of a render") {
   const json values = viewer().run(R"(
     const {valueAt} = await import('/tracks.js');

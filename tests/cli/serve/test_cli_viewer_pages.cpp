@@ -64,6 +64,37 @@ TEST_CASE("pages come back when the server is started anew, and give it their sc
   v.browser.use_tab(0);
 }
 
+TEST_CASE(
+    "a page without its server saves the scene, and takes a new token from an address opened in its tab") {
+  TemporaryFolder folder;
+  folder.write("scene.json", viewer_scene);
+  const std::vector<std::string> command = {SUNDOG_BINARY, "serve", "scene.json", "--port",
+                                            std::to_string(free_port())};
+  auto server = std::make_unique<BackgroundProgram>(command, folder.path());
+  Viewer& v = viewer();
+  v.browser.open_tab(server->line_with("http://"));
+  v.settle();
+  v.run("store.set('/camera/fov', 31)");
+  v.settle();
+  server.reset();
+  v.wait("return store.state.connected === 'no'");
+  const json saved = v.run(R"(
+    const files = await import('/files.js');
+    URL.createObjectURL = (blob) => { window.blob = blob; return '#'; };
+    HTMLAnchorElement.prototype.click = () => {};
+    await files.savePicture('png');
+    return [await files.saveScene(), JSON.parse(await window.blob.text()).camera.fov, store.state.notice];)");
+  CHECK(saved[0] == true);
+  CHECK(saved[1] == 31);
+  CHECK(saved[2].get<std::string>().starts_with("no server: start sundog serve again"));
+  server = std::make_unique<BackgroundProgram>(command, folder.path());
+  const std::string url = server->line_with("http://");
+  v.wait("return store.state.connected === 'token'");
+  v.run("location.href = args[0]", {url});
+  v.wait("return store.state.connected === 'yes' && store.state.document.camera.fov === 31 && settled()");
+  v.browser.use_tab(0);
+}
+
 TEST_CASE("the page says that a kernel is being built, and when the picture is complete") {
   TemporaryFolder folder;
   folder.write("scene.json", viewer_scene);

@@ -67,6 +67,27 @@ TEST_CASE("axe-core finds nothing in the page: dark and light, at 390 and 1280 p
   v.tab("build");
 }
 
+TEST_CASE("the menu of what to save lies within a narrow window") {
+  Viewer& v = viewer();
+  v.browser.resize(390, 800);
+  v.press("Save");
+  v.wait("return document.querySelector('[role=menu]')");
+  CHECK(v.run("const {left, right} = document.querySelector('[role=menu]').getBoundingClientRect();"
+              "return left >= 0 && right <= innerWidth") == true);
+  v.press("Save");
+  v.browser.resize(1100, 760);
+}
+
+TEST_CASE("labels in panels are whole") {
+  Viewer& v = viewer();
+  for (const char* tab : {"camera", "image"}) {
+    v.tab(tab);
+    CHECK(v.run("return [...document.querySelectorAll('#panel .row > label')].filter((l) => l.scrollWidth > "
+                "l.clientWidth).map((l) => l.textContent)") == json::array());
+  }
+  v.tab("build");
+}
+
 TEST_CASE("one finger orbits, two come nearer") {
   Viewer& v = viewer();
   const auto before = v.picture();

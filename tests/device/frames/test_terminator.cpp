@@ -5,6 +5,7 @@
 
 #include "catch.h"
 #include "devices.h"
+#include "scene/lamps.h"
 #include "scenes.h"
 #include "test_meshes.h"
 
@@ -26,6 +27,16 @@ SceneDescription under_sun(const char* integrator) {
   scene.lights.back().direction = {-1, -0.15, -0.1};
   scenes::add_white(scene);
   return scene;
+}
+
+/// The sun becomes a small lamp there, whose surface shadow rays may meet.
+void bring_near(LightDescription& light, LightType type) {
+  const glm::dvec3 towards = -glm::normalize(light.direction);
+  light.type = type;
+  light.position = 6.0 * towards;
+  light.size = {0.5, 0.5};
+  light.radius = 0.25;
+  light.intensity = 400;
 }
 
 /// The greatest difference of their pixels well within the ball's outline.
@@ -56,6 +67,24 @@ TEST_CASE("the light on a coarse ball ends where it does on a sphere, by both in
         scenes::place(sphere, SphereShape{1}, 0, at);
         CHECK(difference(scenes::render_on(device, ball).image, scenes::render_on(device, sphere).image) <
               0.07);
+      }
+}
+
+TEST_CASE("a lamp with an extent does not shadow a coarse ball, by both integrators") {
+  for (const DeviceInfo& device : picture_devices())
+    for (const char* integrator : {"whitted", "path"})
+      for (const LightType type : {LightType::rectangle, LightType::sphere}) {
+        CAPTURE(device.label(), integrator, type);
+        SceneDescription ball = under_sun(integrator);
+        bring_near(ball.lights.back(), type);
+        SceneDescription sphere = ball;
+        ball.meshes = {bumpy_sphere(8, 0)};
+        scenes::place(ball, MeshShape{0}, 0);
+        scenes::place(sphere, SphereShape{1}, 0);
+        add_lamps(ball);
+        add_lamps(sphere);
+        CHECK(difference(scenes::render_on(device, ball).image, scenes::render_on(device, sphere).image) <
+              0.15);
       }
 }
 

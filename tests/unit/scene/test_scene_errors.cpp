@@ -248,6 +248,7 @@ TEST_CASE("bad materials and media are refused with their place") {
                {"an \"ior\" and no \"medium\""}, false),
       material(R"({"type": "dielectric", "thin_walled": true})", "", {"missing key \"ior\"", "a thin wall"}),
       material(R"({"medium": "ice"})", "/medium", {"names no medium", "the string \"ice\""}, false),
+      material(R"({"color": "red"})", "/color", {"names no texture", "a colour is written [r, g, b]"}, false),
       material(R"({"shadow": "none"})", "/shadow", {"\"filter\" or \"opaque\""}),
       material(R"({"shading": 1})", "/shading", {"\"phong\" or \"blinn\"", "found 1"}),
       material(R"({"vertex_color": 1})", "/vertex_color", {"true or false", "found 1"}),

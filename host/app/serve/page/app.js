@@ -130,4 +130,8 @@ const root = document.getElementById('app');
 root.replaceChildren();
 render(html`<${App} />`, root);
 store.start();
+addEventListener('hashchange', () => {
+  store.takeToken();
+  openLink();
+});
 openLink();

@@ -14,7 +14,10 @@ const tell = (error) => store.notice(error.message);
 
 export async function saveScene() {
   try {
-    const text = await (await store.link.call('scene')).text();
+    const text = await store.link.call('scene').then((answer) => answer.text(), (error) => {
+      if (!store.state.document) throw error;
+      return JSON.stringify(store.state.document, null, 2);  // the server is gone, the page has it all
+    });
     save(new Blob([text], {type: 'application/json'}), stem() + '.json');
     store.saved = JSON.parse(text);
     store.update({});
@@ -107,7 +110,7 @@ async function upload(read, name, bytes) {
 /** A link's scene takes the place of the server's, once: then the address forgets it. */
 export async function openLink() {
   const parts = new URLSearchParams(location.hash.slice(1)), scene = parts.get('scene');
-  if (parts.get('token')) history.replaceState(null, '', '#token=' + parts.get('token'));
+  if (parts.get('token')) history.replaceState(null, '', '#token=' + store.link.token);
   if (!scene) return;
   try {
     const text = await unsqueeze(scene);

@@ -19,12 +19,12 @@ const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field
 const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
 
 /** One value at `at`. `schema` may be a reference; `required` values have no reset. */
-export function Field({schema, at, value, label, required, onSet}) {
+export function Field({schema, at, value, label, required, onSet, onReset}) {
   const s = resolve(schema);
   const common = {
     label, at, value, help: s.description, fallback: s.default,
     onSet: onSet || ((next, gesture) => store.set(at, next, gesture)),
-    onReset: required ? undefined : () => store.set(at, undefined),
+    onReset: required ? undefined : onReset ?? (() => store.set(at, undefined)),
   };
   if (isTextureName(s)) return html`<${ChoiceField} ...${common} choices=${withPresets('texture')} />`;
   const table = tables[tableOf(s.description)];
@@ -114,10 +114,20 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
     const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // it has none
     store.edit([...gone, ...Object.entries({...more, [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))]);
   });
-  const rivals = (key) => (s.not?.anyOf ?? []).filter((one) => one.required?.includes(key)).flatMap((one) => one.required)
-    .filter((other) => other !== key && value?.[other] !== undefined);
-  const instead = (key) => rivals(key).length > 0 && ((next, gesture) =>  // a key takes the place of those that exclude it
-    store.edit([...rivals(key).map((other) => ({at: join(at, other)})), {at: join(at, key), value: next}], gesture));
+  const partners = s.dependentRequired ?? {};  // "from" and "to": both or none
+  const withPartners = (key) => [key, ...Object.keys(partners).filter((other) => partners[other].includes(key) && value?.[other] !== undefined)];
+  const rivals = (key) => {
+    const has = (one) => one.required?.includes(key), ways = s.oneOf?.some(has) ? s.oneOf.filter((one) => !has(one)) : [];
+    const all = [...(s.not?.anyOf ?? []).filter(has), ...ways].flatMap((one) => one.required ?? []);
+    return [...new Set(all)].filter((other) => other !== key && value?.[other] !== undefined);
+  };
+  const instead = (key) => {  // a key takes the place of those that exclude it, and brings what it needs
+    const gone = [key, ...(partners[key] ?? [])].flatMap(rivals).flatMap(withPartners).filter((other) => other !== key);
+    const kept = Object.fromEntries(Object.entries(value ?? {}).filter(([other]) => !gone.includes(other)));
+    const alone = (partners[key] ?? []).some((other) => !(other in kept));
+    return (gone.length > 0 || alone) && ((next, gesture) => store.edit([...gone.map((other) => ({at: join(at, other)})),
+      ...Object.entries({...missing(s, {...kept, [key]: next}), [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))], gesture));
+  };
   const keys = Object.keys(s.properties ?? {}).filter((key) => (!only || only.includes(key)) && !without.includes(key) && key !== '$schema');
   const setType = (type) => {
     const kept = Object.fromEntries(Object.entries(value).filter(([key]) => key in (types[type].properties ?? {})));
@@ -128,7 +138,7 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   return html`<div class="fields">
     ${types && !without.includes('type') && html`<${ChoiceField} label="Type" at=${at + '/type'} value=${value?.type} choices=${Object.keys(types)} onSet=${setType} />`}
     ${keys.filter((key) => !(types && key === 'type')).map((key) => html`<${Field} key=${at + key} schema=${key in defaults ? {...s.properties[key], default: defaults[key]} : s.properties[key]} at=${join(at, key)} value=${value?.[key]}
-      label=${words(key)} required=${required.includes(key)} onSet=${needs(key) || instead(key)} />`)}
+      label=${words(key)} required=${required.includes(key)} onSet=${needs(key) || instead(key)} onReset=${() => store.edit(withPartners(key).map((one) => ({at: join(at, one)})))} />`)}
   </div>`;
 }
 

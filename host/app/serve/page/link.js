@@ -1,6 +1,6 @@
 // The line to the server: calls over HTTP with the token in a header, messages and pictures over a socket whose first message is
 // the token. It comes back by itself when the server does.
-function tokenOfAddress() {
+export function tokenOfAddress() {
   const found = new URLSearchParams(location.hash.slice(1)).get('token');
   try {
     if (found) sessionStorage.setItem('sundog-token', found);
@@ -19,7 +19,9 @@ export class Link {
   }
 
   async call(path, options = {}) {
-    const answer = await fetch('/api/' + path, {...options, headers: {'X-Sundog-Token': this.token}});
+    const answer = await fetch('/api/' + path, {...options, headers: {'X-Sundog-Token': this.token}}).catch(() => {
+      throw new Error('no server: start sundog serve again at this port, and open the URL that it prints in this tab');
+    });
     if (answer.ok) return answer;
     throw Object.assign(new Error((await answer.text()).trim()), {status: answer.status});
   }

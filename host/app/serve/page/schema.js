@@ -52,7 +52,7 @@ export function fits(schema, value) {
 export const isTextureName = (s) => s.kind === 'texture_name' || (s.type === 'string' && /^The name of a texture\b/.test(s.description));
 
 const firstTypes = {texture: 'checker', environment: 'sky'};  // that need no file
-const byKey = {direction: [-1, -1, -0.5], axis: [0, 1, 0], position: [3, 4, 3], ior: 1.5};
+const byKey = {direction: [-1, -1, -0.5], axis: [0, 1, 0], position: [3, 4, 3], ior: 1.5, from: [0, 0, 0], to: [0, 1, 0], min: [-1, -1, -1], max: [1, 1, 1]};
 const newTexture = 'checks';
 
 /** The keys that an object needs beside those of `kept`; of several ways the first that names nothing else. */
@@ -61,7 +61,8 @@ function needed(s, kept) {
   const ways = [s.oneOf, s.anyOf, holds && s.then?.anyOf].filter((list) => list?.[0]?.required);
   const chosen = ways.flatMap((list) => (list.find((one) => one.required.every((key) => key in kept)) ??
     list.find((one) => !one.required.includes('file') && !one.required.includes('medium')) ?? list[0]).required);
-  return [...(s.required ?? []), ...chosen].filter((key) => !(key in kept));
+  const partners = Object.keys(kept).flatMap((key) => s.dependentRequired?.[key] ?? []);
+  return [...(s.required ?? []), ...chosen, ...partners].filter((key) => !(key in kept));
 }
 
 /** The keys of an object that it must have, and has not. */

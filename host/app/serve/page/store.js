@@ -3,7 +3,7 @@
 import {Drafts} from './drafts.js';
 import {Edits} from './edits.js';
 import {apply, equal} from './pointer.js';
-import {Link} from './link.js';
+import {Link, tokenOfAddress} from './link.js';
 
 class Store {
   state = {
@@ -55,6 +55,15 @@ class Store {
     });
     this.link.start();
     this.load();
+  }
+  /** Another address in this tab does not load the page again: where its own token finds no server, it takes the new one. */
+  takeToken() {
+    if (this.state.connected === 'yes') return;
+    this.link.token = tokenOfAddress();
+    if (this.state.connected !== 'token') return;
+    this.update({connected: 'connecting'});
+    this.link.start();
+    if (!this.state.schema) this.load();
   }
   async load() {
     try {
