@@ -6,6 +6,7 @@ import os
 import pathlib
 import random
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -206,6 +207,17 @@ if child == 0:
     message = str(error_of(lambda: sundog.render(small())))
     os._exit(0 if "spawn" in message else 1)
 assert os.waitpid(child, 0)[1] == 0
+
+# A thread that renders for ever ends with the interpreter, which a signal would end otherwise.
+endless = """
+import sundog, sys, threading
+begun = threading.Event()
+scene = {"image": {"width": 1024, "height": 1024}, "render": {"samples": 65536}, "objects": []}
+options = {"devices": sys.argv[1] or None, "on_progress": lambda *now: begun.set()}
+threading.Thread(target=sundog.render, args=(scene,), kwargs=options, daemon=True).start()
+begun.wait()
+"""
+subprocess.run([sys.executable, "-c", endless, device or ""], check=True, timeout=60)
 
 # Scenes of the package, and a live view of one, as its page would move it.
 assert "hollow_ice" in sundog.examples()
