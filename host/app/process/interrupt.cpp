@@ -77,6 +77,7 @@ void hold_back(std::initializer_list<int> signals) {
 
 StopOnSignal::StopOnSignal() {
   hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
+  ::signal(SIGPIPE, SIG_IGN);  // nobody may read the messages any more
   waiting().stop_asked = waiting().was_continued = false;
   asks();
   static std::once_flag begun;

@@ -11,7 +11,7 @@ namespace sundog {
 /// they are meant for, go to a thread that waits for them: a driver's compiler (LLVM's) puts handlers of its
 /// own in the place of a program's, which remove the files that it is writing, so that it fails with a
 /// message of its own. Made before any other thread, which would not inherit that they are held back. One at
-/// a time.
+/// a time. From then on a reader of messages who leaves ends nothing by SIGPIPE.
 class StopOnSignal {
  public:
   StopOnSignal();
