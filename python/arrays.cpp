@@ -99,7 +99,8 @@ nb::object value_of(const std::string& json) { return nb::module_::import_("json
 sundog::Scene scene_of(nb::handle value) {
   if (nb::isinstance<sundog::Scene>(value)) return nb::cast<sundog::Scene&>(value);
   if (nb::isinstance<nb::dict>(value)) return sundog::Scene::from_json(json_of(value));
-  return sundog::Scene::load(nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(value)));
+  const nb::bytes file(nb::module_::import_("os").attr("fsencode")(value));
+  return sundog::Scene::load(std::string(file.c_str(), file.size()));
 }
 
 std::vector<sundog::Device> devices_of(nb::handle value) {

@@ -1,11 +1,13 @@
 // The Python module: the library's classes under the names of its headers.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
+#include <unistd.h>
 
 #include "values.h"
 
@@ -18,14 +20,25 @@ constexpr const char* kinds[] = {"usage", "scene", "device", "build", "io", "int
 constexpr const char* states[] = {"idle",    "compiling", "preparing", "drawing",
                                   "settled", "stopped",   "failed"};
 
+/// Python's text, which keeps the bytes of a file's name that are no UTF-8 as its own functions do.
+nb::object text_of(const std::string& text) {
+  return nb::steal(PyUnicode_DecodeUTF8(text.data(), Py_ssize_t(text.size()), "surrogateescape"));
+}
+
+nb::typed<nb::list, nb::str> texts_of(const std::vector<std::string>& texts) {
+  nb::list result;
+  for (const std::string& text : texts) result.append(text_of(text));
+  return result;
+}
+
 /// Error as Python's sundog.Error, with its facts as attributes.
 void raise(const Error& error, void* type) {
-  const nb::object raised = nb::borrow(static_cast<PyObject*>(type))(error.what());
+  const nb::object raised = nb::borrow(static_cast<PyObject*>(type))(text_of(error.what()));
   nb::setattr(raised, "kind", nb::str(kinds[static_cast<int>(error.kind())]));
-  nb::setattr(raised, "file", nb::str(error.file().c_str()));
-  nb::setattr(raised, "place", nb::str(error.place().c_str()));
-  nb::setattr(raised, "reason", nb::str(error.reason().c_str()));
-  nb::setattr(raised, "log", nb::str(error.log().c_str()));
+  nb::setattr(raised, "file", text_of(error.file()));
+  nb::setattr(raised, "place", text_of(error.place()));
+  nb::setattr(raised, "reason", text_of(error.reason()));
+  nb::setattr(raised, "log", text_of(error.log()));
   nb::setattr(raised, "status", nb::int_(error.status()));
   PyErr_SetObject(static_cast<PyObject*>(type), raised.ptr());
 }
@@ -169,10 +182,11 @@ void add_images(nb::module_& m) {
           },
           nb::arg("curve") = "none", nb::arg("exposure") = 0.0, nb::arg("white_balance") = 0.0)
       .def_static(
-          "load", [](const std::string& file) { return Image::load(file); }, nb::arg("file"), Unlocked())
+          "load", [](const std::filesystem::path& file) { return Image::load(file); }, nb::arg("file"),
+          Unlocked())
       .def(
-          "save", [](const Image& image, const std::string& file) { image.save(file); }, nb::arg("file"),
-          Unlocked(), "Writes .png .jpg .exr .hdr or .pfm.")
+          "save", [](const Image& image, const std::filesystem::path& file) { image.save(file); },
+          nb::arg("file"), Unlocked(), "Writes .png .jpg .exr .hdr or .pfm.")
       .def("_repr_png_", &png_of);
   nb::class_<Film>(m, "Film", "A finished or stopped render.")
       .def_prop_ro("width", &Film::width)
@@ -184,10 +198,10 @@ void add_images(nb::module_& m) {
       .def_prop_ro("aovs", &Film::aovs)
       .def_prop_ro(
           "figures", [](const Film& film) { return dict_of(film.figures()); }, "Rays, seconds, devices.")
-      .def_prop_ro("warnings", &Film::warnings)
+      .def_prop_ro("warnings", [](const Film& film) { return texts_of(film.warnings()); })
       .def(
-          "save", [](const Film& film, const std::string& file) { film.save(file); }, nb::arg("file"),
-          Unlocked(), "As `sundog render -o` does.")
+          "save", [](const Film& film, const std::filesystem::path& file) { film.save(file); },
+          nb::arg("file"), Unlocked(), "As `sundog render -o` does.")
       .def("_repr_png_", [](const Film& film) { return png_of(film.shown()); });
 }
 
@@ -202,8 +216,8 @@ void add_scene(nb::module_& m) {
           nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
       .def_static(
           "load",
-          [](const std::string& file, std::optional<double> frame, bool native_code, bool outside_files,
-             std::array<int, 2> size) {
+          [](const std::filesystem::path& file, std::optional<double> frame, bool native_code,
+             bool outside_files, std::array<int, 2> size) {
             return Scene::load(
                 file,
                 {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size});
@@ -215,8 +229,10 @@ void add_scene(nb::module_& m) {
       .def(
           "__getitem__", [](const Scene& scene, const std::string& at) { return value_of(scene.get(at)); },
           "The value at a JSON pointer: scene[\"/camera/fov\"].")
-      .def("__setitem__",
-           [](Scene& scene, const std::string& at, nb::handle value) { scene.set(at, json_of(value)); })
+      .def(
+          "__setitem__",
+          [](Scene& scene, const std::string& at, nb::handle value) { scene.set(at, json_of(value)); },
+          nb::arg("at"), nb::arg("value").none())
       .def("__delitem__", [](Scene& scene, const std::string& at) { scene.remove(at); })
       .def("__contains__", &Scene::contains)
       .def("__copy__", [](const Scene& scene) { return Scene(scene); })
@@ -229,7 +245,9 @@ void add_scene(nb::module_& m) {
       .def(
           "add", [](Scene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)); },
           nb::arg("object"), "Appends a dict to the objects.")
-      .def("check", &Scene::check, "Reads the whole scene; returns warnings, raises Error.");
+      .def(
+          "check", [](const Scene& scene) { return texts_of(scene.check()); },
+          "Reads the whole scene; returns warnings, raises Error.");
 }
 
 void add_session(nb::module_& m) {
@@ -266,12 +284,14 @@ void add_session(nb::module_& m) {
           "Draws this scene from now on.")
       .def(
           "cancel", [](OpenSession& session) { session.cancel(); }, Unlocked())
-      .def("use_devices",
-           [](OpenSession& session, nb::handle devices) {
-             const std::vector<Device> chosen = devices_of(devices);
-             const nb::gil_scoped_release release;
-             session.use_devices(chosen);
-           })
+      .def(
+          "use_devices",
+          [](OpenSession& session, nb::handle devices) {
+            const std::vector<Device> chosen = devices_of(devices);
+            const nb::gil_scoped_release release;
+            session.use_devices(chosen);
+          },
+          nb::arg("devices").none())
       .def(
           "snapshot", [](const OpenSession& session, bool picture) { return session.snapshot(picture); },
           nb::arg("picture") = true, Unlocked())
@@ -331,8 +351,16 @@ NB_MODULE(_sundog, m) {
       nb::arg("devices").none() = nb::none(),
       "How many threads drivers have not let go of; the process waits for them at its exit, whichever the "
       "devices.");
-  m.def("wait_for_threads", &wait_for_threads, Unlocked(),
-        "Waits for these threads, up to a minute. The interpreter calls it at its end.");
+  m.def("wait_for_threads", &wait_for_threads, Unlocked(), "Waits for these threads, up to a minute.");
+  m.def(
+      "_end",
+      [process = ::getpid()] {
+        ending = std::this_thread::get_id();
+        for (int i = 0; calls > 0 && ::getpid() == process && i < 6000; ++i)
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        wait_for_threads();
+      },
+      Unlocked(), "The interpreter calls it at its end.");
   m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
         nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),

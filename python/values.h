@@ -8,6 +8,7 @@
 #include <chrono>
 #include <future>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace nb = nanobind;
@@ -34,17 +35,37 @@ sundog::Scene scene_of(nb::handle value);
 /// None, a spec, a Device, or a list of these.
 std::vector<sundog::Device> devices_of(nb::handle value);
 
+/// The thread that ends the interpreter. The others leave their calls then, as by sys.exit(): later, a thread
+/// that asks for the interpreter's lock is unwound, and C++ cannot be.
+inline std::atomic<std::thread::id> ending;
+inline std::atomic<int> calls = 0;
+struct Call {
+  Call() { ++calls; }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+  ~Call() { --calls; }
+};
+
+/// Whether this thread is to leave: Python's error is set.
+inline bool is_interrupted() {
+  const std::thread::id end = ending;
+  if (end == std::thread::id() || end == std::this_thread::get_id()) return PyErr_CheckSignals() != 0;
+  PyErr_SetNone(PyExc_SystemExit);
+  return true;
+}
+
 /// f() in a thread of its own without the interpreter's lock, until it returns; Ctrl-C calls stop() and
 /// raises.
 template <class F, class Stop>
 auto interruptible(const F& f, const Stop& stop) {
   bool interrupted = false;
+  const Call call;
   auto running = std::async(std::launch::async, f);
   {
     nb::gil_scoped_release release;
     while (running.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
       nb::gil_scoped_acquire acquire;
-      if (!interrupted && PyErr_CheckSignals() != 0) {
+      if (!interrupted && is_interrupted()) {
         interrupted = true;
         stop();
       }
@@ -52,6 +73,6 @@ auto interruptible(const F& f, const Stop& stop) {
   }
   // A signal may have ended f() with an error of its own: LLVM removes a compiler's temporary files on
   // Ctrl-C.
-  if (interrupted || PyErr_CheckSignals() != 0) throw nb::python_error();
+  if (interrupted || is_interrupted()) throw nb::python_error();
   return running.get();
 }

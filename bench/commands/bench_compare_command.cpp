@@ -81,7 +81,7 @@ Side read_side(const std::string& name) {
     std::ranges::sort(files);
     if (files.empty()) throw UsageError(name + ": the folder has no report (.json) in it");
   }
-  for (const std::string& file : files) side.calls.push_back(read_report("bench compare", file));
+  for (const std::string& file : files) side.calls.push_back(read_report(file));
   return side;
 }
 

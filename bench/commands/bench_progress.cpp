@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "app/process/progress.h"
+#include "app/process/warnings.h"
 
 namespace sundog {
 namespace {
@@ -29,18 +30,18 @@ void BenchProgress::update(const std::string& step, double done) {
   const std::string text =
       fmt::format("{:3.0f} %, about {} left: {}", 100 * done, duration_text(seconds_left(done)), step);
   if (stderr_is_terminal()) {
-    fmt::print(stderr, "\r{}\033[K", bar_line(done, " " + text, terminal_columns()));
+    tell(fmt::format("\r{}\033[K", bar_line(done, " " + text, terminal_columns())));
     drawn_ = true;
     last_drawn_ = now;
   } else if (now - last_line_ >= seconds_between_lines) {
-    fmt::print(stderr, "sundog: {}\n", text.substr(text.find_first_not_of(' ')));
+    tell(fmt::format("sundog: {}\n", text.substr(text.find_first_not_of(' '))));
     last_line_ = now;
   }
   std::fflush(stderr);
 }
 
 void BenchProgress::erase() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) tell("\r\033[K");
   drawn_ = false;
 }
 

@@ -92,7 +92,7 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
                                            {"command", command_line_text()}});
   head_.environment = driver_variables();
   if (!options.continue_from.empty()) {
-    KnownReport known = read_report("--continue", options.continue_from);
+    KnownReport known = read_report(options.continue_from);
     if (known.bench != name)
       throw UsageError(fmt::format("--continue {}: it is of bench {}", options.continue_from, known.bench));
     if (known.revision != build_revision())

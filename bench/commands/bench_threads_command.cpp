@@ -14,6 +14,7 @@
 #include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/process/progress.h"
+#include "app/process/warnings.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "bench/commands/bench_run.h"
@@ -310,11 +311,12 @@ void announce(const ThreadsOptions& options, const std::vector<ThreadScaling>& p
     for (const int size : plan.sizes) plain += plain_seconds(plan, size);
   }
   if (options.quiet) return;
-  if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K");
-  fmt::print(stderr, "sundog: this will take about {}{}\n", duration_text(seconds),
-             plain >= 1 ? fmt::format(", {} of it in plain C++ (--no-plain)", duration_text(plain)) : "");
+  if (stderr_is_terminal()) tell("\r\033[K");
+  tell(fmt::format(
+      "sundog: this will take about {}{}\n", duration_text(seconds),
+      plain >= 1 ? fmt::format(", {} of it in plain C++ (--no-plain)", duration_text(plain)) : ""));
   for (const std::string& note : report.notes)
-    if (note.find(": left out to take") != std::string::npos) fmt::print(stderr, "sundog: {}\n", note);
+    if (note.find(": left out to take") != std::string::npos) tell(fmt::format("sundog: {}\n", note));
 }
 
 int bench_threads(const ThreadsOptions& options) {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/input.h"
 
 namespace sundog {
 namespace {
@@ -44,13 +44,10 @@ MeasuredWay way_of(const json& value) {
 
 }  // namespace
 
-KnownReport read_report(const std::string& option, const std::string& file) {
-  const auto refuse = [&](const std::string& why) {
-    return UsageError(fmt::format("{} {}: {}", option, file, why));
-  };
+KnownReport read_report(const std::string& file) {
   try {
-    const json report = json::parse(read_file(file));
-    if (report.at("schema") != 2) throw refuse("it has another schema; measure anew");
+    const json report = json::parse(read_input(file));
+    if (report.at("schema") != 2) throw SceneError(file, "", "it has another schema; measure anew");
     KnownReport known{text_of(report.at("bench")),
                       text_of(report.at("facts").at("revision")),
                       table_of(report.at("devices")),
@@ -59,7 +56,7 @@ KnownReport read_report(const std::string& option, const std::string& file) {
     for (const json& way : report.at("ways")) known.ways.push_back(way_of(way));
     return known;
   } catch (const json::exception&) {
-    throw refuse("it is no report of sundog bench --json");
+    throw SceneError(file, "", "it is no report of sundog bench --json");
   }
 }
 

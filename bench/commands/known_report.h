@@ -14,8 +14,8 @@ struct KnownReport {
   std::vector<MeasuredWay> ways;
 };
 
-/// Throws IoError, UsageError (which names `option`) where the file is no report of a bench.
-KnownReport read_report(const std::string& option, const std::string& file);
+/// Throws SceneError where the file is no report of a bench.
+KnownReport read_report(const std::string& file);
 
 /// A cell of a row, by the name that the JSON has for the column; empty: there is none.
 std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column);

@@ -22,7 +22,7 @@ namespace {
 
 int run(const Command& command) {
   if (command.in_first_thread) return command.run();
-  if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
+  if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
   return std::async(std::launch::async, command.run).get();
 }
 

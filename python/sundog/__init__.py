@@ -30,6 +30,7 @@ from ._sundog import (  # noqa: E402
     Scene,
     Session,
     Snapshot,
+    _end,
     choose_devices,
     devices,
     render,
@@ -65,7 +66,7 @@ def view(scene, parameters=None, devices=None):
     return View(scene, parameters, devices)
 
 
-_atexit.register(wait_for_threads)  # while what the drivers' threads use is still there
+_atexit.register(_end)  # while what the drivers' threads use is still there
 __version__ = version()
 __all__ = [
     "Device",

@@ -3,9 +3,12 @@
 import copy
 import faulthandler
 import os
+import pathlib
 import random
 import signal
+import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -82,6 +85,8 @@ other["/image/width"] = 20
 assert loaded["/image/width"] == 40 and "/image/width" in other
 del other["/image/width"]
 assert "/image/width" not in other
+other["/image/width"] = None
+assert other["/image/width"] is None
 
 # Errors have facts.
 error = error_of(lambda: sundog.Scene({"objects": [{"type": "sphre"}]}).check())
@@ -96,6 +101,20 @@ for bad in (lambda: sundog.Scene({"objects": object()}), lambda: small().add_mes
         raise AssertionError("no TypeError")
     except TypeError:
         pass
+
+# A file's name is text, bytes or a Path, also where its bytes are no UTF-8.
+with tempfile.TemporaryDirectory() as folder:
+    picture = pathlib.Path(folder) / "picture.png"
+    sundog.render(pathlib.Path(sys.argv[1]), devices=device, time_limit=0.1).save(picture)
+    sundog.Image.load(picture).save(os.fsencode(picture))
+    model = pathlib.Path(folder, os.fsdecode(b"caf\xe9.obj"))
+    model.write_bytes(b"mtllib caf\xe9.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    scene = sundog.Scene.load(model)
+    assert any("caf\udce9.mtl" in warning for warning in scene.check()), scene.check()
+    scene["/image/width"] = scene["/image/height"] = 8
+    assert any("caf\udce9.mtl" in warning for warning in sundog.render(scene, devices=device).warnings)
+    model.unlink()
+    assert error_of(lambda: sundog.Scene(bytes(model))).file == str(model)
 
 # Other threads run while a frame is rendered; a callback stops it, and its exceptions come out.
 turns = 0
@@ -156,6 +175,7 @@ animate(session)
 session = sundog.Session(device)
 animate(session)
 session.use_devices(device)
+session.use_devices(None)
 del session
 for _ in range(100):  # the interpreter frees them when it comes to it
     time.sleep(0.01)
@@ -187,6 +207,17 @@ if child == 0:
     message = str(error_of(lambda: sundog.render(small())))
     os._exit(0 if "spawn" in message else 1)
 assert os.waitpid(child, 0)[1] == 0
+
+# A thread that renders for ever ends with the interpreter, which a signal would end otherwise.
+endless = """
+import sundog, sys, threading
+begun = threading.Event()
+scene = {"image": {"width": 1024, "height": 1024}, "render": {"samples": 65536}, "objects": []}
+options = {"devices": sys.argv[1] or None, "on_progress": lambda *now: begun.set()}
+threading.Thread(target=sundog.render, args=(scene,), kwargs=options, daemon=True).start()
+begun.wait()
+"""
+subprocess.run([sys.executable, "-c", endless, device or ""], check=True, timeout=60)
 
 # Scenes of the package, and a live view of one, as its page would move it.
 assert "hollow_ice" in sundog.examples()

@@ -111,7 +111,7 @@ class Watch {
     ::close(err_.fd);
     err_.fd = -1;
     for (int i = 0; i < 2; ++i) {
-      ::kill(child_, SIGHUP);
+      ::kill(child_, options_.signal);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }

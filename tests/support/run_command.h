@@ -14,7 +14,7 @@ struct CommandOptions {
   std::string signal_at;         // send `signal` when this text appears on stderr; empty: never
   std::filesystem::path signal_folder;  // ... or when something is in this folder; empty: never
   int signal = SIGINT;
-  bool hang_up = false;        // instead of `signal`: the terminal is closed, and SIGHUP comes twice
+  bool hang_up = false;        // the terminal is closed, and `signal` comes twice
   std::size_t file_limit = 0;  // no file may grow larger (bytes); 0: no limit
   double timeout = 120;        // seconds until it is killed
 };

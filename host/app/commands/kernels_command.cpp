@@ -11,6 +11,7 @@
 #include "app/process/environment.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "compile/compiled_scene.h"
 #include "device/build_options.h"
 #include "device/device_rules.h"
@@ -49,7 +50,7 @@ std::string made_text(const KernelsCommand& c) {
   const std::string path = plain_path(c.file);
   const spmd::ReadFile read = [&](const std::string& wanted) {
     return wanted == path && wanted != c.file
-               ? read_file(c.file)
+               ? read_input(c.file)
                : embedded_kernel(wanted, value_of(program_environment()).kernels);
   };
   if (c.explains) return spmd::explained(path, read);

@@ -41,22 +41,23 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// A terminal that is closed may send SIGHUP twice, by itself and by its shell: that is not a second wish.
-void answer_stop(Waiting& state, bool hang_up) {
+/// A terminal that is closed may send SIGHUP twice, by itself and by its shell, and a limit on processor time
+/// SIGXCPU once a second: that is not a second wish.
+void answer_stop(Waiting& state, bool repeats) {
   const std::lock_guard lock(state.mutex);
   if (state.answer == Answer::end) tell(fmt::format("sundog: interrupted: {}\n", state.why));
-  if (state.answer == Answer::ask && (!state.stop_asked.exchange(true) || hang_up)) return;
+  if (state.answer == Answer::ask && (!state.stop_asked.exchange(true) || repeats)) return;
   ::_exit(exit_interrupted);
 }
 
 void wait_for_signals(Waiting& state) {
-  sigset_t set = set_of({SIGINT, SIGTERM, SIGCONT});
+  sigset_t set = set_of({SIGINT, SIGTERM, SIGXCPU, SIGCONT});
   if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);
   for (int signal = 0; ::sigwait(&set, &signal) == 0;) {
     if (signal == SIGCONT)
       state.was_continued = true;
     else
-      answer_stop(state, signal == SIGHUP);
+      answer_stop(state, signal == SIGHUP || signal == SIGXCPU);
   }
 }
 
@@ -75,7 +76,8 @@ void hold_back(std::initializer_list<int> signals) {
 }
 
 StopOnSignal::StopOnSignal() {
-  hold_back({SIGINT, SIGTERM, SIGHUP, SIGCONT});
+  hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
+  ::signal(SIGPIPE, SIG_IGN);  // nobody may read the messages any more
   waiting().stop_asked = waiting().was_continued = false;
   asks();
   static std::once_flag begun;

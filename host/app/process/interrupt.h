@@ -1,5 +1,5 @@
 // Ctrl-C: the first one asks the render to stop, the second ends the program. A terminal that is closed asks
-// too. And SIGCONT, which mpirun sends a second before it ends a process.
+// too, and a limit on processor time. And SIGCONT, which mpirun sends a second before it ends a process.
 #pragma once
 #include <atomic>
 #include <initializer_list>
@@ -7,10 +7,11 @@
 
 namespace sundog {
 
-/// While it lives, SIGINT, SIGTERM and (unless it is ignored, as by nohup) SIGHUP, whichever thread they are
-/// meant for, go to a thread that waits for them: a driver's compiler (LLVM's) puts handlers of its own in
-/// the place of a program's, which remove the files that it is writing, so that it fails with a message of
-/// its own. Made before any other thread, which would not inherit that they are held back. One at a time.
+/// While it lives, SIGINT, SIGTERM, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP, whichever thread
+/// they are meant for, go to a thread that waits for them: a driver's compiler (LLVM's) puts handlers of its
+/// own in the place of a program's, which remove the files that it is writing, so that it fails with a
+/// message of its own. Made before any other thread, which would not inherit that they are held back. One at
+/// a time. From then on a reader of messages who leaves ends nothing by SIGPIPE.
 class StopOnSignal {
  public:
   StopOnSignal();

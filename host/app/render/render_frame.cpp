@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "app/job/rank_watch.h"
 #include "app/job/remote_devices.h"
 #include "app/options/devices.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/save_image.h"
@@ -54,8 +54,8 @@ RenderOptions render_options(const RenderCommand& command, const ImageSettings& 
   options.channels = command.part ? 0 : image_channels(format_name(command), image.transparent);
   options.resume = command.resume;
   options.renews_checkpoint = !command.frames.empty();
-  if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"))
-    options.checkpoint_seconds = std::max(0.0, std::strtod(seconds, nullptr));
+  if (const char* seconds = std::getenv("SUNDOG_CHECKPOINT_EVERY"); seconds && *seconds)
+    options.checkpoint_seconds = parse_real("SUNDOG_CHECKPOINT_EVERY", seconds, 0, 1e9);
   options.faults = program_environment()->faults;
   options.keep_failed = true;
   options.time_limit = command.time_limit;

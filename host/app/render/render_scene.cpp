@@ -111,7 +111,7 @@ int render_scene(const RenderCommand& command) {
   // An interrupt reaches every process of a job; rank 0 decides.
   std::optional<StopOnSignal> stop;
   if (job_rank() > 0)
-    hold_back({SIGINT, SIGTERM, SIGHUP});
+    hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU});
   else
     stop.emplace();
   if (job_rank() < 0) return render_here(command, *stop, nullptr);

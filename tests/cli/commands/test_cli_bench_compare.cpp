@@ -86,16 +86,17 @@ TEST_CASE("bench compare refuses what does not match, and says what differs") {
   folder.write("a.json", report({"0:0 P / first"}, times));
   folder.write("b.json", report({"0:0 P / first"}, times, 32));
   folder.write("c.json", "{}");
-  const auto error = [&](std::vector<std::string> files) {
+  const auto error = [&](std::vector<std::string> files, int status = 2) {
     std::vector<std::string> arguments{"bench", "compare"};
     for (const std::string& file : files) arguments.push_back(folder.file(file));
     const CommandResult result = run_sundog(arguments);
-    CHECK(result.status == 2);
+    CHECK(result.status == status);
     CHECK(is_one_error_line(result.err));
     return result.err;
   };
   CHECK_THAT(error({"a.json", "b.json"}),
              ContainsSubstring("scene ice") && ContainsSubstring("width_pixels 32"));
-  CHECK_THAT(error({"a.json", "c.json"}), ContainsSubstring("no report of sundog bench"));
+  CHECK_THAT(error({"a.json", "c.json"}, 3), ContainsSubstring("no report of sundog bench"));
+  CHECK_THAT(error({"a.json", "none.json"}, 3), ContainsSubstring("none.json: cannot be read"));
   CHECK_THAT(error({"a.json"}), ContainsSubstring("one device"));
 }

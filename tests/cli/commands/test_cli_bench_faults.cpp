@@ -93,6 +93,16 @@ TEST_CASE("a device that fails in timed runs is a row with its error, beside the
   }
 }
 
+TEST_CASE("a reader of messages who has left costs a bench no report") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  run_command({"sh", "-c",
+               R"("$0" bench threads "$1" --device portable --sizes 32 --counts 1,2 --no-plain --repeat 2)"
+               R"( --json "$2" 2>&1 >/dev/null | :)",
+               SUNDOG_BINARY, folder.scene, file});
+  CHECK(json::parse(sundog::read_file(file)).at("complete") == true);
+}
+
 TEST_CASE("a bench that is interrupted leaves its report, and another run continues it") {
   const CliFolder folder;
   const std::string file = folder.file("b.json");

@@ -27,6 +27,7 @@ TEST_CASE("kernels takes a file of one's own, and refuses it at its place") {
   CHECK(made.status == 0);
   CHECK_THAT(made.out, ContainsSubstring("return (x * 2.0f);"));
   CHECK(run_sundog({"kernels", "plain/none.cl"}).status != 0);
+  CHECK(run_sundog({"kernels", (folder / "none.cl").string()}).status == 3);
   CHECK(run_sundog({"kernels", "--lanes", "3"}).status == 2);
 }
 

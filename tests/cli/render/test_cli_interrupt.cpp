@@ -36,7 +36,7 @@ int dark_pixels(const Image& image) {
 }  // namespace
 
 TEST_CASE("an interrupt saves the part that is done, with status 130") {
-  const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP);
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP, SIGXCPU);
   const CliFolder folder;
   CommandOptions options = on_terminal();
   options.signal_at = "Mpixel/s";
@@ -54,11 +54,13 @@ TEST_CASE("an interrupt saves the part that is done, with status 130") {
   CHECK(folder.entries() == 2);
 }
 
-TEST_CASE("a terminal that is closed in the middle of a render costs nothing that is done") {
+TEST_CASE(
+    "a terminal that is closed, or the end of its processor time, costs a render nothing that is done") {
   const CliFolder folder;
   CommandOptions options = on_terminal();
   options.signal_at = "Mpixel/s";
-  options.hang_up = true;  // SIGHUP, twice, and nobody reads any more
+  options.signal = GENERATE(SIGHUP, SIGXCPU);
+  options.hang_up = true;  // twice, and nobody reads any more
   std::vector<std::string> command = long_render(folder, "a.png");
   command.insert(command.end(), {"--resume", folder.file("c")});
   const CommandResult result = run_sundog(command, options);

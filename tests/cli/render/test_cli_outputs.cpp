@@ -138,3 +138,15 @@ TEST_CASE("a SOURCE_DATE_EPOCH that is no time is refused before the render") {
     CHECK_FALSE(fs::exists(folder / "a.png"));
   }
 }
+
+TEST_CASE("a SUNDOG_CHECKPOINT_EVERY that is no number of seconds is refused before the render") {
+  const CliFolder folder;
+  const std::string text = GENERATE("often", "10m", "-1", "nan");
+  CommandOptions options;
+  options.environment = {{"SUNDOG_CHECKPOINT_EVERY", text}};
+  const CommandResult result = run_sundog(
+      {"render", folder.scene, "-o", folder.file("a.png"), "--resume", folder.file("c"), "-q"}, options);
+  CHECK(result.status == 2);
+  CHECK(result.err == "sundog: SUNDOG_CHECKPOINT_EVERY " + text + ": wanted a number from 0 to 1000000000\n");
+  CHECK_FALSE(fs::exists(folder / "a.png"));
+}

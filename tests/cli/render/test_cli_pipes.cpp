@@ -43,6 +43,15 @@ TEST_CASE("-o - writes the file's bytes to the standard output, and nothing else
   CHECK(run_sundog({"render", folder.scene, "-o", "-", "--quiet"}).err.empty());
 }
 
+TEST_CASE("a reader of warnings who has left costs no picture") {
+  const CliFolder folder;
+  folder.write("a.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  run_line(R"(("$0" render "$1" -o "$2" --size 8x8 --samples 1 2>&1 >/dev/null; echo $? >"$3") | :)",
+           {folder.file("a.obj"), folder.file("a.png"), folder.file("status")});
+  CHECK(read_file(folder.file("status")) == "0\n");
+  CHECK(std::filesystem::exists(folder / "a.png"));
+}
+
 TEST_CASE("a JPEG holds the PNG's colours, nearly") {
   const CliFolder folder;
   for (const char* name : {"a.png", "a.jpg", "a.jpeg"})
