@@ -2,7 +2,6 @@
 // that of all balls together, so that one that might have been sent to several counts for each (the balance
 // heuristic of Veach and Guibas 1995 with one sample).
 #include "plain/light/light.cl"
-#include "plain/path/media.cl"
 
 #define NOT_DIMMED (-1)
 #define OFF_LIGHT 0x1p-17f  // how far photons start off a light's surface, of its place's greatest coordinate
@@ -123,7 +122,13 @@ static inline void start_from(UNIFORM const Scene* scene, UNIFORM u32 index, UNI
   start->d = from.d;
   if (!has_place(light)) {
     start->o = place_across(scene, ball, from.d, u->x, u->y);
-    const float3 arriving = from.radiance * absorb(scene->media, 0, INFINITY);  // the world has no end
+    float3 arriving = from.radiance;
+    if (HAS_ABSORPTION) {  // the world's medium has no end
+      const float3 lost = scene->media[0].absorption.xyz;
+      if (lost.x != 0.0f) arriving.x = 0.0f;
+      if (lost.y != 0.0f) arriving.y = 0.0f;
+      if (lost.z != 0.0f) arriving.z = 0.0f;
+    }
     start->flux = arriving / pdf_across(scene, targets, start->o, from.d);
     start->o -= 1.001f * way_to_planes(scene, targets, start->o, from.d) * from.d;
     return;
