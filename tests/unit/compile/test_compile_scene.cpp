@@ -142,9 +142,9 @@ TEST_CASE("a thin wall has an index and no medium, and stops shadow rays where i
     const CompiledScene smooth = compiled(text + "0}"), rough = compiled(text + "0.5}"),
                         blurred = compiled(text + "0.5}", "whitted"), narrow = compiled(text + "0.005}");
     CHECK(smooth.materials[0].flags == (wall | also));
-    CHECK(narrow.materials[0].flags == (wall | also));
-    CHECK(rough.materials[0].flags == (wall | also | frosted));
-    CHECK(blurred.materials[0].flags == (wall | also));
+    CHECK(narrow.materials[0].flags == (wall | also | MATERIAL_ROUGH));
+    CHECK(rough.materials[0].flags == (wall | also | frosted | MATERIAL_ROUGH));
+    CHECK(blurred.materials[0].flags == (wall | also | MATERIAL_ROUGH));
     CHECK(rough.materials[0].transmission.w == 1.4f);
     CHECK(rough.materials[0].kind == MATERIAL_DIELECTRIC);
     CHECK((rough.features.thin_walls && smooth.features.thin_walls && rough.features.rough));
