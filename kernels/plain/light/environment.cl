@@ -3,71 +3,17 @@
 
 // The picture at shares of its width and height, blended between the middles of its pixels and round its
 // seam.
-static float3 environment_at(UNIFORM const Scene* scene, float x, float y) {
-  const int width = (int)scene->environments->width, height = (int)scene->environments->height;
-  const float across = x * (float)width - 0.5f, down = y * (float)height - 0.5f;
-  const float left = floor(across), top = floor(down), a = across - left, b = down - top;
-  const int column = (int)left, row = (int)top, x0 = column < 0 ? column + width : column;
-  const int x1 = x0 + 1 < width ? x0 + 1 : 0, y0 = max(row, 0) * width, y1 = min(row + 1, height - 1) * width;
-  __global const float4* pixels = scene->environment;
-  const float3 first = pixels[y0 + x0].xyz, second = pixels[y1 + x0].xyz;
-  const float3 above = first + a * (pixels[y0 + x1].xyz - first),
-               below = second + a * (pixels[y1 + x1].xyz - second);
-  return above + b * (below - above);
-}
+float3 environment_at(UNIFORM const Scene* scene, float x, float y, HERE);
 
 // A cell with its share of the light, and a place in it; the luminances of the pixels at the corners of cells
-// between pixels: left and right of the top, left and right of the bottom.
-typedef struct ChosenCell {
+// between pixels: left and right of the top, left and right of the bottom. By two numbers in [0, 1).
+typedef struct LANES(ChosenCells) {
   int column, row;
   float share, across, down;
   float corner[4];
 } ChosenCell;
 
-// Of `count` running sums from `first` on, with their words from `words` on: the last step that begins at or
-// before u, one that has light, for u in [0, 1); `place`: where in it u lies. Found between cutpoints (Chen
-// and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
-static inline int choose_step(UNIFORM const Scene* scene, int first, int words, UNIFORM u32 count, float u,
-                              float* share, float* place) {
-  __global const float* sums = scene->environment_shares;
-  const u32 cutpoints = CUTPOINTS_OF(count);
-  const u32 piece = min((u32)(u * (float)cutpoints), cutpoints - 1u);
-  const u32 word = scene->environment_cutpoints[words + (int)piece];
-  int low = (int)(word & ((1u << CUTPOINT_SHIFT) - 1u)), high = (int)(word >> CUTPOINT_SHIFT);
-  while (low < high) {
-    const int middle = (low + high + 1) >> 1;
-    if (sums[first + middle] <= u)
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  const float begin = sums[first + low];
-  *share = sums[first + low + 1] - begin;
-  *place = real_clamp((u - begin) / real_max(*share, 1e-37f), 0.0f, 1.0f);
-  return low;
-}
-
-static ChosenCell choose_cell(UNIFORM const Scene* scene, float u_x, float u_y) {
-  __global const Environment* e = scene->environments;
-  const int rows = (int)e->rows, columns = (int)e->columns;
-  ChosenCell cell;
-  float in_row;
-  cell.row = choose_step(scene, rows + 1, 0, e->rows, u_y, &cell.share, &cell.down);
-  cell.column = choose_step(scene, cell.row * (columns + 1) + 2 * (rows + 1),
-                            cell.row * (int)CUTPOINTS_OF(e->columns) + (int)CUTPOINTS_OF(e->rows), e->columns,
-                            u_x, &in_row, &cell.across);
-  cell.share *= in_row;
-  for (u32 i = 0; i < 4u; ++i) cell.corner[i] = 0.0f;
-  if (e->up.w == CELLS_BETWEEN_PIXELS) {
-    const int width = (int)e->width, left = (cell.column != 0 ? cell.column : width) - 1;
-    const int above = (max(cell.row, 1) - 1) * width, below = min(cell.row, (int)e->height - 1) * width;
-    cell.corner[0] = scene->environment[above + left].w;
-    cell.corner[1] = scene->environment[above + cell.column].w;
-    cell.corner[2] = scene->environment[below + left].w;
-    cell.corner[3] = scene->environment[below + cell.column].w;
-  }
-  return cell;
-}
+void choose_cells(UNIFORM const Scene* scene, float u_x, float u_y, HERE, ChosenCell* cell);
 
 // Where a direction lies in the picture: shares of its width and, from the top, of its height.
 static inline void environment_place(UNIFORM __global const Environment* e, float3 d, float* x, float* y) {
@@ -137,7 +83,8 @@ ENTRY static inline float3 environment_along(UNIFORM const Scene* scene, float3 
 // there.
 ENTRY static inline LightSample sample_environment(UNIFORM const Scene* scene, float u_x, float u_y) {
   __global const Environment* e = scene->environments;
-  ChosenCell cell = choose_cell(scene, u_x, u_y);
+  ChosenCell cell;
+  choose_cells(scene, u_x, u_y, &cell);
   LightSample sample;
   sample.pdf = 0.0f;
   float x, y, up, side, sine, cosine;
