@@ -58,14 +58,15 @@ class Expander {
 
  private:
   void expand(const std::string& path) {
+    const auto is_wanted = [this](const std::string& name) { return !is_seen(name) && see(name); };
     const std::string text =
-        in_lanes_ && spmd::is_plain(path) ? spmd::in_lanes(path, read(), true) : file_text(path);
+        in_lanes_ && spmd::is_plain(path) ? spmd::in_lanes(path, read(), true, is_wanted) : file_text(path);
     open_.push_back(path);
     out += fmt::format("#ifndef {0}\n#define {0}\n#line 1 \"{1}\"\n", guard_name(path), path);
     expand_lines(path, text);
     out += "#endif\n";
     open_.pop_back();
-    seen_.back().insert(path);
+    see(path);
   }
 
   spmd::ReadFile read() const {
@@ -103,9 +104,10 @@ class Expander {
     if (begins || turns) seen_.emplace_back();
   }
 
-  bool is_seen(const std::string& path) const {
-    return std::ranges::any_of(seen_, [&](const auto& branch) { return branch.contains(path); });
+  bool is_seen(const std::string& what) const {
+    return std::ranges::any_of(seen_, [&](const auto& branch) { return branch.contains(what); });
   }
+  bool see(const std::string& what) { return seen_.back().insert(what).second; }
 
   void include(const std::string& target, const std::string& place) {
     if (std::find(open_.begin(), open_.end(), target) != open_.end())
@@ -121,7 +123,7 @@ class Expander {
   const std::filesystem::path& folder_;
   bool in_lanes_;                               // plain files become lanes
   std::vector<std::string> open_;               // files being expanded, outermost first
-  std::vector<std::set<std::string>> seen_{1};  // files seen in each open #if branch
+  std::vector<std::set<std::string>> seen_{1};  // files and names of lanes seen in each open #if branch
 };
 
 }  // namespace

@@ -60,11 +60,12 @@ class Text {
 
 bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
-std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) {
+std::string in_lanes(const std::string& path, const ReadFile& read, bool lines, const IsWanted& is_wanted) {
   Made made(path, read);
   Text out(lines, fmt::format("// Made of {} in lanes.\n", path));
   // Writing may ask for structures alone: what is called is known.
-  const std::vector<Specialisation*> all = made.specialisations.done();
+  std::vector<Specialisation*> all = made.specialisations.done();
+  std::erase_if(all, [&](const Specialisation* s) { return !is_wanted(s->name); });
   if (all.empty()) return out.text;
   std::vector<std::vector<Line>> functions;
   Writer::Structures used;
@@ -78,9 +79,10 @@ std::string in_lanes(const std::string& path, const ReadFile& read, bool lines) 
   used.insert(writer.structures().begin(), writer.structures().end());
   for (const Structure& s : made.program.structures) {
     const bool plain = used.contains({&s, false}), in_lanes = used.contains({&s, true});
-    if (plain) out.add_once(s.name, "", writer.structure(s, false));
-    if (in_lanes) out.add_once(s.lanes, "", writer.structure(s, true));
-    if (plain && in_lanes) out.add_once("all_" + s.name, "", writer.spread_structure(s));
+    const std::string spread = "all_" + s.name;
+    if (plain && is_wanted(s.name)) out.add_once(s.name, "", writer.structure(s, false));
+    if (in_lanes && is_wanted(s.lanes)) out.add_once(s.lanes, "", writer.structure(s, true));
+    if (plain && in_lanes && is_wanted(spread)) out.add_once(spread, "", writer.spread_structure(s));
   }
   for (std::size_t i = 0; i < all.size(); ++i)
     out.add_once(all[i]->name, all[i]->function.feature, functions[i]);

@@ -4,6 +4,7 @@
 // A SPMD Compiler for High-Performance CPU Programming", 2012, and R. Karrenberg and S. Hack, "Whole-Function
 // Vectorization", 2011).
 #pragma once
+#include <functional>
 #include <string>
 
 #include "lanes/preprocess.h"
@@ -13,9 +14,14 @@ namespace sundog::spmd {
 /// Whether a kernel file is plain, i.e. below plain/.
 bool is_plain(const std::string& path);
 
-/// The plain file `path` in lanes: its structures and ENTRY functions, with their callees. `lines`: #line
-/// directives name the plain file. Throws BuildError "file:line:column: what".
-std::string in_lanes(const std::string& path, const ReadFile& read, bool lines);
+/// Whether a program still lacks the function or structure of lanes of this name.
+using IsWanted = std::function<bool(const std::string& name)>;
+
+/// The plain file `path` in lanes: its structures and ENTRY functions, with their callees, as far as they are
+/// wanted. `lines`: #line directives name the plain file. Throws BuildError "file:line:column: what".
+std::string in_lanes(
+    const std::string& path, const ReadFile& read, bool lines,
+    const IsWanted& is_wanted = [](const std::string&) { return true; });
 
 /// The revision of this folder's sources: equal revisions generate equal text from equal files.
 const char* revision();

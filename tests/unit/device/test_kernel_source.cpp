@@ -1,4 +1,6 @@
 // Kernel files become one text: includes once each, lines named.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/file.h"
@@ -30,6 +32,22 @@ TEST_CASE("a program is known by its plain text, without a translation") {
   CHECK(before != KernelText{"main.cl", {{"LANES", "4"}}, files}.identity());
   files["plain/one.cl"] += "// changed\n";
   CHECK(before != identity());
+}
+
+TEST_CASE(
+    "what several plain files use is in a program once, and again behind an #if that may leave it out") {
+  const std::string use =
+      "#include \"plain/half.h\"\nENTRY static float {}(float x) {{ return half_of(x); }}\n";
+  GeneratedFiles files = {{"plain/half.h", "static float half_of(float x) { return 0.5f * x; }\n"},
+                          {"plain/one.cl", fmt::format(fmt::runtime(use), "one_of")},
+                          {"plain/two.cl", fmt::format(fmt::runtime(use), "two_of")},
+                          {"main.cl", "#include \"plain/one.cl\"\n#include \"plain/two.cl\"\n"}};
+  const auto halves = [&] {
+    return occurrences(KernelText{"main.cl", {}, files}.expanded(), "#define MADE_half_of\n");
+  };
+  CHECK(halves() == 1);
+  files["main.cl"] = "#if X\n#include \"plain/one.cl\"\n#endif\n#include \"plain/two.cl\"\n";
+  CHECK(halves() == 2);
 }
 
 TEST_CASE("the embedded kernels are the files of kernels/, byte for byte") {
