@@ -12,17 +12,33 @@
 namespace sundog {
 namespace {
 
+bool shines(const EnvironmentDescription& environment) {
+  return environment.type != EnvironmentType::none && environment.intensity > 0 &&
+         environment.color != dvec3(0);
+}
+bool shines(const LightDescription& light) { return light.intensity > 0 && light.color != dvec3(0); }
+bool glows(const MaterialDescription& material) {
+  return material.emission != dvec3(0) || (material.by_paths && material.by_paths->emission != dvec3(0));
+}
+
 bool shines_from_afar(const SceneDescription& scene) {
-  const bool sky = scene.environment.type != EnvironmentType::none && scene.environment.intensity > 0 &&
-                   scene.environment.color != dvec3(0);
-  return sky || std::ranges::any_of(scene.lights, [](const LightDescription& light) {
-           return light.type == LightType::directional && light.intensity > 0 && light.color != dvec3(0);
+  return shines(scene.environment) || std::ranges::any_of(scene.lights, [](const LightDescription& light) {
+           return light.type == LightType::directional && shines(light);
          });
 }
 
 std::array<double, 3> numbers(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
+
+bool has_light(const SceneDescription& scene) {
+  return shines(scene.environment) ||
+         std::ranges::any_of(scene.lights, [](const LightDescription& light) { return shines(light); }) ||
+         std::ranges::any_of(scene.materials, glows) ||
+         std::ranges::any_of(scene.fields, [](const SdfDescription& f) { return f.glow != dvec3(0); }) ||
+         scene.image.background_bottom != dvec3(0) || scene.image.background_top != dvec3(0) ||
+         (scene.fog.density > 0 && scene.fog.color != dvec3(0));
+}
 
 void warn_of_dark_world(SceneDescription& scene) {
   const MediumDescription& world = scene.media[0];

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -61,16 +63,19 @@ std::string frames_text(std::vector<int> frames) {
 
 std::string frame_file(const std::string& out, int frame) {
   const fs::path path = out;
-  std::string name = path.filename().string();
-  const std::size_t first = name.find('#');
-  if (first == std::string::npos) {
+  const std::string name = path.filename().string();
+  static const std::regex place("#+|%0?([0-9]{0,2})d");
+  std::smatch found;
+  if (!std::regex_search(name, found, place)) {
     const std::string numbered =
         fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string());
     return (path.parent_path() / numbered).string();
   }
-  const std::size_t last = std::min(name.find_first_not_of('#', first), name.size());
-  name.replace(first, last - first, fmt::format("{:0{}}", frame, last - first));
-  return (path.parent_path() / name).string();
+  const bool counted = found.str()[0] == '#';
+  const int width = counted ? static_cast<int>(found.length()) : std::max(std::atoi(found.str(1).c_str()), 1);
+  const std::string numbered =
+      fmt::format("{}{:0{}}{}", found.prefix().str(), frame, width, found.suffix().str());
+  return (path.parent_path() / numbered).string();
 }
 
 }  // namespace sundog

@@ -12,7 +12,8 @@ std::vector<int> parse_frames(const std::string& text, int step);
 /// "3, 7..9": the frames by rising number.
 std::string frames_text(std::vector<int> frames);
 
-/// "out.png" -> "out_0007.png"; a run of # in the name takes the number instead: "f##.png" -> "f07.png".
+/// "out.png" -> "out_0007.png"; a run of # in the name, or %02d, takes the number instead: "f##.png" ->
+/// "f07.png".
 std::string frame_file(const std::string& out, int frame);
 
 }  // namespace sundog

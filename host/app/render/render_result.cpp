@@ -26,6 +26,7 @@
 #include "render/film/motion.h"
 #include "render/film/part.h"
 #include "render/film/sampling_report.h"
+#include "scene/dark_world.h"
 #include "scene/shot.h"
 
 namespace sundog {
@@ -193,6 +194,9 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
 
 std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result) {
   std::vector<std::string> all = losses(result.counts, scene);
+  if (!has_light(scene))
+    all.push_back("the picture is black, for nothing in the scene shines: give it lights, an environment or a "
+                  "background");
   for (const DeviceReport& report : result.devices)
     for (std::string& text : failures_text(report)) all.push_back(std::move(text));
   if (const std::string& left = result.checkpoint_left; !left.empty())

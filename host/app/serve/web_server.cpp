@@ -35,7 +35,9 @@ WebServer::WebServer(int port, const WebLimits& limits) : state_(std::make_uniqu
   state_->acceptor.set_option(tcp::acceptor::reuse_address(true));
   std::ignore = state_->acceptor.bind(place, error);
   if (!error) std::ignore = state_->acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) throw IoError(fmt::format("serve: --port {}: cannot listen there: {}", port, error.message()));
+  if (error)
+    throw IoError(fmt::format("serve: --port {}: cannot listen there: {}; without --port, a free one is taken",
+                              port, error.message()));
 }
 
 WebServer::~WebServer() = default;

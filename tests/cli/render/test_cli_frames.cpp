@@ -43,6 +43,8 @@ TEST_CASE("each frame of an animation is the scene with that frame's values, in 
   REQUIRE(still.status == 0);
   CHECK(read_file(folder / "f00001.pfm") == read_file(folder / "still.pfm"));
   CHECK(read_file(folder / "f00002.pfm") != read_file(folder / "still.pfm"));
+  REQUIRE(render_frames(folder, "f%03d.pfm", "2", {}).status == 0);
+  CHECK(read_file(folder / "f002.pfm") == read_file(folder / "f00002.pfm"));
   const json first = json::parse(read_file(folder / "s_0001.json")),
              second = json::parse(read_file(folder / "s_0002.json"));
   CHECK(first["image"]["file"] == folder.file("f00001.pfm"));

@@ -49,6 +49,18 @@ TEST_CASE("--quiet says nothing") {
   CHECK(result.err.empty());
 }
 
+TEST_CASE("a picture that is black for want of light says so") {
+  const CliFolder folder;
+  const auto warned = [&](const std::string& background) {
+    const CommandResult result = run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--set",
+                                             "/lights=[]", "--set", "/image/background=" + background});
+    CHECK(result.status == 0);
+    return result.err.find("nothing in the scene shines") != std::string::npos;
+  };
+  CHECK(warned("[0,0,0]"));
+  CHECK_FALSE(warned("[0,0,0.1]"));
+}
+
 TEST_CASE("an image from a folder with spaces, with relative names") {
   const CliFolder folder;
   std::filesystem::create_directory(folder / "a folder");
