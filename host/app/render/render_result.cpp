@@ -195,8 +195,9 @@ void tell_kept(const RenderResult& result, const std::string& checkpoint) {
 std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result) {
   std::vector<std::string> all = losses(result.counts, scene);
   if (!has_light(scene))
-    all.push_back("the picture is black, for nothing in the scene shines: give it lights, an environment or a "
-                  "background");
+    all.push_back(
+        "the picture is black, for nothing in the scene shines: give it lights, an environment or a "
+        "background");
   for (const DeviceReport& report : result.devices)
     for (std::string& text : failures_text(report)) all.push_back(std::move(text));
   if (const std::string& left = result.checkpoint_left; !left.empty())

@@ -36,8 +36,9 @@ WebServer::WebServer(int port, const WebLimits& limits) : state_(std::make_uniqu
   std::ignore = state_->acceptor.bind(place, error);
   if (!error) std::ignore = state_->acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error)
-    throw IoError(fmt::format("serve: --port {}: cannot listen there: {}; without --port, a free one is taken",
-                              port, error.message()));
+    throw IoError(
+        fmt::format("serve: --port {}: cannot listen there: {}; without --port, a free one is taken", port,
+                    error.message()));
 }
 
 WebServer::~WebServer() = default;

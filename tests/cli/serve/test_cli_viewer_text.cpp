@@ -141,9 +141,10 @@ TEST_CASE(
   v.browser.type("length(p) - sise", 0);
   v.wait("return store.drafts.error('/objects/0/distance') !== null");
   CHECK(shown_text() == "// a ball\n\nlength(p) - sise");
-  CHECK(v.run("return "
-              "document.querySelector('[data-code=Distance]').shadowRoot.querySelector('.cm-lintRange-error')"
-              "?.textContent") == "sise");
+  v.wait(
+      "return "
+      "document.querySelector('[data-code=Distance]').shadowRoot.querySelector('.cm-lintRange-error')"
+      "?.textContent === 'sise'");
   select_whole_text();
   v.browser.type(first_formula, 0);
   wait_for_formula(first_formula);
