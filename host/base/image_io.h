@@ -40,6 +40,10 @@ struct FileOptions {
 void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                  const FileOptions& options = {});
 
+/// OpenEXR's threads of this process become so many, or as many as there may be: they compress what is
+/// written. Libraries leave their number to the program.
+void share_exr_work(unsigned threads);
+
 /// The bytes that `write_image` writes.
 std::string encode_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                          const FileOptions& options = {});

@@ -12,6 +12,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
 #include <algorithm>
 #include <cmath>
@@ -248,40 +249,63 @@ void add_shot(Imf::Header& header, const Shot& shot) {
   if (shot.exposure_seconds > 0) Imf::addExpTime(header, static_cast<float>(shot.exposure_seconds));
 }
 
-/// The colours of an image on their way into a file, a row at a time.
-class ColorRows {
+/// The channels of an image on their way into a file, some rows at a time.
+class ChannelRows {
  public:
-  ColorRows(const Image& image, ExrColor color, const std::optional<glm::dmat3>& matrix)
-      : image_(image), matrix_(matrix), row_(image.width, 1, image.channels) {
-    if (color == ExrColor::half) halves_.resize(row_.data.size());
+  ChannelRows(const Image& image, ExrColor color, const std::optional<glm::dmat3>& matrix, Suffixes names,
+              int most_rows)
+      : image_(image),
+        matrix_(matrix),
+        names_(std::move(names)),
+        rows_(image.width, most_rows, image.channels) {
+    if (color == ExrColor::half) halves_.resize(rows_.data.size());
   }
 
-  void add_to(Imf::Header& header, Imf::FrameBuffer& buffer, const Suffixes& names) {
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      header.channels().insert(names[c], Imf::Channel(halves_.empty() ? Imf::FLOAT : Imf::HALF));
-      if (halves_.empty())
-        add_slice(buffer, names[c], row_.data.data() + c, row_);
-      else
-        add_slice(buffer, names[c], halves_.data() + c, row_);
-      buffer.findSlice(names[c])->yStride = 0;
-    }
+  void declare_in(Imf::Header& header) const {
+    for (const std::string& name : names_)
+      header.channels().insert(name, Imf::Channel(halves_.empty() ? Imf::FLOAT : Imf::HALF));
   }
 
-  void take(int y) {
-    std::copy_n(image_.pixel(0, y), row_.data.size(), row_.data.begin());
-    if (matrix_) convert(row_, *matrix_);
+  /// Adds `count` rows from y on, whose first pixel the file has at `corner`.
+  void add_to(Imf::FrameBuffer& buffer, int y, int count, Imath::V2i corner) {
+    const std::size_t values =
+        static_cast<std::size_t>(count) * static_cast<std::size_t>(image_.width * image_.channels);
+    std::copy_n(image_.pixel(0, y), values, rows_.data.begin());
+    if (matrix_) convert(rows_, *matrix_);
     if (!halves_.empty())
-      std::ranges::transform(row_.data, halves_.begin(), [](float v) { return half(clamped_to_half(v)); });
+      std::transform(rows_.data.begin(), rows_.data.begin() + static_cast<std::ptrdiff_t>(values),
+                     halves_.begin(), [](float v) { return half(clamped_to_half(v)); });
+    for (std::size_t c = 0; c < names_.size(); ++c) {
+      if (halves_.empty())
+        add_slice(buffer, names_[c], rows_.data.data() + c, rows_);
+      else
+        add_slice(buffer, names_[c], halves_.data() + c, rows_);
+      Imf::Slice& slice = *buffer.findSlice(names_[c]);
+      slice.base -= static_cast<std::ptrdiff_t>(slice.xStride) * corner.x +
+                    static_cast<std::ptrdiff_t>(slice.yStride) * corner.y;
+    }
   }
 
  private:
   const Image& image_;
   std::optional<glm::dmat3> matrix_;
-  Image row_;
+  Suffixes names_;
+  Image rows_;
   std::vector<half> halves_;
 };
 
+/// The rows that a file compresses together, for each of OpenEXR's threads.
+int rows_at_once() { return 16 * std::max(Imf::globalThreadCount(), 1); }
+
 }  // namespace
+
+void share_exr_work(unsigned threads) {
+  try {
+    Imf::setGlobalThreadCount(static_cast<int>(threads));
+  } catch (const std::exception&) {
+    // The threads that there are do the work.
+  }
+}
 
 std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options) {
   const bool acescg = options.space == ExrSpace::acescg;
@@ -301,28 +325,29 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
     header.insert(name, Imf::StringAttribute(text));
     text_bytes += name.size() + text.size() + 32;
   }
-  Imf::FrameBuffer buffer;
-  std::vector<ColorRows> rows = {{image, options.color, matrix}};
-  rows.reserve(1 + aovs.size());
+  const int most = std::min(rows_at_once(), image.height);
   const Suffixes names = {"R", "G", "B", "A"};
-  rows[0].add_to(header, buffer, {names.begin(), names.begin() + image.channels});
+  std::vector<ChannelRows> all;
+  all.emplace_back(image, options.color, matrix, Suffixes(names.begin(), names.begin() + image.channels),
+                   most);
   for (const auto& [aov, layer] : aovs) {
     Suffixes suffixes = channel_suffixes(aov, layer.channels);
     for (std::string& suffix : suffixes) suffix.insert(0, aov + ".");
     const bool colors = aov == "albedo" || aov == "denoise_albedo" || is_light_part(aov);
-    rows.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt).add_to(header, buffer, suffixes);
+    all.emplace_back(layer, ExrColor::full, colors ? matrix : std::nullopt, std::move(suffixes), most);
   }
-  for (auto slice = buffer.begin(); slice != buffer.end(); ++slice)
-    slice.slice().base -= static_cast<std::ptrdiff_t>(slice.slice().xStride) * region.x;
+  for (const ChannelRows& channels : all) channels.declare_in(header);
   std::string bytes;
   bytes.reserve(greatest_size(header) + text_bytes);  // a growing string would need twice the memory
   MemoryOut out(bytes);
   {
     Imf::OutputFile file(out, header);
-    file.setFrameBuffer(buffer);
-    for (int y = 0; y < image.height; ++y) {
-      for (ColorRows& row : rows) row.take(y);
-      file.writePixels(1);
+    for (int y = 0, count; y < image.height; y += count) {
+      count = std::min(most, image.height - y);
+      Imf::FrameBuffer buffer;
+      for (ChannelRows& channels : all) channels.add_to(buffer, y, count, corner + Imath::V2i(0, y));
+      file.setFrameBuffer(buffer);
+      file.writePixels(count);
     }
   }
   return bytes;

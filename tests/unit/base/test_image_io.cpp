@@ -210,6 +210,20 @@ TEST_CASE("AOVs come back from an EXR to the bit, beside the colour") {
   }
 }
 
+TEST_CASE("threads that share an EXR's work write its bytes") {
+  const Image image = ramp(31, 150, 4);
+  const AovImages aovs = {{"normal", ramp(31, 150, 3)}, {"albedo", ramp(31, 150, 3)}};
+  const auto bytes = [&](unsigned threads) {
+    share_exr_work(threads);
+    const Region part{5, 40, 100, 300};
+    return encode_image(image, "a.exr", aovs, {.space = ExrSpace::acescg, .region = part}) +
+           encode_image(image, "a.exr", aovs, {.color = ExrColor::full});
+  };
+  const std::string alone = bytes(0);
+  CHECK(bytes(3) == alone);
+  CHECK(bytes(0) == alone);
+}
+
 TEST_CASE("only EXR takes AOVs, and only known extensions are written") {
   CHECK_NOTHROW(check_image_path("a.exr", true));
   CHECK_NOTHROW(check_image_path("A.PNG", false));
