@@ -267,7 +267,7 @@ class ChannelRows {
   }
 
   /// Adds `count` rows from y on, whose first pixel the file has at `corner`.
-  void add_to(Imf::FrameBuffer& buffer, int y, int count, Imath::V2i corner) {
+  void add_to(Imf::FrameBuffer& buffer, int y, int count, const Imath::V2i& corner) {
     const std::size_t values =
         static_cast<std::size_t>(count) * static_cast<std::size_t>(image_.width * image_.channels);
     std::copy_n(image_.pixel(0, y), values, rows_.data.begin());

@@ -1,6 +1,7 @@
 // What is read from the environment's tables, at a place a lane (plain/light/environment.cl). By hand: in
-// gathers, what one place needs from memory would come no sooner than what the slowest needs (README.md).
+// gathers, what one place needs from memory would come no sooner than what the slowest needs.
 #pragma once
+#include "lib/core/lanes.h"
 #include "lib/core/tables.h"
 
 NEVER_INLINE REAL3 environment_at(const Scene* scene, REAL x, REAL y, MASK lanes) {
@@ -70,8 +71,9 @@ NEVER_INLINE void choose_cells(const Scene* scene, REAL u_x, REAL u_y, MASK lane
   __global const Environment* e = scene->environments;
   const RunningSums rows = {e->rows + 1u, 0u, e->rows};
   const bool blended = e->up.w == CELLS_BETWEEN_PIXELS;
-  const ChosenCells none = {NO_LANES};
-  *cells = none;
+  cells->column = cells->row = NO_LANES;
+  cells->share = cells->across = cells->down = (REAL)(0.0f);
+  for (u32 i = 0; i < 4u; ++i) cells->corner[i] = (REAL)(0.0f);
   EACH_LANE(i, lanes) {
     float share, down;
     const u32 row = choose_step(scene, rows, REAL_LANE(u_y, i), &share, &down);

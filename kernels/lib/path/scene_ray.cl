@@ -1,7 +1,6 @@
 // Rays on their way through the scene, a ray a lane (plain/path/scene_ray.cl), and their media.
 #pragma once
 #include "lib/core/tables.h"
-#include "lib/path/environment_cells.cl"
 #include "lib/trace/hits.cl"
 
 // Growth of a pixel's footprint per unit of a ray's distance.

@@ -1,6 +1,7 @@
 // Hand-written code that the plain path tracer calls (plain/pathtracer/interface.h).
 #pragma once
 #include "lib/core/sampler_lanes.cl"
+#include "lib/path/environment_cells.cl"
 #include "lib/path/ray_counts.cl"
 #include "lib/pathtracer/photon_search.cl"
 #include "lib/shade/bsdf.cl"

@@ -1,6 +1,7 @@
 // What plain/whitted leaves in the tile: rays that wait, and what pixels show less of; and the shadow rays
 // that surfaces send.
 #pragma once
+#include "lib/path/environment_cells.cl"
 #include "lib/path/mattes.cl"
 #include "lib/path/path_samples.cl"
 #include "lib/path/ray_counts.cl"

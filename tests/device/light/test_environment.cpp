@@ -34,6 +34,7 @@ EnvironmentDescription picture(int width, int height, float all, int x = 0, int 
 // of as many samples (the density reported, that of the direction; radiance by density).
 const char* const draw_kernel = R"(
 #include "lib/core/sampler_lanes.cl"
+#include "lib/path/environment_cells.cl"
 #include "lib/path/scene_ray.cl"
 #include "plain/light/environment.cl"
 __kernel void draw(__global const Environment* environments, __global const float4* pixels,
