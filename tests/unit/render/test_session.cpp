@@ -152,13 +152,14 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
   made[2]->pause_us = 2000;
   RenderSession session(given(made));
   std::atomic<bool> over{false};
+  std::atomic<int> wrong_pictures{0}, wrong_picks{0};  // Catch takes assertions of one thread alone
   const auto look = [&] {
     std::uint64_t revision = 0;
     while (!over) {
       const Snapshot snapshot = session.snapshot();
       revision = snapshot.revision;
       if (snapshot.picture && snapshot.samples > 0)
-        REQUIRE(snapshot.picture->data.size() == std::size_t{4} * width * height);
+        wrong_pictures += snapshot.picture->data.size() != std::size_t{4} * width * height;
       session.wait_for_change(revision, 0.01);
     }
   };
@@ -166,10 +167,8 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
     std::mt19937 random(3);
     while (!over) {
       const auto x = static_cast<int>(random() % width), y = static_cast<int>(random() % height);
-      if (const std::optional<Picked> picked = session.pick(x, y)) {
-        CHECK(picked->normal.x == x);
-        CHECK(picked->normal.y == y);
-      }
+      if (const std::optional<Picked> picked = session.pick(x, y))
+        wrong_picks += picked->normal.x != x || picked->normal.y != y;
       std::this_thread::yield();
     }
   };
@@ -188,6 +187,8 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
   check_shows(session.snapshot(), 7777);
   over = true;
   for (std::thread& thread : threads) thread.join();
+  CHECK(wrong_pictures == 0);
+  CHECK(wrong_picks == 0);
 }
 
 TEST_CASE("scenes that follow each other fast are seen all the same") {
