@@ -95,9 +95,11 @@ void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* 
                 Imf::Slice(type, base, pixel, pixel * static_cast<std::size_t>(shape.width), 1, 1, fill));
 }
 
-/// A half overflows to infinity above 65504.
-float clamped_to_half(float value) {
-  return value > greatest_half ? greatest_half : value < -greatest_half ? -greatest_half : value;
+/// What the slices hold begins at `corner` of the file: the library counts from its pixel (0, 0).
+void begin_at(Imf::FrameBuffer& buffer, const Imath::V2i& corner) {
+  for (auto at = buffer.begin(); at != buffer.end(); ++at)
+    at.slice().base -= static_cast<std::ptrdiff_t>(at.slice().xStride) * corner.x +
+                       static_cast<std::ptrdiff_t>(at.slice().yStride) * corner.y;
 }
 
 Imf::Chromaticities chromaticities(const Primaries& p) {
@@ -180,7 +182,7 @@ class Reader {
         throw std::runtime_error("EXR channel " + names[c] + " is subsampled, which is not supported");
       add_slice(buffer, names[c], image.data.data() + c, image, fill[c]);
     }
-    shift(buffer, image.channels);
+    begin_at(buffer, origin_);
     file_.setFrameBuffer(buffer);
     file_.readPixels(origin_.y, origin_.y + height_ - 1);
     if (shown_ == file_.header().dataWindow()) return image;
@@ -204,13 +206,6 @@ class Reader {
                   image.data.begin() + at(shown_.min, image.width));
     }
     return image;
-  }
-
-  /// The library addresses pixels relative to the data window; shifts the base to pixel (0, 0).
-  void shift(Imf::FrameBuffer& buffer, int channels) const {
-    const std::ptrdiff_t pixels = std::ptrdiff_t{origin_.y} * width_ + origin_.x;
-    for (auto slice = buffer.begin(); slice != buffer.end(); ++slice)
-      slice.slice().base -= pixels * channels * static_cast<std::ptrdiff_t>(sizeof(float));
   }
 
   MemoryIn stream_;
@@ -266,24 +261,18 @@ class ChannelRows {
       header.channels().insert(name, Imf::Channel(halves_.empty() ? Imf::FLOAT : Imf::HALF));
   }
 
-  /// Adds `count` rows from y on, whose first pixel the file has at `corner`.
-  void add_to(Imf::FrameBuffer& buffer, int y, int count, const Imath::V2i& corner) {
-    const std::size_t values =
-        static_cast<std::size_t>(count) * static_cast<std::size_t>(image_.width * image_.channels);
+  /// Adds `count` rows from y on.
+  void add_to(Imf::FrameBuffer& buffer, int y, int count) {
+    const std::ptrdiff_t values = std::ptrdiff_t{count} * image_.width * image_.channels;
     std::copy_n(image_.pixel(0, y), values, rows_.data.begin());
     if (matrix_) convert(rows_, *matrix_);
-    if (!halves_.empty())
-      std::transform(rows_.data.begin(), rows_.data.begin() + static_cast<std::ptrdiff_t>(values),
-                     halves_.begin(), [](float v) { return half(clamped_to_half(v)); });
-    for (std::size_t c = 0; c < names_.size(); ++c) {
+    std::transform(rows_.data.begin(), rows_.data.begin() + (halves_.empty() ? 0 : values), halves_.begin(),
+                   [](float v) { return half(std::clamp(v, -greatest_half, greatest_half)); });
+    for (std::size_t c = 0; c < names_.size(); ++c)
       if (halves_.empty())
         add_slice(buffer, names_[c], rows_.data.data() + c, rows_);
       else
         add_slice(buffer, names_[c], halves_.data() + c, rows_);
-      Imf::Slice& slice = *buffer.findSlice(names_[c]);
-      slice.base -= static_cast<std::ptrdiff_t>(slice.xStride) * corner.x +
-                    static_cast<std::ptrdiff_t>(slice.yStride) * corner.y;
-    }
   }
 
  private:
@@ -294,8 +283,15 @@ class ChannelRows {
   std::vector<half> halves_;
 };
 
-/// The rows that a file compresses together, for each of OpenEXR's threads.
-int rows_at_once() { return 16 * std::max(Imf::globalThreadCount(), 1); }
+constexpr int rows_of_block = 16;  // that a file compresses together
+
+/// How many blocks of rows are compressed at once: one a thread, as far as copies of them are small.
+int blocks_at_once(const Image& image, const AovImages& aovs) {
+  std::size_t bytes = image.data.size() * sizeof(float);
+  for (const auto& [name, layer] : aovs) bytes += layer.data.size() * sizeof(float);
+  const std::size_t block = rows_of_block * bytes / static_cast<std::size_t>(image.height) + 1;
+  return std::clamp(static_cast<int>((64u << 20) / block), 1, std::max(Imf::globalThreadCount(), 1));
+}
 
 }  // namespace
 
@@ -325,7 +321,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
     header.insert(name, Imf::StringAttribute(text));
     text_bytes += name.size() + text.size() + 32;
   }
-  const int most = std::min(rows_at_once(), image.height);
+  const int blocks = blocks_at_once(image, aovs), most = std::min(rows_of_block * blocks, image.height);
   const Suffixes names = {"R", "G", "B", "A"};
   std::vector<ChannelRows> all;
   all.emplace_back(image, options.color, matrix, Suffixes(names.begin(), names.begin() + image.channels),
@@ -341,11 +337,12 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   bytes.reserve(greatest_size(header) + text_bytes);  // a growing string would need twice the memory
   MemoryOut out(bytes);
   {
-    Imf::OutputFile file(out, header);
+    Imf::OutputFile file(out, header, blocks);
     for (int y = 0, count; y < image.height; y += count) {
       count = std::min(most, image.height - y);
       Imf::FrameBuffer buffer;
-      for (ChannelRows& channels : all) channels.add_to(buffer, y, count, corner + Imath::V2i(0, y));
+      for (ChannelRows& channels : all) channels.add_to(buffer, y, count);
+      begin_at(buffer, corner + Imath::V2i(0, y));
       file.setFrameBuffer(buffer);
       file.writePixels(count);
     }
