@@ -1,5 +1,5 @@
-// What is read from the environment's tables, at a place a lane (plain/light/environment.cl). By hand: in
-// gathers, what one place needs from memory would come no sooner than what the slowest needs.
+// What is read from the environment's tables, at a place a lane (plain/light/environment.cl). By hand, since
+// the gathers of plain text are slower.
 #pragma once
 #include "lib/core/lanes.h"
 #include "lib/core/tables.h"

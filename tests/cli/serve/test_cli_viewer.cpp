@@ -194,9 +194,10 @@ TEST_CASE("a wrong formula is marked at its place, and the picture stays; a righ
   CHECK(v.run("return document.querySelector('#panel .error[role=alert] "
               "pre')?.textContent.split('\\n')[1].indexOf('^')")
             .get<int>() == 12);
-  CHECK(v.run("return "
-              "document.querySelector('[data-code=Distance]').shadowRoot.querySelector('.cm-lintRange-error')"
-              "?.textContent") == "sise");
+  v.wait(
+      "return "
+      "document.querySelector('[data-code=Distance]').shadowRoot.querySelector('.cm-lintRange-error')"
+      "?.textContent === 'sise'");
   CHECK(v.picture() == before);
   changes_picture([&] { v.type("Distance", "max(abs(p.x), max(abs(p.y), abs(p.z))) - size"); });
 }
