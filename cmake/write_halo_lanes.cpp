@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
   std::ofstream out(argv[2]);
-  out << sundog::spmd::in_lanes("plain/halo/trace.cl", read, false);
+  out << sundog::spmd::Lanes(read).text("plain/halo/trace.cl", false);
   return out.flush() ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

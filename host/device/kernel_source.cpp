@@ -60,7 +60,7 @@ class Expander {
   void expand(const std::string& path) {
     const auto is_wanted = [this](const std::string& name) { return !is_seen(name) && see(name); };
     const std::string text =
-        in_lanes_ && spmd::is_plain(path) ? spmd::in_lanes(path, read(), true, is_wanted) : file_text(path);
+        in_lanes_ && spmd::is_plain(path) ? lanes_.text(path, true, is_wanted) : file_text(path);
     open_.push_back(path);
     out += fmt::format("#ifndef {0}\n#define {0}\n#line 1 \"{1}\"\n", guard_name(path), path);
     expand_lines(path, text);
@@ -69,9 +69,6 @@ class Expander {
     see(path);
   }
 
-  spmd::ReadFile read() const {
-    return [this](const std::string& path) { return file_text(path); };
-  }
   std::string file_text(const std::string& path) const {
     if (const auto found = generated_.find(path); found != generated_.end()) return found->second;
     return embedded_kernel(path, folder_);
@@ -121,7 +118,8 @@ class Expander {
 
   const GeneratedFiles& generated_;
   const std::filesystem::path& folder_;
-  bool in_lanes_;                               // plain files become lanes
+  bool in_lanes_;  // plain files become lanes
+  spmd::Lanes lanes_{[this](const std::string& path) { return file_text(path); }};
   std::vector<std::string> open_;               // files being expanded, outermost first
   std::vector<std::set<std::string>> seen_{1};  // files and names of lanes seen in each open #if branch
 };

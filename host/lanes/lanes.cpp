@@ -1,29 +1,10 @@
 // See lanes.h.
 #include "lanes/lanes.h"
 
-#include "lanes/parser.h"
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
 namespace {
-
-/// A program with all that its entries call.
-struct Made {
-  Source source;
-  Program program;
-  Specialisations specialisations;
-
-  Made(const std::string& path, const ReadFile& read) {
-    source = preprocess(path, read, [](const std::string& file) { return !is_plain(file); });
-    program = Parser(source, is_plain).program();
-    for (const Function& f : program.functions) {
-      if (!f.is_entry) continue;
-      std::vector<bool> vary;
-      for (const Variable* p : f.parameters) vary.push_back(!p->uniform && !p->type.is_table());
-      specialisations.of(f, vary);
-    }
-  }
-};
 
 /// Collects lines, with #line directives if wanted.
 class Text {
@@ -60,24 +41,44 @@ class Text {
 
 bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
-std::string in_lanes(const std::string& path, const ReadFile& read, bool lines, const IsWanted& is_wanted) {
-  Made made(path, read);
+Lanes::Lanes(ReadFile read)
+    : preprocessor_(std::move(read), [](const std::string& file) { return !is_plain(file); }),
+      parser_(is_plain) {}
+
+std::vector<Specialisation*> Lanes::specialised(const std::string& path) {
+  parser_.read(preprocessor_.tokens_of(path));
+  const std::set<std::string> files = preprocessor_.files_of(path);
+  std::set<const Specialisation*> called;
+  for (const Function& f : parser_.program().functions) {
+    if (!f.is_entry || !files.contains(*f.place.file)) continue;
+    std::vector<bool> vary;
+    for (const Variable* p : f.parameters) vary.push_back(!p->uniform && !p->type.is_table());
+    called.insert(&specialisations_.of(f, vary));
+  }
+  std::vector<Specialisation*> all = specialisations_.done();
+  for (auto s = all.rbegin(); s != all.rend(); ++s)
+    if (called.contains(*s)) called.insert((*s)->calls.begin(), (*s)->calls.end());
+  std::erase_if(all, [&](const Specialisation* s) { return !called.contains(s); });
+  return all;
+}
+
+std::string Lanes::text(const std::string& path, bool lines, const IsWanted& is_wanted) {
   Text out(lines, fmt::format("// Made of {} in lanes.\n", path));
   // Writing may ask for structures alone: what is called is known.
-  std::vector<Specialisation*> all = made.specialisations.done();
+  std::vector<Specialisation*> all = specialised(path);
   std::erase_if(all, [&](const Specialisation* s) { return !is_wanted(s->name); });
   if (all.empty()) return out.text;
   std::vector<std::vector<Line>> functions;
   Writer::Structures used;
   for (Specialisation* s : all) {
-    Writer writer(made.specialisations, *s);
+    Writer writer(specialisations_, *s);
     functions.push_back(writer.function());
     used.insert(writer.structures().begin(), writer.structures().end());
   }
-  Writer writer(made.specialisations, *all.front());
+  Writer writer(specialisations_, *all.front());
   for (const auto& [s, in_lanes] : used) writer.structure(*s, in_lanes);  // finds those of members
   used.insert(writer.structures().begin(), writer.structures().end());
-  for (const Structure& s : made.program.structures) {
+  for (const Structure& s : parser_.program().structures) {
     const bool plain = used.contains({&s, false}), in_lanes = used.contains({&s, true});
     const std::string spread = "all_" + s.name;
     if (plain && is_wanted(s.name)) out.add_once(s.name, "", writer.structure(s, false));
@@ -89,10 +90,9 @@ std::string in_lanes(const std::string& path, const ReadFile& read, bool lines, 
   return out.text;
 }
 
-std::string explained(const std::string& path, const ReadFile& read) {
-  const Made made(path, read);
+std::string Lanes::explained(const std::string& path) {
   std::string out;
-  for (const Specialisation* s : made.specialisations.done()) {
+  for (const Specialisation* s : specialised(path)) {
     out += fmt::format("{} ({} operations{})\n", s->name, s->cost, s->masked ? ", takes a mask" : "");
     std::vector<std::pair<const Variable*, std::string>> all(s->why.begin(), s->why.end());
     std::ranges::sort(all, {}, [](const auto& row) {

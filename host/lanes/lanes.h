@@ -7,7 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "lanes/preprocess.h"
+#include "lanes/parser.h"
+#include "lanes/specialisation.h"
 
 namespace sundog::spmd {
 
@@ -17,16 +18,30 @@ bool is_plain(const std::string& path);
 /// Whether a program still lacks the function or structure of lanes of this name.
 using IsWanted = std::function<bool(const std::string& name)>;
 
-/// The plain file `path` in lanes: its structures and ENTRY functions, with their callees, as far as they are
-/// wanted. `lines`: #line directives name the plain file. Throws BuildError "file:line:column: what".
-std::string in_lanes(
-    const std::string& path, const ReadFile& read, bool lines,
-    const IsWanted& is_wanted = [](const std::string&) { return true; });
+/// The plain files of a program. Methods throw BuildError "file:line:column: what".
+class Lanes {
+ public:
+  explicit Lanes(ReadFile read);
+
+  /// The plain file `path` in lanes: its structures and ENTRY functions, with their callees, as far as they
+  /// are wanted. `lines`: #line directives name the plain file.
+  std::string text(
+      const std::string& path, bool lines,
+      const IsWanted& is_wanted = [](const std::string&) { return true; });
+
+  /// Reports what varies in each generated function, why, and the function's cost.
+  std::string explained(const std::string& path);
+
+ private:
+  /// Analyses what was not read before. Returns the ENTRY functions and their callees: callees first.
+  std::vector<Specialisation*> specialised(const std::string& path);
+
+  Preprocessor preprocessor_;
+  Parser parser_;
+  Specialisations specialisations_;
+};
 
 /// The revision of this folder's sources: equal revisions generate equal text from equal files.
 const char* revision();
-
-/// Reports what varies in each generated function, why, and the function's cost.
-std::string explained(const std::string& path, const ReadFile& read);
 
 }  // namespace sundog::spmd

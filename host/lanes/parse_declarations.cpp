@@ -3,7 +3,7 @@
 
 namespace sundog::spmd {
 
-Parser::Parser(const Source& source, const IsPlain& is_plain) : tokens_(source.tokens), is_plain_(is_plain) {
+Parser::Parser(IsPlain is_plain) : is_plain_(std::move(is_plain)) {
   using enum Type::Kind;
   types_["void"] = {.kind = nothing, .name = "void"};
   types_["bool"] = {.kind = boolean, .name = "bool"};
@@ -22,11 +22,12 @@ void Parser::add_vector(const VectorForm& form) {
   types_[form.name] = {.kind = Type::Kind::vector, .name = form.name, .form = kept};
 }
 
-Program Parser::program() {
+void Parser::read(Tokens tokens) {
+  tokens_ = std::move(tokens);
+  at_ = 0;
   while (word().kind != Token::Kind::end) declaration();
   for (const Function& f : out_.functions)
     if (f.is_entry && !f.body) fail(f.place, "ENTRY of '{}', which has no text", f.name);
-  return std::move(out_);
 }
 
 const Token& Parser::word(std::size_t ahead) const {

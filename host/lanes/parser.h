@@ -13,8 +13,10 @@ using IsPlain = std::function<bool(const std::string& path)>;
 /// `is_plain` is false, which may be called with uniform arguments.
 class Parser {
  public:
-  Parser(const Source& source, const IsPlain& is_plain);
-  Program program();
+  explicit Parser(IsPlain is_plain);
+  /// Adds to the program what the tokens declare.
+  void read(Tokens tokens);
+  const Program& program() const { return out_; }
 
  private:
   // Tokens.
@@ -98,8 +100,8 @@ class Parser {
   const Type& type(const std::string& named) const { return types_.at(named); }
   const Type& scalar(Type::Kind kind) const;
 
-  const Tokens& tokens_;
-  const IsPlain& is_plain_;
+  IsPlain is_plain_;
+  Tokens tokens_;
   std::size_t at_ = 0;
   Program out_;
   std::map<std::string, Type> types_, constants_;

@@ -5,6 +5,9 @@
 
 #include <deque>
 #include <functional>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,14 +42,42 @@ using Tokens = std::vector<Token>;
 /// Returns a kernel file's text; throws if there is none.
 using ReadFile = std::function<std::string(const std::string& path)>;
 
-struct Source {
-  Tokens tokens;  // the last one is `end`
-  std::deque<std::string> files;
-};
-
 /// Throws BuildError with the place. Constants that are a single number keep their name if `keeps_names` is
 /// true for the path of the file that defines them.
-Source preprocess(const std::string& path, const ReadFile& read,
-                  const std::function<bool(const std::string&)>& keeps_names);
+class Preprocessor {
+ public:
+  Preprocessor(ReadFile read, std::function<bool(const std::string&)> keeps_names);
+
+  /// The tokens of a file and of all that it includes, but of files that it gave before; the last one is
+  /// `end`.
+  Tokens tokens_of(const std::string& path);
+  /// The file and all that it includes.
+  std::set<std::string> files_of(const std::string& path) const;
+
+ private:
+  struct Macro {
+    std::optional<std::vector<std::string>> parameters;  // none: it takes no list
+    Tokens body;
+    bool keeps_name = false;
+  };
+  using Names = std::set<std::string>;
+
+  void file(const std::string& path, const Place& from);
+  bool is_active() const;
+  void flush();
+  void directive(Tokens words, const Place& place);
+  void define(const Tokens& words, const Place& place);
+  bool condition(const Tokens& words, const Place& place) const;
+  void expand(const Tokens& in, const Names& hidden, Tokens& out);
+  Tokens substituted(const Macro& macro, const std::vector<Tokens>& arguments, const Names& hidden);
+
+  ReadFile read_;
+  std::function<bool(const std::string&)> keeps_names_;
+  std::deque<std::string> paths_;                             // for places
+  std::map<std::string, std::vector<std::string>> includes_;  // of each file that was read
+  std::map<std::string, Macro> macros_;
+  std::vector<bool> open_;  // whether the branch of each open #if is taken
+  Tokens pending_, out_;    // pending: not yet expanded, as a macro's arguments may stand on several lines
+};
 
 }  // namespace sundog::spmd

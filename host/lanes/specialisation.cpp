@@ -345,6 +345,7 @@ bool Specialisation::call_varies(const Expression& e, const Frames& frames) {
   vary = arguments_of(e, frames);
   vary_if([&](std::size_t i) { return vary[i] && !pointee_varies(*e.of[i]); }, "takes it with what varies");
   const Specialisation& called = all_.of(f, vary);
+  calls.insert(&called);
   if (parted && called.writes_uniform)
     fail(e.place, "{} writes what is uniform, but is called a lane at a time", f.name);
   writes_uniform |= called.writes_uniform;

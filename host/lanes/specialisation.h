@@ -59,6 +59,7 @@ class Specialisation : public Findings {
   double cost = 0;
   const Variable* only_result = nullptr;  // every return returns it
   std::map<const Variable*, std::string> why;
+  std::set<const Specialisation*> calls;
   std::set<const Variable*> set_by_call;  // first used as the OUT argument of a call
 
  private:

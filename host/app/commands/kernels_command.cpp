@@ -53,9 +53,9 @@ std::string made_text(const KernelsCommand& c) {
                ? read_input(c.file)
                : embedded_kernel(wanted, value_of(program_environment()).kernels);
   };
-  if (c.explains) return spmd::explained(path, read);
-  return (c.lanes > 0 ? fmt::format("#define LANES {}\n", c.lanes) : "") +
-         spmd::in_lanes(path, read, c.lines);
+  spmd::Lanes lanes(read);
+  if (c.explains) return lanes.explained(path);
+  return (c.lanes > 0 ? fmt::format("#define LANES {}\n", c.lanes) : "") + lanes.text(path, c.lines);
 }
 
 /// Writes the scene's programs as a GPU's compiler receives them; no device is needed. Returns their files

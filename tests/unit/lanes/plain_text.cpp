@@ -9,10 +9,10 @@
 namespace plain_text {
 
 std::string in_lanes(const std::string& text, bool lines) {
-  return sundog::spmd::in_lanes(
-      "plain/t.cl",
-      [&](const std::string& path) { return path == "plain/t.cl" ? text : sundog::embedded_kernel(path); },
-      lines);
+  return sundog::spmd::Lanes([&](const std::string& path) {
+           return path == "plain/t.cl" ? text : sundog::embedded_kernel(path);
+         })
+      .text("plain/t.cl", lines);
 }
 
 std::string refused(const std::string& text) {
