@@ -35,6 +35,8 @@ def result(build):
 
 
 def main():
+    if "--help" in sys.argv:
+        return print(__doc__)
     words = [a for a in sys.argv[1:] if not a.startswith("--")]
     only = words.pop(0) if "--only" in sys.argv else ""
     build = words[0] if words else str(root / "build/release")
