@@ -41,7 +41,8 @@ void throw_public() {
   } catch (const core::BuildError& error) {
     throw Error(ErrorKind::build, error.what(), {.file = {}, .place = {}, .reason = {}, .log = error.log});
   } catch (const core::IoError& error) {
-    throw Error(ErrorKind::io, error.what());
+    throw Error(ErrorKind::io, error.what(),
+                {.file = error.file, .place = {}, .reason = error.reason, .log = {}});
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -1,4 +1,7 @@
 // The public Scene: a JSON document, with meshes from memory beside it.
+#include <fmt/format.h>
+
+#include <cmath>
 #include <utility>
 
 #include "api/impl.h"
@@ -43,6 +46,11 @@ bool has_room(const json& document, json::json_pointer place) {
 }
 
 core::LoadOptions options_of(const LoadOptions& options) {
+  for (const int pixels : options.size)
+    if (pixels < 0)
+      throw core::UsageError(fmt::format("size: wanted pixels, or 0 for the file's, found {}", pixels));
+  if (options.frame && !std::isfinite(*options.frame))
+    throw core::UsageError(fmt::format("frame: wanted a frame's number, found {}", *options.frame));
   core::LoadOptions result;
   result.frame = options.frame;
   result.native_code = options.native_code;

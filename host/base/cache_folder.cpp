@@ -53,7 +53,7 @@ void make_cache_folder(const fs::path& folder) {
       failed = std::error_code(errno, std::generic_category());
   if (!failed && !fs::is_directory(folder, failed) && !failed)
     failed = std::make_error_code(std::errc::not_a_directory);
-  if (failed) throw IoError(fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
+  if (failed) throw IoError(folder.string(), fmt::format("cannot be made: {}", failed.message()));
 }
 
 }  // namespace sundog

@@ -43,6 +43,9 @@ struct BuildError : std::runtime_error {
 /// A file could not be read or written (exit 1).
 struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;
+  IoError(std::string file_, std::string what_)
+      : std::runtime_error(file_ + ": " + what_), file(std::move(file_)), reason(std::move(what_)) {}
+  std::string file, reason;
 };
 
 }  // namespace sundog

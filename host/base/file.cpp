@@ -141,7 +141,7 @@ class Temporary {
 
 void write_file(const fs::path& path, std::string_view bytes, const std::shared_ptr<Faults>& faults) {
   const auto fail = [&](int code) {
-    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), write_error(code ? code : EIO)));
+    throw IoError(path.string(), fmt::format("cannot be written: {}", write_error(code ? code : EIO)));
   };
   if (fault(faults, "write", path.filename().string())) fail(ENOSPC);
   if (is_pipe_or_device(path)) {
@@ -175,7 +175,7 @@ void remove_left_over(const fs::path& named) {
 void check_writable(const fs::path& path) {
   std::error_code status;
   const auto fail = [&](std::string_view reason) {
-    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), reason));
+    throw IoError(path.string(), fmt::format("cannot be written: {}", reason));
   };
   struct stat found = {};
   if (::stat(path.c_str(), &found) != 0 && (errno == ENAMETOOLONG || errno == ELOOP))

@@ -126,7 +126,7 @@ std::string encode_image(const Image& image, const fs::path& path, const AovImag
   } catch (const IoError&) {
     throw;
   } catch (const std::exception& error) {
-    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
+    throw IoError(path.string(), fmt::format("cannot be written: {}", error.what()));
   }
 }
 

@@ -76,9 +76,7 @@ bool read_all(int descriptor, std::uintmax_t expected, std::uintmax_t most, std:
 
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most,
                               const std::shared_ptr<Faults>& faults) {
-  const auto fail = [&](const std::string& what) {
-    throw IoError(fmt::format("{}: {}", path.string(), what));
-  };
+  const auto fail = [&](const std::string& what) { throw IoError(path.string(), what); };
   const auto unreadable = [&] { fail(fmt::format("cannot be read: {}", std::strerror(errno))); };
   const File file(path.c_str());
   struct stat found{};
@@ -123,8 +121,8 @@ std::string read_input(const std::filesystem::path& path, std::uintmax_t most,
                        const std::shared_ptr<Faults>& faults) {
   try {
     return read_regular_file(path, most, faults);
-  } catch (const IoError& error) {  // its message starts with the path, as SceneError's does
-    throw SceneError(path.string(), "", std::string(error.what()).substr(path.string().size() + 2));
+  } catch (const IoError& error) {
+    throw SceneError(error.file, "", error.reason);
   }
 }
 

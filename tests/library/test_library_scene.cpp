@@ -129,6 +129,9 @@ TEST_CASE("the camera that is made up around a model fits the picture that is as
   CHECK(wide.check() == usual.check());
   const auto json = folder.write("scene.json", R"({"objects": []})");
   CHECK(sundog::Scene::load(json, {.size = {30, 20}}).get("/image/height") == "20");
+  CHECK_THROWS_WITH(sundog::Scene::load(json, {.size = {-1, 5}}),
+                    "size: wanted pixels, or 0 for the file's, found -1");
+  CHECK_THROWS_WITH(sundog::Scene::load(json, {.frame = NAN}), "frame: wanted a frame's number, found nan");
 }
 
 TEST_CASE("names of files in a scene's text count from its folder") {
@@ -224,7 +227,10 @@ TEST_CASE("errors of images have their kind") {
   CHECK(error_of([&] { image.save(folder / "a.bmp"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { grey.save(folder / "a.png"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { sundog::Image().save(folder / "a.png"); }).kind() == ErrorKind::usage);
-  CHECK(error_of([&] { image.save(folder / "none" / "a.png"); }).kind() == ErrorKind::io);
+  const sundog::Error error = error_of([&] { image.save(folder / "none" / "a.png"); });
+  CHECK(error.kind() == ErrorKind::io);
+  CHECK(error.file() == (folder / "none" / "a.png").string());
+  CHECK(error.what() == error.file() + ": " + error.reason());
   CHECK(error_of([&] { (void)image.encode("bmp"); }).kind() == ErrorKind::usage);
   CHECK(error_of([&] { (void)sundog::Image::load(folder.write("a.png", "no picture")); }).kind() ==
         ErrorKind::scene);

@@ -241,8 +241,8 @@ void MaterialLibrary::load(const Source& obj, const TextReader& line, std::strin
     if (const auto path = find_beside(obj, folder, name))
       read(*path);
     else
-      model_.warnings.push_back(fmt::format("{}: line {}: the material library {}", obj.path.string(),
-                                            line.line(), why_not_beside(obj, folder, name)));
+      model_.warnings.push_back(
+          fmt::format("line {}: the material library {}", line.line(), why_not_beside(obj, folder, name)));
 }
 
 // The first definition of a name counts.

@@ -291,11 +291,8 @@ Content read_content(const Source& source, const PlyHeader& header) {
   return {};
 }
 
-void warn_of_no_numbers(const Source& source, std::size_t count, const char* what, const char* mend,
-                        Model& model) {
-  if (count > 0)
-    model.warnings.push_back(
-        fmt::format("{}: {} {} that are no numbers are {}", source.path.string(), count, what, mend));
+void warn_of_no_numbers(std::size_t count, const char* what, const char* mend, Model& model) {
+  if (count > 0) model.warnings.push_back(fmt::format("{} {} that are no numbers are {}", count, what, mend));
 }
 
 }  // namespace
@@ -310,8 +307,8 @@ Model load_ply(Source source, const ModelOptions& options) {
   complete_normals(mesh, {}, options.crease_angle.value_or(45), points);
   Model model;
   model.dropped_polygons = content.dropped;
-  warn_of_no_numbers(source, content.normals_of_no_number, "normals", "made up", model);
-  warn_of_no_numbers(source, content.uvs_of_no_number, "texture coordinates", "taken as 0", model);
+  warn_of_no_numbers(content.normals_of_no_number, "normals", "made up", model);
+  warn_of_no_numbers(content.uvs_of_no_number, "texture coordinates", "taken as 0", model);
   for (const std::string& feature : content.unread) leave_unread(model, feature);
   add_materials(source, header, content, mesh, model);
   add_mesh(model, std::move(mesh), content.origin);

@@ -84,7 +84,7 @@ TEST_CASE("an OBJ's material libraries outside its folder are not read, with a w
     CAPTURE(name);
     const Model model = load_model(folder.write("in/a.obj", "mtllib " + name + "\n" + triangle));
     REQUIRE(model.warnings.size() == 1);
-    CHECK_THAT(model.warnings[0], ContainsSubstring("line 1: the material library") &&
+    CHECK_THAT(model.warnings[0], Catch::Matchers::StartsWith("line 1: the material library") &&
                                       ContainsSubstring("leads out of the model's folder and is not read"));
   }
   const fs::path both = folder.write("in/a.obj", "mtllib gone.mtl ../out/s.mtl\n" + triangle);

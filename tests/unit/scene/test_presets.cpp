@@ -103,10 +103,10 @@ TEST_CASE("textures are presets, too, with sizes in metres, and bring what they 
     return preset_sections(document, context)["textures"];
   };
   const json floor = textures(with_ball("oak_floor", R"("unit": 1,)"));
-  CHECK(floor["planks"]["size"] == Approx(1.2));
+  CHECK(floor["plank_ends"]["size"] == Approx(1.2));
   CHECK(floor["oak_rings"]["size"] == Approx(0.007));
   CHECK(floor.contains("oak_pores"));
-  CHECK(textures(with_ball("oak_floor"))["planks"]["size"] == Approx(12));
+  CHECK(textures(with_ball("oak_floor"))["planks"]["size"] == Approx(2.4));
   const std::string wet = R"("textures": {"rain": {"preset": "drops", "size": 3}}, "materials": {
     "m": {"preset": "glass", "bump": {"texture": "rain", "height": 0.1}}},)";
   CHECK(textures(with_ball("m", wet))["rain"]["size"] == 3);
