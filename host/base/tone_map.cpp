@@ -10,6 +10,7 @@
 #include "base/colors/aces.h"
 #include "base/colors/color_space.h"
 #include "base/image_io.h"
+#include "base/parallel.h"
 #include "base/pixels/bloom.h"
 #include "base/pixels/dither.h"
 
@@ -136,20 +137,21 @@ double automatic_exposure(const Image& image) {
 }
 
 void apply(const ToneMap& map, Image& image) {
-  if (map == ToneMap()) return;
+  if (map == ToneMap() || image.channels < 3) return;
   dmat3 linear(std::exp2(map.automatic ? automatic_exposure(image) : map.exposure));
   if (map.bloom > 0) add_bloom(image, map.bloom);
   if (map.white_balance > 0) linear = balance(map.white_balance) * linear;
   const auto channels = static_cast<std::size_t>(image.channels);
-  for (std::size_t i = 0; i + 2 < image.data.size(); i += channels) {
-    const dvec3 rendered(image.data[i], image.data[i + 1], image.data[i + 2]);
-    if (!finite(rendered)) continue;
+  in_parallel(image.data.size() / channels, [&](std::size_t pixel) {
+    float* value = &image.data[pixel * channels];
+    const dvec3 rendered(value[0], value[1], value[2]);
+    if (!finite(rendered)) return;
     dvec3 shown = glm::max(linear * rendered, dvec3(0));
-    if (map.vignette > 0) shown *= vignetted(map, image, i / channels);
+    if (map.vignette > 0) shown *= vignetted(map, image, pixel);
     shown = curved(map.curve, shown);
     if (map.contrast != 1) shown = contrasted(shown, map.contrast);
-    for (std::size_t k = 0; k < 3; ++k) image.data[i + k] = static_cast<float>(shown[static_cast<int>(k)]);
-  }
+    for (int k = 0; k < 3; ++k) value[k] = static_cast<float>(shown[k]);
+  });
 }
 
 void prepare_for_screen(Image& image, const ToneMap& map, bool dither) {

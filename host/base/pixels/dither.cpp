@@ -1,9 +1,11 @@
 #include "base/pixels/dither.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "base/image_io.h"
+#include "base/parallel.h"
 
 namespace sundog {
 namespace {
@@ -30,13 +32,14 @@ void dither_to_8_bits(Image& image) {
   static const std::array<float, 256> levels = make_levels();
   const auto channels = static_cast<std::size_t>(image.channels),
              width = static_cast<std::size_t>(image.width);
-  for (std::size_t i = 0; i < image.data.size(); ++i) {
-    const std::size_t pixel = i / channels, channel = i % channels;
-    float& value = image.data[i];
-    if (channel >= 3 || !(value > 0 && value < 1)) continue;
-    const double up = dither_threshold(pixel % width, pixel / width, channel);
-    value = levels[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
-  }
+  in_parallel(image.data.size() / channels, [&](std::size_t pixel) {
+    for (std::size_t channel = 0; channel < std::min<std::size_t>(channels, 3); ++channel) {
+      float& value = image.data[pixel * channels + channel];
+      if (!(value > 0 && value < 1)) continue;
+      const double up = dither_threshold(pixel % width, pixel / width, channel);
+      value = levels[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
+    }
+  });
 }
 
 }  // namespace sundog

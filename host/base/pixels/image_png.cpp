@@ -99,7 +99,8 @@ int append_bytes(spng_ctx*, void* to, void* bytes, std::size_t size) {
 template <class Fill>
 std::string encode_rows(spng_ihdr header, const FileOptions* file, const Fill& fill) {
   constexpr int level = 4;  // of zlib: half the time of its default, and hardly larger
-  std::string profile = file && file->icc ? srgb_icc_profile() : "";  // outlives the context
+  constexpr int filters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;  // a fifth less time, as small
+  std::string profile = file && file->icc ? srgb_icc_profile() : "";       // outlives the context
   const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   if (!context) throw std::bad_alloc();
   const std::size_t channels = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE   ? 1
@@ -110,6 +111,7 @@ std::string encode_rows(spng_ihdr header, const FileOptions* file, const Fill& f
   bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // it never grows
   check_encoder(spng_set_png_stream(context.get(), append_bytes, &bytes));
   check_encoder(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, level));
+  check_encoder(spng_set_option(context.get(), SPNG_FILTER_CHOICE, filters));
   check_encoder(spng_set_ihdr(context.get(), &header));
   if (file) tag_as_srgb(context.get(), file->dpi, profile);
   check_encoder(spng_encode_image(context.get(), nullptr, 0, SPNG_FMT_PNG,
