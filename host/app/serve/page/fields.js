@@ -66,11 +66,11 @@ export function NumberField({label, value, fallback, min, max, soft, whole, unit
 }
 
 export function VectorField({label, value, fallback, names = ['x', 'y', 'z'], min, max, help, at, onSet, onReset}) {
-  const id = useId(), shown = value ?? fallback ?? names.map(() => 0);
-  const set = (i) => (number, gesture) => onSet(shown.map((v, k) => (k === i ? number : v)), gesture);
+  const id = useId(), shown = value ?? fallback;
+  const set = (i) => (number, gesture) => onSet(names.map((_, k) => (k === i ? number : shown?.[k] ?? 0)), gesture);
   return html`<${Row} id=${id} label=${label} help=${help} at=${at} isSet=${value !== undefined} onReset=${onReset}>
     <div class="vector">${names.map((name, i) => html`<span class=${'number' + (name.length > 2 ? ' long' : '')}><b aria-hidden="true">${name}</b>
-      <${NumberInput} id=${i ? undefined : id} label=${label + ' ' + name} value=${shown[i]} min=${min} max=${max} faint=${value === undefined} onSet=${set(i)} /></span>`)}</div>
+      <${NumberInput} id=${i ? undefined : id} label=${label + ' ' + name} value=${shown?.[i]} min=${min} max=${max} faint=${value === undefined} onSet=${set(i)} /></span>`)}</div>
   </${Row}>`;
 }
 
