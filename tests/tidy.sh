@@ -1,6 +1,6 @@
 #!/bin/bash
-# clang-tidy over the C++ sources of host and bench: those that changed since BASE, or all of them. .clang-tidy has the checks and
-# why they are there. Tests are left out: each of Catch2's CHECKs looks like a chained comparison.
+# clang-tidy and clang-query over the C++ sources of host and bench: those that changed since BASE, or all of them. .clang-tidy has the
+# checks and why they are there, tests/code_rules.query the project's own. Tests are left out: each of Catch2's CHECKs looks like a chained comparison.
 #   tests/tidy.sh [--all | BASE]
 # BASE is a commit; without it, where this branch left main, and on main itself the commit before. Changes that are not committed
 # count too. Without --all no source is begun after 45 seconds, and a message says how many were left out.
@@ -57,7 +57,8 @@ export began=$(date +%s) limit tidy left
 status=0
 printf '%s\n' "${checked[@]}" | xargs -P "$(nproc)" -I{} bash -c '
   if (($(date +%s) - began >= limit)); then echo "$1" >>"$left"; exit 0; fi
-  "$tidy" -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option "$1" 2> >(grep -v "warnings\? generated" >&2)' _ {} || status=1
+  "$tidy" -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option "$1" 2> >(grep -v "warnings\? generated" >&2) || exit 1
+  ! "${tidy/tidy/query}" -p build/tidy -f tests/code_rules.query "$1" | grep "^/.*binds here"' _ {} || status=1
 if [[ -s $left ]]; then
   echo "tidy: $(wc -l <"$left") of ${#checked[@]} changed sources were left out after $limit seconds (tests/tidy.sh --all: every source)" >&2
 fi

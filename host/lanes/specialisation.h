@@ -21,7 +21,7 @@ std::pair<const Statement*, bool> left_loop(const Statement& s, const Frames& fr
 
 class Specialisations;
 
-/// What the analysis finds.
+/// The results of the analysis.
 struct Findings {
   bool result_varies = false, masked = false, divergent_return = false;
   std::set<const Statement*> divergent_break, divergent_continue;

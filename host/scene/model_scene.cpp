@@ -74,7 +74,7 @@ struct MadeUpLights {
   dvec3 direction;
   double key = 0, sky = 0;  // intensities
   dvec3 bottom, top;        // of the sky
-  /// What a white ground sends back.
+  /// The light that a white ground returns.
   dvec3 on_ground() const {
     const dvec3 above =
         glm::mix(bottom, top, 5.0 / 6);  // its mean over the hemisphere, weighted by the cosine

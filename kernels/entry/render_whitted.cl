@@ -37,7 +37,7 @@ static inline void set_tile_sums(const Launch* launch, u32 item, const float* si
 }
 #endif
 
-// What a work-item keeps while it traces.
+// A work-item keeps this while it traces.
 typedef struct ItemWork {
   float4 radiance[BATCH];
   float signs[BATCH];

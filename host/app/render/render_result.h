@@ -33,7 +33,7 @@ void write_so_far(const RenderCommand& command, const ImageSettings& settings, c
 /// may leave no time.
 void tell_kept(const RenderResult& result, const std::string& checkpoint);
 
-/// Of what was lost, and of devices that failed.
+/// Names what was lost and the devices that failed.
 std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result);
 
 /// The frame's figures, on stdout; `samples`: a pixel's, as the scene asks for them.

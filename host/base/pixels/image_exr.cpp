@@ -95,7 +95,7 @@ void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* 
                 Imf::Slice(type, base, pixel, pixel * static_cast<std::size_t>(shape.width), 1, 1, fill));
 }
 
-/// What the slices hold begins at `corner` of the file: the library counts from its pixel (0, 0).
+/// Moves the slices so that they begin at `corner` of the file: the library counts from its pixel (0, 0).
 void begin_at(Imf::FrameBuffer& buffer, const Imath::V2i& corner) {
   for (auto at = buffer.begin(); at != buffer.end(); ++at)
     at.slice().base -= static_cast<std::ptrdiff_t>(at.slice().xStride) * corner.x +

@@ -39,7 +39,7 @@ Amounts densities(double height) {
           std::max(0.0, 1 - std::abs(height - 25) / ozone_depth)};
 }
 
-/// What a km of each takes of a band's light, where it is densest.
+/// The extinction of each, a band's share a km, where it is densest.
 struct Air {
   std::array<Amounts, bands> extinction;
 
@@ -97,7 +97,7 @@ class SunColumns {
     });
   }
 
-  /// Of a sun above the horizon there.
+  /// The amounts on the way to a sun above the horizon there.
   Amounts at(double height, double angle) const {
     const Place row = place_of(std::sqrt(height / top), heights),
                 column = place_of(1 - std::sqrt(std::max(0.0, 1 - angle / horizon_angle(height))), angles);
@@ -170,7 +170,7 @@ class Scattered {
     }
   }
 
-  /// What reaches the ground.
+  /// The light that reaches the ground.
   Spectrum light(const dvec3& direction, const dvec3& sun) const {
     Spectrum once = once_scattered(0, direction, sun, 64);
     const Spectrum more = again_scattered(0, direction, sun, 64, all_);

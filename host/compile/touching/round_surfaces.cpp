@@ -130,7 +130,8 @@ struct CellSearch {
   }
 };
 
-/// Of two solids that revolve about one axis, one of them a lathe, the second in the first's unit space.
+/// Places the second of two solids that revolve about one axis, one of them a lathe, in the first's unit
+/// space.
 std::optional<dmat4> about_one_axis(const RoundSolid& a, const RoundSolid& b) {
   const auto revolves = [](const RoundSolid& solid) {
     const ShapeKind shape = solid.unit.shape;

@@ -14,7 +14,7 @@ namespace sundog::models {
 /// Maximum number of texture coordinate sets.
 inline constexpr std::uint64_t most_uv_sets = 4;
 
-/// What a material's textures are read from.
+/// The place that a material's textures are read from.
 class TextureSource {
  public:
   virtual ~TextureSource() = default;

@@ -56,7 +56,7 @@ class DataReader {
         skip(element);
       }
     }
-    // Of several elements of faces, some may have neither.
+    // Some of several elements of faces may have neither.
     const std::size_t triangles = content_.mesh.triangles.size();
     if (!content_.face_colors.empty()) content_.face_colors.resize(triangles, glm::vec3(1));
     if (!content_.corner_uvs.empty()) content_.corner_uvs.resize(3 * triangles);

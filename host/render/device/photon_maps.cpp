@@ -57,8 +57,8 @@ void append(std::vector<T>& list, const std::vector<T>& more) {
 /// Each sample of a map looks at all of its share of the beams.
 std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
 
-/// Of the photons' beams those that are there, in order; of more than `most` as many, drawn at even steps in
-/// the light that media scatter of them.
+/// Selects the photons' beams that are there, in order; if there are more than `most`, it draws so many at
+/// even steps in the light that media scatter of them.
 std::vector<float4> draw_beams(const std::vector<float4>& beams, std::size_t most, u32 number) {
   const auto light_of = [&](std::size_t i) { return std::isfinite(beams[i].w) ? double(beams[i].w) : 0; };
   std::size_t count = 0;

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* format_name = "sundog part 3";
+constexpr const char *any_format = "\"sundog part ", *format_name = "sundog part 3";
 constexpr std::size_t checksum_digits = 16;
 
 template <class T>
@@ -223,9 +223,14 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
 PartFile read_part(const std::filesystem::path& path) {
   std::string bytes = read_input(path, most_frame_bytes);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
-  if (!bytes.starts_with('{') || bytes.find(format_name) == std::string::npos)
+  const auto is_of = [format = bytes.substr(0, bytes.find('\n'))](const char* name) {
+    return format.starts_with('{') && format.find(name) != std::string::npos;
+  };
+  if (!is_of(any_format))
     throw SceneError(path.string(), "", "is no part of a frame: a render of one part writes them",
                      Remedy::part);
+  if (!is_of(format_name))
+    throw refuse("is a part of another version of sundog: merge with that version, or render the part again");
   const std::string damaged = "is damaged: render this part again";
   if (bytes.size() < checksum_digits) throw refuse(damaged.c_str());
   const std::string sum = bytes.substr(bytes.size() - checksum_digits);

@@ -29,6 +29,33 @@ void begin_passes(Frame& frame) {
   plan_next_pass(frame);
 }
 
+}  // namespace
+
+std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                   const RenderOptions& options) {
+  check_frame(scene, devices, options);
+  std::string left;
+  try {
+    const std::shared_ptr<Frame> frame = plan_frame(scene, devices, options);
+    begin_passes(*frame);
+    return frame;
+  } catch (const std::exception& error) {
+    if (!options.renews_checkpoint || !is_there(options.resume)) throw;
+    left = error.what();
+  }
+  RenderOptions anew = options;
+  anew.checkpoint = checkpoint_path(options);
+  anew.resume.clear();
+  const std::shared_ptr<Frame> frame = plan_frame(scene, devices, anew);
+  frame->checkpoint_left = std::move(left);
+  begin_passes(*frame);
+  return frame;
+}
+
+// Here run_frame() makes the passes (frame_loop.h).
+
+namespace {
+
 std::vector<DeviceReport> reports(const Frame& frame) {
   std::vector<DeviceReport> result;
   std::uint64_t pixels = 0;
@@ -91,27 +118,6 @@ void note_figures(const Frame& frame, RenderResult& result) {
 }
 
 }  // namespace
-
-std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
-                                   const RenderOptions& options) {
-  check_frame(scene, devices, options);
-  std::string left;
-  try {
-    const std::shared_ptr<Frame> frame = plan_frame(scene, devices, options);
-    begin_passes(*frame);
-    return frame;
-  } catch (const std::exception& error) {
-    if (!options.renews_checkpoint || !is_there(options.resume)) throw;
-    left = error.what();
-  }
-  RenderOptions anew = options;
-  anew.checkpoint = checkpoint_path(options);
-  anew.resume.clear();
-  const std::shared_ptr<Frame> frame = plan_frame(scene, devices, anew);
-  frame->checkpoint_left = std::move(left);
-  begin_passes(*frame);
-  return frame;
-}
 
 RenderResult finish_frame(Frame& frame) {
   const RenderOptions& options = frame.options;

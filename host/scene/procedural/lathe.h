@@ -19,8 +19,8 @@ struct Lathe {
 /// crosses itself or the axis.
 Mesh make_lathe(const Lathe& lathe);
 
-/// The same surface as an exact solid, and the height of its middle, which is y = 0 there. Throws like
-/// make_lathe.
+/// make_lathe()'s surface as an exact solid, and the height of its middle, which is y = 0 there. Throws like
+/// make_lathe().
 struct ExactLathe {
   LatheShape shape;
   double middle = 0;

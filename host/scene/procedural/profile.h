@@ -34,7 +34,7 @@ glm::dvec2 turn_by(double share);
 /// one that the lines beside it have no room for, and more than `most_steps`.
 Profile follow(std::span<const ProfilePoint> points, ProfileCurve curve, double cos_turn);
 
-/// The same curve as cubics. Those of an arc differ from it by less than 1e-7 of its radius. Throws like
+/// follow()'s curve as cubics. Those of an arc differ from it by less than 1e-7 of its radius. Throws like
 /// follow().
 std::vector<ProfileCubic> follow_exactly(std::span<const ProfilePoint> points, ProfileCurve curve);
 

@@ -142,7 +142,7 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
     subsample->object("subsample", [&](JsonObject& inner) {
       inner.read("on", sampling.subsample, "contrast", sampling.subsample_contrast);
     });
-  if (render.integrator == "path") sampling.first_samples = std::max(sampling.first_samples, least_paths);
+  if (traces_paths(render.integrator)) sampling.first_samples = std::max(sampling.first_samples, least_paths);
   object.read("progressive", sampling.progressive);
   const bool grows = sampling.threshold > 0 || sampling.progressive;
   if (sampling.subsample && grows)

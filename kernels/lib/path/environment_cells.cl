@@ -1,4 +1,4 @@
-// What is read from the environment's tables, at a place a lane (plain/light/environment.cl). By hand, since
+// Reads the environment's tables at a place a lane (plain/light/environment.cl). By hand, since
 // the gathers of plain text are slower.
 #pragma once
 #include "lib/core/lanes.h"

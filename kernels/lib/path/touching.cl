@@ -254,8 +254,9 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   seen->material = material_of(scene, &met->hits[best]);
 }
 
-// What a ray passes that has hit faces which touch each other: the media behind them all, the distance of the
-// last, how far apart they may be; media for which the stack has no room, and exits from media not entered.
+// The passages of a ray that has hit faces which touch each other: the media behind them all, the distance of
+// the last, how far apart they may be; media for which the stack has no room, and exits from media not
+// entered.
 typedef struct Passages {
   MediaStacks behind;
   REAL end, apart;

@@ -1,5 +1,5 @@
-// What plain/whitted leaves in the tile: rays that wait, and what pixels show less of; and the shadow rays
-// that surfaces send.
+// Keeps in the tile what plain/whitted leaves there: rays that wait, and what pixels show less of; sends the
+// shadow rays of surfaces.
 #pragma once
 #include "lib/path/environment_cells.cl"
 #include "lib/path/mattes.cl"

@@ -32,7 +32,7 @@ static float3 textured_filter(UNIFORM const Scene* scene, const SceneRay* ray, c
   s.instance = hit->instance;
   s.material = face->material;
   set_footprints(scene, ray, hit->t, &s);
-  // Of a surface of one side: where paths meet lights by chance as well, a shadow ray sees the side that it
+  // A surface has one side: where paths meet lights by chance as well, a shadow ray sees the side that it
   // comes to, as those do; else the one that the light comes to.
   bool hidden = face->entering;
   if (HAS_PATHS) hidden = !face->entering;

@@ -59,7 +59,7 @@ ENTRY static inline UNIFORM bool put_below(UNIFORM MediaStack* stack, UNIFORM in
   return append_entry(&stack->low, entry) || append_entry(&stack->high, entry);
 }
 
-// The same for hand-written code about one ray.
+// cross_boundary() for hand-written code about one ray.
 ENTRY static inline UNIFORM bool cross_one(UNIFORM MediaStack* stack, UNIFORM int medium,
                                            UNIFORM bool entering) {
   return cross_boundary(stack, medium, entering);
@@ -103,7 +103,7 @@ static inline bool same_index(UNIFORM __global const Medium* media, int a, int b
 
 HAVING(HAS_DISPERSION);
 
-// The same at a wavelength: a (fractional) row of the table `spectra`.
+// The index at a wavelength: a (fractional) row of the table `spectra`.
 static inline float index_at(UNIFORM const Scene* scene, int medium, float row) {
   float index = 1.0f;
   EACH_ALIKE(int, at, medium) {

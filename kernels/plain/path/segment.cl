@@ -83,7 +83,7 @@ static inline bool cross_interface(UNIFORM const Scene* scene, SceneRay* ray, En
   return unseen;
 }
 
-// The same for any hit, with the medium before it.
+// Leaves the medium before any hit.
 HAVING(HAS_MEDIA)
 static inline bool leave_medium_before(UNIFORM const Scene* scene, SceneRay* ray, Encounter* met,
                                        UNIFORM u32* counts) {

@@ -35,7 +35,7 @@ static inline float3 settle_on_sphere(UNIFORM const Scene* scene, UNIFORM u32 in
 // A corner's normal that turns further than this cosine from its triangle's means no smooth surface.
 #define SMOOTH_COSINE 0.5f
 
-// What a mesh's corners say at a hit: the interpolated normal, unit, and color, both in the world; the
+// A mesh's corners at a hit: the interpolated normal, unit, and color, both in the world; the
 // triangle's extent; how far the surface that is smooth by the corners' normals is before the triangle, seen
 // from the ray's side: the mean height of the planes through the corners, where they are before it (Hanika
 // 2021, "Hacking the Shadow Terminator"). Negative if the normals mean no such surface.

@@ -25,7 +25,7 @@ CALLED(note_rays) void note_pixel_ray(int pixel, HERE, UNIFORM u32* counts);
 // Light that a pixel receives.
 void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
 
-// What pixels show less of: of the background, and where objects and materials cover them.
+// A pixel shows `part` less of the background; a surface covers `part` of its pixel.
 void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
 void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,
               const SurfaceInteraction* s, HERE, float part);

@@ -28,7 +28,7 @@ void next_numbers(UNIFORM const TileSamples* tile, UNIFORM u32 part, UNIFORM u32
 // From so many rays on it pays to look first whether a solid hides all of a light.
 #define RAYS_THAT_PAY 8u
 
-// What is left to sample of a light that a shaft leads to.
+// The part of a light at a shaft's end that is left to sample.
 typedef struct ShaftLight {
   Bsdf bsdf;  // without the lobes for which the light is exact
   float3 wo;

@@ -1,4 +1,4 @@
-// What Whitted's rays see on their way and at its end, and the rays that come of it.
+// Whitted's rays: what they see on their way and at its end, and the rays that come of it.
 #include "plain/light/sky.cl"
 #include "plain/shade/shading.cl"
 #include "plain/whitted/children.cl"

@@ -51,6 +51,13 @@ json changed(const char* key, const json& value) {
 
 }  // namespace
 
+TEST_CASE("a part of another version is refused with what to do") {
+  const CliFolder folder;
+  const CommandResult old = merge(folder, part_file(changed("format", "sundog part 2")));
+  CHECK(old.status == 3);
+  CHECK_THAT(old.err, ContainsSubstring("bad.part: is a part of another version of sundog: merge with that"));
+}
+
 TEST_CASE("a part whose header cannot be true is refused with status 3 and the file's name") {
   const CliFolder folder;
   REQUIRE(merge(folder, part_file(good_header())).status == 0);

@@ -166,15 +166,6 @@ TEST_CASE("the schema and the pages name every format of models") {
     }
 }
 
-TEST_CASE("hand-written pages have at most 150 lines") {
-  for (const fs::path& path : pages()) {
-    if (path == reference_page) continue;
-    INFO(path);
-    const std::string page = read_file(path);
-    CHECK(std::count(page.begin(), page.end(), '\n') <= 150);
-  }
-}
-
 TEST_CASE("the page of variables has every variable that a source reads, and names no other of sundog's") {
   const std::string page = read_file(root / "docs/reference/variables.md");
   const std::regex read(R"re(\b(?:getenv|variable|seconds_of)\("([A-Z_]+)")re"), own(R"(\bSUNDOG_[A-Z_]+)");

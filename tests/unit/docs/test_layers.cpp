@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "catch.h"
 
@@ -100,6 +101,26 @@ TEST_CASE("OpenCL is spoken in the device layer alone") {
       INFO(file << " includes " << path);
       CHECK(layer == "device");
     }
+}
+
+TEST_CASE("the headers of a render and a session hold values: no OpenCL, no JSON, no store of tunings") {
+  std::map<std::string, Names> included;
+  for (const auto& [file, layer, path] : includes_below("host")) included[file].insert(path);
+  for (const char* header : {"render/render.h", "render/session/render_session.h"}) {
+    Names all;
+    std::vector<std::string> open{header};
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      if (all.insert(next).second) open.insert(open.end(), included[next].begin(), included[next].end());
+    }
+    CHECK(all.size() > 20);
+    for (const std::string& name : all) {
+      CAPTURE(header, name);
+      CHECK_FALSE((name.starts_with("CL/") || name.starts_with("nlohmann/") || name.starts_with("tbb/")));
+      CHECK((name != "device/device.h" && name != "render/device/tuning.h"));
+    }
+  }
 }
 
 TEST_CASE("a folder of a layer includes only the folders before it") {
