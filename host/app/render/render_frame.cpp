@@ -25,7 +25,7 @@
 #include "render/device/view_warnings.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
-#include "render/plan/frame_tiles.h"
+#include "render/frame/frame_tiles.h"
 #include "render/plan/passes.h"
 #include "scene/light_groups.h"
 #include "scene/load.h"

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
-#include "render/plan/frame_tiles.h"
+#include "render/frame/frame_tiles.h"
 
 namespace sundog {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "base/clock.h"
 #include "render/frame/device_worker.h"
+#include "render/frame/tile_queue.h"
 #include "render/plan/coarse.h"
 #include "render/plan/passes.h"
-#include "render/plan/tile_queue.h"
 
 namespace sundog {
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
-#include "render/plan/frame_tiles.h"
+#include "render/frame/frame_tiles.h"
 #include "scene/integrators.h"
 
 namespace sundog {

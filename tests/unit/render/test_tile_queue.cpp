@@ -1,5 +1,5 @@
 // The frame's tiles between several threads, without a device: fixed parts, and who may make a tile twice.
-#include "render/plan/tile_queue.h"
+#include "render/frame/tile_queue.h"
 
 #include <thread>
 

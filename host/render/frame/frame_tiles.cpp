@@ -1,4 +1,4 @@
-#include "render/plan/frame_tiles.h"
+#include "render/frame/frame_tiles.h"
 
 #include <fmt/format.h>
 

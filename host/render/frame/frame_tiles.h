@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "render/plan/tile_queue.h"
+#include "render/frame/tile_queue.h"
 #include "render/values/options.h"
 
 namespace sundog {

@@ -1,4 +1,4 @@
-#include "render/plan/tile_queue.h"
+#include "render/frame/tile_queue.h"
 
 #include <algorithm>
 #include <chrono>
