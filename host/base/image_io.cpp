@@ -119,7 +119,7 @@ std::string encode_image(const Image& image, const fs::path& path, const AovImag
     if (extension == ".hdr") return encode_hdr(image);
     if (extension == ".pfm") return encode_pfm(image);
     if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image, options);
-    return with_png_texts(encode_png(image, options), options.texts);
+    return encode_png(image, options);
   };
   try {
     return encode();

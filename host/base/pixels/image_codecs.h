@@ -9,18 +9,14 @@
 
 namespace sundog {
 
-/// 8 or 16 bits a channel, colours as sRGB and tagged so, alpha as it is.
+/// 8 or 16 bits a channel, colours as sRGB and tagged so, alpha as it is; texts as iTXt chunks.
 std::string encode_png(const Image& image, const FileOptions& options = {});
-/// The PNG with texts ahead of its pixels, each an iTXt chunk.
-std::string with_png_texts(std::string png, const ImageTexts& texts);
-/// Texts of a PNG; empty for other files.
+/// Texts (iTXt chunks) of a PNG; empty for other files.
 ImageTexts decode_png_texts(std::string_view bytes);
 /// Likewise with 8 bits, without alpha; colours in full resolution.
 std::string encode_jpeg(const Image& image, const FileOptions& options = {});
 /// The JPEG of stb_image_write with Exif tags that say sRGB, its density and, by option, a profile.
 std::string with_jpeg_tags(std::string jpeg, const FileOptions& options);
-/// The exponent that makes a PNG's samples linear; none: sRGB.
-std::optional<float> png_decoding_exponent(std::string_view bytes);
 
 /// Whether an image file has alpha, by its header.
 bool has_alpha(std::string_view bytes);

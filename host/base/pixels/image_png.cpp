@@ -23,17 +23,31 @@ using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
 /// Deflate packs at most 1032 bytes into one, and a byte holds at most eight pixels.
 constexpr std::int64_t png_pixels_a_byte = std::int64_t{1032} * 8;
-/// Texts and profiles are ignored.
 constexpr std::size_t most_chunk_bytes = std::size_t{1} << 26;
 
 void check_png(int error) {
   if (error) throw std::runtime_error(fmt::format("a bad PNG image: {}", spng_strerror(error)));
 }
 
-std::uint32_t big_endian(std::string_view four) {
-  std::uint32_t value = 0;
-  for (const char c : four) value = value << 8 | static_cast<unsigned char>(c);
-  return value;
+/// For bytes that outlive it.
+Context decoder_of(std::string_view bytes) {
+  Context context(spng_ctx_new(0), spng_ctx_free);
+  if (!context) throw std::bad_alloc();
+  check_png(spng_set_image_limits(context.get(), most_edge, most_edge));
+  check_png(spng_set_chunk_limits(context.get(), most_chunk_bytes, 4 * most_chunk_bytes));
+  check_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
+  return context;
+}
+
+/// The exponent that makes a PNG's samples linear; none: sRGB.
+std::optional<float> decoding_exponent(spng_ctx* context) {
+  std::uint8_t intent = 0;
+  spng_iccp profile{};
+  std::uint32_t gamma = 0;  // 100000 times the encoding exponent
+  if (!spng_get_srgb(context, &intent) || !spng_get_iccp(context, &profile)) return {};
+  // Writers of sRGB files state 0.45455.
+  if (spng_get_gama_int(context, &gamma) || gamma == 0 || (gamma >= 45000 && gamma <= 46000)) return {};
+  return 1e5f / static_cast<float>(gamma);
 }
 
 /// The output format; grey stays grey unless something is transparent.
@@ -90,6 +104,25 @@ void tag_as_srgb(spng_ctx* context, int dpi, std::string& profile) {
   check_encoder(spng_set_phys(context, &density));
 }
 
+void add_texts(spng_ctx* context, const ImageTexts& texts) {
+  char none[] = "";  // neither a language nor a translation
+  std::vector<spng_text> chunks;
+  for (const auto& [keyword, text] : texts) {
+    spng_text chunk{.keyword = "",
+                    .type = SPNG_ITXT,
+                    .length = text.size(),
+                    .text = const_cast<char*>(text.data()),  // it is only read
+                    .compression_flag = 0,
+                    .compression_method = 0,
+                    .language_tag = none,
+                    .translated_keyword = none};
+    keyword.copy(chunk.keyword, sizeof chunk.keyword - 1);
+    chunks.push_back(chunk);
+  }
+  if (!chunks.empty())
+    check_encoder(spng_set_text(context, chunks.data(), static_cast<std::uint32_t>(chunks.size())));
+}
+
 int append_bytes(spng_ctx*, void* to, void* bytes, std::size_t size) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), size);
   return 0;
@@ -114,6 +147,7 @@ std::string encode_rows(spng_ihdr header, const FileOptions* file, const Fill& f
   check_encoder(spng_set_option(context.get(), SPNG_FILTER_CHOICE, filters));
   check_encoder(spng_set_ihdr(context.get(), &header));
   if (file) tag_as_srgb(context.get(), file->dpi, profile);
+  if (file) add_texts(context.get(), file->texts);
   check_encoder(spng_encode_image(context.get(), nullptr, 0, SPNG_FMT_PNG,
                                   SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE));
   for (std::size_t y = 0; y < header.height; ++y) {
@@ -132,30 +166,20 @@ void put_word(std::uint8_t* to, std::uint16_t word) { std::memcpy(to, &word, siz
 
 }  // namespace
 
-std::optional<float> png_decoding_exponent(std::string_view bytes) {
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return {};
-  std::optional<float> exponent;
-  for (std::size_t at = 8; at + 12 <= bytes.size();) {
-    const std::string_view type = bytes.substr(at + 4, 4);
-    if (type == "sRGB" || type == "iCCP") return {};
-    if (type == "IDAT") break;
-    const std::size_t length = big_endian(bytes.substr(at, 4));
-    if (type == "gAMA" && length == 4) {
-      const std::uint32_t gamma = big_endian(bytes.substr(at + 8, 4));  // 100000 times the encoding exponent
-      // Writers of sRGB files state 0.45455.
-      if (gamma > 0 && (gamma < 45000 || gamma > 46000)) exponent = 1e5f / static_cast<float>(gamma);
-    }
-    at += 12 + length;
-  }
-  return exponent;
+ImageTexts decode_png_texts(std::string_view bytes) {
+  const Context context = decoder_of(bytes);
+  std::uint32_t count = 0;
+  if (spng_get_text(context.get(), nullptr, &count)) return {};  // none, or no PNG
+  std::vector<spng_text> chunks(count);
+  check_png(spng_get_text(context.get(), chunks.data(), &count));
+  ImageTexts texts;
+  for (const spng_text& chunk : chunks)
+    if (chunk.type == SPNG_ITXT) texts.emplace_back(chunk.keyword, std::string(chunk.text, chunk.length));
+  return texts;
 }
 
 StoredImage decode_png(std::string_view bytes) {
-  const Context context(spng_ctx_new(0), spng_ctx_free);
-  if (!context) throw std::bad_alloc();
-  check_png(spng_set_image_limits(context.get(), most_edge, most_edge));
-  check_png(spng_set_chunk_limits(context.get(), most_chunk_bytes, 4 * most_chunk_bytes));
-  check_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
+  const Context context = decoder_of(bytes);
   spng_ihdr header{};
   check_png(spng_get_ihdr(context.get(), &header));
   StoredImage stored;
@@ -166,7 +190,7 @@ StoredImage decode_png(std::string_view bytes) {
   const int transparency = spng_get_trns(context.get(), &ignored);
   if (transparency != SPNG_ECHUNKAVAIL) check_png(transparency);
   const int format = format_of(header, transparency == 0, stored);
-  stored.exponent = png_decoding_exponent(bytes);
+  stored.exponent = decoding_exponent(context.get());
   const std::size_t plain = plain_channels(header, transparency == 0);
   if (plain && decode_png_pixels(bytes, plain, stored)) return stored;
   std::size_t size = 0;
