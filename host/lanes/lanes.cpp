@@ -41,16 +41,22 @@ class Text {
 
 bool is_plain(const std::string& path) { return path.starts_with("plain/"); }
 
-Lanes::Lanes(ReadFile read)
+Lanes::Lanes(ReadFile read, bool shows_helpers)
     : preprocessor_(std::move(read), [](const std::string& file) { return !is_plain(file); }),
-      parser_(is_plain) {}
+      parser_(is_plain),
+      shows_helpers_(shows_helpers) {}
 
 std::vector<Specialisation*> Lanes::specialised(const std::string& path) {
   parser_.read(preprocessor_.tokens_of(path));
   const std::set<std::string> files = preprocessor_.files_of(path);
   std::set<const Specialisation*> called;
-  for (const Function& f : parser_.program().functions) {
-    if (!f.is_entry || !files.contains(*f.place.file)) continue;
+  const auto is_own = [&](const Function& f) { return f.body && *f.place.file == path; };
+  const auto& functions = parser_.program().functions;
+  const bool helpers = shows_helpers_ && std::ranges::none_of(functions, [&](const Function& f) {
+                         return f.is_entry && is_own(f);
+                       });
+  for (const Function& f : functions) {
+    if (!(helpers ? is_own(f) : f.is_entry && files.contains(*f.place.file))) continue;
     std::vector<bool> vary;
     for (const Variable* p : f.parameters) vary.push_back(!p->uniform && !p->type.is_table());
     called.insert(&specialisations_.of(f, vary));

@@ -21,7 +21,8 @@ using IsWanted = std::function<bool(const std::string& name)>;
 /// The plain files of a program. Methods throw BuildError "file:line:column: what".
 class Lanes {
  public:
-  explicit Lanes(ReadFile read);
+  /// `shows_helpers`: of files without ENTRY functions all functions count as such, for authors.
+  explicit Lanes(ReadFile read, bool shows_helpers = false);
 
   /// The plain file `path` in lanes: its structures and ENTRY functions, with their callees, as far as they
   /// are wanted. `lines`: #line directives name the plain file.
@@ -39,6 +40,7 @@ class Lanes {
   Preprocessor preprocessor_;
   Parser parser_;
   Specialisations specialisations_;
+  bool shows_helpers_;
 };
 
 /// The revision of this folder's sources: equal revisions generate equal text from equal files.

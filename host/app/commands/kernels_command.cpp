@@ -53,7 +53,7 @@ std::string made_text(const KernelsCommand& c) {
                ? read_input(c.file)
                : embedded_kernel(wanted, value_of(program_environment()).kernels);
   };
-  spmd::Lanes lanes(read);
+  spmd::Lanes lanes(read, true);
   if (c.explains) return lanes.explained(path);
   return (c.lanes > 0 ? fmt::format("#define LANES {}\n", c.lanes) : "") + lanes.text(path, c.lines);
 }

@@ -14,6 +14,9 @@ TEST_CASE("kernels lists the plain files, and prints one in lanes or what varies
              Catch::Matchers::StartsWith("#define LANES 16\n") && ContainsSubstring("MASK survives("));
   const CommandResult told = run_sundog({"kernels", "plain/pathtracer/bounce.cl", "--explain"});
   CHECK_THAT(told.out, ContainsSubstring("worth varies: line "));
+  // A lobe's file has helpers alone.
+  const CommandResult helper = run_sundog({"kernels", "plain/shade/lobes/highlight.cl"});
+  CHECK_THAT(helper.out, ContainsSubstring("share_highlight("));
 }
 
 TEST_CASE("kernels takes a file of one's own, and refuses it at its place") {
