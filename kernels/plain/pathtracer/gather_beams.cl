@@ -1,18 +1,19 @@
 // Light that photons bring into media. A photon scatters light all along its way through a medium, as a beam,
-// and a stretch of a path gets the light of those beams that pass within a radius of it (Jarosz and others
+// and a segment of a path gets the light of those beams that pass within a radius of it (Jarosz and others
 // 2011, "A Comprehensive Theory of Volumetric Radiance Estimation using Photon Points and Beams", equation
 // 38).
 #include "plain/pathtracer/light_parts.cl"
-#include "plain/pathtracer/stretch.cl"
+#include "plain/pathtracer/medium_segment.cl"
 
 #define BEAM_SINE 0.01f  // beams that are nearly parallel to a path count as if they met it at this angle
 
 HAVING(HAS_SCATTERING);
 
-// Adds what the stretch scatters of a beam towards its beginning, over the scattering and twice the radius.
+// Adds what the segment scatters of a beam towards its beginning, over the scattering and twice the radius.
 HAVING(HAS_CAUSTICS)
-static inline void scatter_beam(const PathState* path, const Stretch* s, UNIFORM __global const float4* beam,
-                                UNIFORM float radius, int slice, int deepest, SampledSpectrum* sum) {
+static inline void scatter_beam(const PathState* path, const MediumSegment* s,
+                                UNIFORM __global const float4* beam, UNIFORM float radius, int slice,
+                                int deepest, SampledSpectrum* sum) {
   const float4 begin = beam[0], way = beam[1], flux = beam[2];
   const int slice_and_sent = (int)way.w;
   const float3 d = way.xyz, to = begin.xyz - s->o, normal = cross(s->d, d);
@@ -28,11 +29,11 @@ static inline void scatter_beam(const PathState* path, const Stretch* s, UNIFORM
   }
 }
 
-// The light of photons that the stretch scatters towards its beginning. Each sample of a pixel looks at its
+// The light of photons that the segment scatters towards its beginning. Each sample of a pixel looks at its
 // quarter of the beams of its map, which all pixels share.
 HAVING(HAS_CAUSTICS)
 static SampledSpectrum gather_beams(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
-                                    const Stretch* s) {
+                                    const MediumSegment* s) {
   const int slice = photon_slice_of(ray), deepest = (int)scene->info->max_depth - path->depth;
   SampledSpectrum sum = (SampledSpectrum)(0.0f);
   float radius = 1.0f;

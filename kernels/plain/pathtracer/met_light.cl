@@ -14,7 +14,7 @@ static float chosen_pdf(UNIFORM const Scene* scene, const PathState* path, float
     if (light->position.w == 0.0f) {
       pdf = area_light_pdf(light, path->from, d, distance);
       if (HAS_LIGHT_TREE) pdf *= light_probability(scene, scene->light_leaves[index], chosen_from(path));
-      pdf = pdf_on_stretch_to(path, light, pdf);
+      pdf = pdf_on_segment_to(path, light, pdf);
     }
   }
   return pdf / (float)scene->info->light_count;
@@ -60,14 +60,14 @@ static inline float3 met_lit_sky(UNIFORM const Scene* scene, const PathState* pa
   float pdf;
   float3 light = distant_along(scene, d, &pdf);
   if (sees_environment(scene)) {
-    light *= weight_of_met(scene, path, pdf_on_stretch(path, pdf * chance));
+    light *= weight_of_met(scene, path, pdf_on_segment(path, pdf * chance));
     light = hide_environment(scene, d, left_by_photons(path, light), camera);
   }
   if (HAS_AREA_LIGHTS)
     for (u32 index = 0; index < scene->info->table_lights; ++index) {
       __global const Light* lamp = scene->lights + index;
       if (is_in_sky(lamp)) {
-        const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
+        const float weight = weight_of_met(scene, path, pdf_on_segment(path, sky_light_pdf(lamp, chance)));
         light = along(light, weight, left_by_photons(path, sky_light_radiance(lamp, d, camera)));
       }
     }
@@ -85,7 +85,7 @@ static int note_suns(UNIFORM const Scene* scene, PathState* path, float3 d) {
     for (u32 index = 0; index < scene->info->table_lights; ++index) {
       __global const Light* lamp = scene->lights + index;
       if (is_in_sky(lamp) && (int)lamp->color.w != around) {
-        const float weight = weight_of_met(scene, path, pdf_on_stretch(path, sky_light_pdf(lamp, chance)));
+        const float weight = weight_of_met(scene, path, pdf_on_segment(path, sky_light_pdf(lamp, chance)));
         const float3 seen = left_by_photons(path, sky_light_radiance(lamp, d, path->depth == 1));
         SampledSpectrum light = path->throughput * spectrum_of(&path->wavelengths, seen * weight);
         if (!shown) light = (SampledSpectrum)(0.0f);

@@ -1,6 +1,6 @@
 // The state of a path between two surfaces.
 #include "plain/pathtracer/interface.h"
-#include "plain/pathtracer/media_stretch.cl"
+#include "plain/pathtracer/medium_distances.cl"
 #include "plain/pathtracer/spectrum.cl"
 #include "shared/light_parts.h"
 
@@ -132,16 +132,16 @@ static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
   return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
 }
 
-// The density of choosing distant light from a stretch: in place of a surface, a place on it is chosen, too.
-static inline float pdf_on_stretch(const PathState* path, float pdf) {
+// The density of choosing distant light from a segment: in place of a surface, a place on it is chosen, too.
+static inline float pdf_on_segment(const PathState* path, float pdf) {
   if (HAS_SCATTERING) return path->scattered.is ? pdf * path->scattered.chance : pdf;
   return pdf;
 }
-// The density of choosing the light `lamp` from a stretch.
-static inline float pdf_on_stretch_to(const PathState* path, UNIFORM __global const Light* lamp, float pdf) {
+// The density of choosing the light `lamp` from a segment.
+static inline float pdf_on_segment_to(const PathState* path, UNIFORM __global const Light* lamp, float pdf) {
   if (HAS_SCATTERING) {
     const Scattered* s = &path->scattered;
-    const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->decay, middle_of_light(lamp));
+    const SeenSegment seen = see_segment(s->o, s->d, s->length, s->decay, middle_of_light(lamp));
     return s->is ? pdf * pdf_towards(&seen, s->at, s->chance) : pdf;
   }
   return pdf;

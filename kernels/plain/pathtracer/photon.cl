@@ -2,16 +2,16 @@
 // mirrored or bent land on surfaces that scatter light; shadow rays find the light of all others.
 #include "plain/pathtracer/hero.cl"
 #include "plain/pathtracer/leave_surface.cl"
+#include "plain/pathtracer/medium_segment.cl"
 #include "plain/pathtracer/photon_start.cl"
-#include "plain/pathtracer/stretch.cl"
 
-// One of the stretches on which a medium scatters a photon that was mirrored or bent, chosen by how much
+// One of the segments on which a medium scatters a photon that was mirrored or bent, chosen by how much
 // light each of them scatters.
 typedef struct Beam {
-  float3 o, d, flux;  // flux: over this stretch's part of the light
+  float3 o, d, flux;  // flux: over this segment's part of the light
   float length;       // may be infinite
   int sent_on;        // how often the photon was
-  float scattered;    // light on all stretches so far
+  float scattered;    // light on all segments so far
   float number;       // in [0, 1), to choose by
 } Beam;
 
@@ -89,7 +89,7 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
 HAVING(HAS_SCATTERING)
 static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
                                      const Encounter* met, Photon* photon) {
-  const Stretch s = find_stretch(scene, begun, ray, met, &photon->path);
+  const MediumSegment s = find_medium_segment(scene, begun, ray, met, &photon->path);
   if (!photon->bent || !s.scatters) return;
   const SampledSpectrum flux = photon->path.throughput * spectrum_over(s.decay, s.begin);
   const float light = spectrum_greatest(flux) * lost_part(s.mean * s.length);
@@ -107,7 +107,7 @@ static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay*
   photon->beam.sent_on = photon->path.depth - 1;
 }
 
-// Perhaps takes the photon's stretch for its beam.
+// Perhaps takes the photon's segment for its beam.
 static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
                                const Encounter* met, Photon* photon) {
   if (HAS_SCATTERING) choose_scattering(scene, begun, ray, met, photon);

@@ -1,26 +1,26 @@
-// Media that scatter, on the way of a path to its next interface: each stretch of a ray gets light from one
+// Media that scatter, on the way of a path to its next interface: each segment of a ray gets light from one
 // lamp, at a place that is chosen for it, and may end the ray at another, from where the path continues.
 #include "plain/pathtracer/gather_beams.cl"
 #include "plain/pathtracer/next_event.cl"
 #include "plain/pathtracer/roulette.cl"
 
-// Light from the stretch's end that is scattered at the distance `at`.
-static inline SampledSpectrum scattered_at(const PathState* path, const Stretch* s, float at) {
+// Light from the segment's end that is scattered at the distance `at`.
+static inline SampledSpectrum scattered_at(const PathState* path, const MediumSegment* s, float at) {
   return path->throughput * spectrum_over(s->decay, s->begin + at) * s->scattering;
 }
 
 // The density of the distance `at` as the place where a path is scattered, and the chance that none is.
-static inline float free_pdf(const Stretch* s, float at) {
+static inline float free_pdf(const MediumSegment* s, float at) {
   return spectrum_sum(s->shares * s->decay * spectrum_over(s->decay, at));
 }
-static inline float chance_to_pass(const Stretch* s) {
+static inline float chance_to_pass(const MediumSegment* s) {
   return spectrum_sum(s->shares * spectrum_over(s->decay, s->length));
 }
 
-// A ray that begins at the distance `at` of the stretch.
+// A ray that begins at the distance `at` of the segment.
 HAVING(HAS_SCATTERING)
-static inline SceneRay ray_from_stretch(UNIFORM const Scene* scene, const BegunRay* begun,
-                                        const SceneRay* ray, const Stretch* s, float at, float3 d,
+static inline SceneRay ray_from_segment(UNIFORM const Scene* scene, const BegunRay* begun,
+                                        const SceneRay* ray, const MediumSegment* s, float at, float3 d,
                                         float t_max) {
   SceneRay made = *ray;
   const SurfaceHit nothing = hit_nothing(begun->t_min + at);
@@ -33,15 +33,15 @@ static inline SceneRay ray_from_stretch(UNIFORM const Scene* scene, const BegunR
   return made;
 }
 
-// A distance on the stretch that suits its light, with its density.
-static inline float distance_for_light(UNIFORM const Scene* scene, const Stretch* s, int chosen, float u_way,
-                                       float u, float u_color, float* pdf) {
+// A distance on the segment that suits its light, with its density.
+static inline float distance_for_light(UNIFORM const Scene* scene, const MediumSegment* s, int chosen,
+                                       float u_way, float u, float u_color, float* pdf) {
   float at = next_distance(s->decay, s->drawn, s->length, u, u_color);
   float chance = next_pdf(s->decay, s->drawn, s->length, at);
   EACH_ALIKE(int, index, chosen) {
     __global const Light* lamp = scene->lights + index;
     if (has_place(lamp)) {
-      const SeenStretch seen = see_stretch(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
+      const SeenSegment seen = see_segment(s->o, s->d, s->length, s->mean, middle_of_light(lamp));
       if (u_way < seen.part) at = distance_by_angle(&seen, s->length, u);
       chance = pdf_towards(&seen, at, next_pdf(s->decay, s->drawn, s->length, at));
     }
@@ -50,10 +50,10 @@ static inline float distance_for_light(UNIFORM const Scene* scene, const Stretch
   return at;
 }
 
-// Light of one lamp that the stretch scatters towards its beginning.
+// Light of one lamp that the segment scatters towards its beginning.
 HAVING(HAS_SCATTERING)
-static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
-                                        const SceneRay* ray, const Stretch* s, int dimension,
+static SampledSpectrum light_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                                        const SceneRay* ray, const MediumSegment* s, int dimension,
                                         UNIFORM u32* counts) {
   const Numbers u = numbers_at(&path->at, dimension, true, true),
                 v = numbers_at(&path->at, dimension + 4, true, true);
@@ -72,7 +72,7 @@ static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, PathState* p
   if (!(spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f)) return (SampledSpectrum)(0.0f);
   count(counts, COUNT_SHADOW);
   note_ray(counts);
-  SceneRay to_light = ray_from_stretch(scene, begun, ray, s, at, light.wi, light.distance);
+  SceneRay to_light = ray_from_segment(scene, begun, ray, s, at, light.wi, light.distance);
   const SampledSpectrum arriving = arriving_spectrum(scene, &path->wavelengths, &to_light, possible, counts);
   if (HAS_LIGHT_GROUPS) note_group(path, group_of(scene, chosen), arriving);
   if (HAS_LIGHT_PARTS) {
@@ -82,10 +82,10 @@ static SampledSpectrum light_on_stretch(UNIFORM const Scene* scene, PathState* p
   return arriving;
 }
 
-// The path is scattered at the distance `at` of its stretch. Returns whether it continues.
+// The path is scattered at the distance `at` of its segment. Returns whether it continues.
 HAVING(HAS_SCATTERING)
-static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
-                                   SceneRay* ray, const Stretch* s, float at, UNIFORM u32* counts) {
+static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+                                   SceneRay* ray, const MediumSegment* s, float at, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
   const Numbers u = numbers_at(&path->at, dimension, true, false);
   const float pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
@@ -113,21 +113,21 @@ static inline bool turn_on_stretch(UNIFORM const Scene* scene, PathState* path, 
     count(counts, COUNT_REFLECTION);
     note_ray(counts);
   }
-  *ray = ray_from_stretch(scene, begun, ray, s, at, direction_about(s->d, cosine, u.y), INFINITY);
+  *ray = ray_from_segment(scene, begun, ray, s, at, direction_about(s->d, cosine, u.y), INFINITY);
   return going;
 }
 
 HAVING(HAS_SCATTERING)
-static bool scatter_on_stretch(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
+static bool scatter_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
                                SceneRay* ray, const Encounter* met, bool* going, UNIFORM u32* counts) {
-  const Stretch s = find_stretch(scene, begun, ray, met, path);
+  const MediumSegment s = find_medium_segment(scene, begun, ray, met, path);
   *going = false;
   if (!any(s.scatters)) return false;
   const int dimension = (int)DIMENSION_STRETCH + (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                         begun->crossings * (int)DIMENSIONS_A_CROSSING;
   if (s.scatters && path->depth <= (int)scene->info->max_depth) {
     if (scene->info->light_count > 0u)
-      path->radiance += light_on_stretch(scene, path, begun, ray, &s, dimension, counts);
+      path->radiance += light_on_segment(scene, path, begun, ray, &s, dimension, counts);
     if (HAS_CAUSTICS) path->radiance += gather_beams(scene, path, ray, &s);
   }
   const Numbers v = numbers_at(&path->at, dimension + 4, true, true);
@@ -135,7 +135,7 @@ static bool scatter_on_stretch(UNIFORM const Scene* scene, PathState* path, cons
   const float at = chosen > 0.0f ? depth_of_lost(v.x) / nonzero(chosen) : INFINITY;
   const bool turns = s.scatters && at < s.length;
   if (s.scatters && !turns) path->throughput *= 1.0f / real_max(chance_to_pass(&s), 1e-30f);
-  if (turns) *going = turn_on_stretch(scene, path, begun, ray, &s, at, counts);
+  if (turns) *going = turn_on_segment(scene, path, begun, ray, &s, at, counts);
   return turns;
 }
 
@@ -143,6 +143,6 @@ static bool scatter_on_stretch(UNIFORM const Scene* scene, PathState* path, cons
 // continues then.
 static inline bool scatter_in_media(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
                                     SceneRay* ray, const Encounter* met, bool* going, UNIFORM u32* counts) {
-  if (HAS_SCATTERING) return scatter_on_stretch(scene, path, begun, ray, met, going, counts);
+  if (HAS_SCATTERING) return scatter_on_segment(scene, path, begun, ray, met, going, counts);
   return false;
 }

@@ -1,13 +1,13 @@
-// Stretches of rays through media that scatter: where on them light is scattered, by the medium's decay or
+// Segments of rays through media that scatter: where on them light is scattered, by the medium's decay or
 // towards a light (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating
 // Media"), and whereto (Henyey and Greenstein 1941).
 #include "plain/core.h"
 #include "plain/pathtracer/spectrum.cl"
 
-// The stretch that a path was scattered on.
+// The segment that a path was scattered on.
 typedef struct Scattered {
   bool is;       // scattered last by a medium
-  float3 o, d;   // the stretch's beginning and direction
+  float3 o, d;   // the segment's beginning and direction
   float length;  // may be infinite
   float at;      // where on it
   float decay;   // of the medium, the mean of the colours
@@ -86,22 +86,22 @@ static inline float next_distance(SampledSpectrum decay, SampledSpectrum shares,
   return real_min(depth_of_lost(u * lost_part(chosen * length)) / nonzero(chosen), length);
 }
 
-// A stretch as a light sees it: the place nearest to the light, how far that is, the way from there to the
-// beginning, and the angle that the stretch takes up.
-typedef struct SeenStretch {
+// A segment as a light sees it: the place nearest to the light, how far that is, the way from there to the
+// beginning, and the angle that the segment takes up.
+typedef struct SeenSegment {
   float nearest, height, begin, angle;
   float part;  // of the distances that are chosen evenly in the angle
-} SeenStretch;
+} SeenSegment;
 
-static inline SeenStretch see_stretch(float3 o, float3 d, float length, float decay, UNIFORM float4 light) {
-  SeenStretch s;
+static inline SeenSegment see_segment(float3 o, float3 d, float length, float decay, UNIFORM float4 light) {
+  SeenSegment s;
   const float3 to = light.xyz - o;
   s.nearest = dot(to, d);
   const float3 across = along(to, -s.nearest, d);
   s.height = real_sqrt(real_max(dot(across, across) + light.w, 1e-12f * dot(to, to) + 1e-30f));
   s.begin = -s.nearest;
   const float end = length - s.nearest;
-  // The angle at a long stretch's end is a right one.
+  // The angle at a long segment's end is a right one.
   const bool far = end > 1e6f * (s.height + fabs(s.begin));
   s.angle = atan2(far ? s.height : length * s.height, far ? s.begin : fma(s.begin, end, s.height * s.height));
   const float way = real_clamp(s.nearest, 0.0f, length);
@@ -109,14 +109,14 @@ static inline SeenStretch see_stretch(float3 o, float3 d, float length, float de
   return s;
 }
 
-static inline float distance_by_angle(const SeenStretch* s, float length, float u) {
+static inline float distance_by_angle(const SeenSegment* s, float length, float u) {
   const float tangent = tan(u * s->angle);
   const float x = s->height * fma(s->height, tangent, s->begin) / nonzero(fma(-s->begin, tangent, s->height));
   return real_clamp(s->nearest + x, 0.0f, length);
 }
 
 // The density of a distance that is chosen both ways, where the other way's is `chance`.
-static inline float pdf_towards(const SeenStretch* s, float at, float chance) {
+static inline float pdf_towards(const SeenSegment* s, float at, float chance) {
   const float x = at - s->nearest, square = fma(x, x, s->height * s->height);
   const float seen = s->height / (real_max(s->angle, 1e-6f) * square);
   return fma(s->part, seen, (1.0f - s->part) * chance);
@@ -135,7 +135,7 @@ static inline float phase_cosine(float g, float u) {
   return real_clamp(even ? fma(-2.0f, u, 1.0f) : cosine, -1.0f, 1.0f);
 }
 
-// Where a stretch stands for its points when a light is chosen for it.
+// Where a segment stands for its points when a light is chosen for it.
 static inline float3 place_for_lights(float3 o, float3 d, float length, float decay) {
   return along(o, real_min(0.5f * length, 1.0f / nonzero(decay)), d);
 }

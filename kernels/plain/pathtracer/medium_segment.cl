@@ -1,4 +1,4 @@
-// The stretch of a ray to its next interface, where that lies in a medium that scatters.
+// The segment of a ray to its next interface, where that lies in a medium that scatters.
 #include "plain/pathtracer/path_state.cl"
 
 // A ray before it is taken to its next interface.
@@ -20,8 +20,8 @@ static inline BegunRay begun_ray_of(const SceneRay* ray) {
   return begun;
 }
 
-// A stretch of a ray in a medium.
-typedef struct Stretch {
+// A segment of a ray in a medium.
+typedef struct MediumSegment {
   bool scatters;
   float3 o, d;                 // where it begins
   float length;                // to the next interface
@@ -32,12 +32,13 @@ typedef struct Stretch {
   float mean;                  // of the decay's colours
   SampledSpectrum shares;      // of the colours, in the choice of the place where the path is scattered
   SampledSpectrum drawn;       // and of the one that gets light
-} Stretch;
+} MediumSegment;
 
 HAVING(HAS_SCATTERING)
-static inline Stretch find_stretch(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
-                                   const Encounter* met, const PathState* path) {
-  Stretch s;
+static inline MediumSegment find_medium_segment(UNIFORM const Scene* scene, const BegunRay* begun,
+                                                const SceneRay* ray, const Encounter* met,
+                                                const PathState* path) {
+  MediumSegment s;
   s.scatters = false;
   s.o = along(ray->o, begun->t_min, ray->d);
   s.d = ray->d;
