@@ -225,6 +225,11 @@ Value Values::choose(const Value& condition, const Value& a, const Value& b) {
           "both sides of a choice must be of one type, found " + name_of(a.type) + " and " + name_of(b.type));
   Value r = result(a.type, {&a, &b});
   r.depends_z |= condition.depends_z;
+  if (r.type == ValueType::condition) {
+    const NodeId of_b = g.apply(Op::both, g.apply(Op::opposite, condition.x()), b.x());
+    r.part[0] = g.apply(Op::either, g.apply(Op::both, condition.x(), a.x()), of_b);
+    return r;
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(r.size()); ++i)
     r.part[i] = g.choose(condition.x(), a.part[i], b.part[i]);
   r.tight = a.tight && b.tight;
