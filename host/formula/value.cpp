@@ -263,8 +263,8 @@ Value Values::each(Op op, const Value& a, const Value& b) {
     r.part[i] =
         op == Op::divide ? g.div(left.part[i], right.part[i]) : g.apply(op, left.part[i], right.part[i]);
   if ((op == Op::minimum || op == Op::maximum) && a.varies != b.varies) {
-    r.tight = (a.varies ? a : b).tight;
-    r.slope = (a.varies ? a : b).slope;
+    r.tight = (a.varies ? left : right).tight;
+    r.slope = (a.varies ? left : right).slope;
   }
   return r;
 }

@@ -41,6 +41,7 @@ class FormulaJudge {
     size_ = glm::length(upper - lower);
     judge_values(escapes);
     judge_domains();
+    if (escapes) judge_estimate();
     if (closely && found_.finite > 0) judge_length();
   }
 
@@ -87,6 +88,17 @@ class FormulaJudge {
                       b.guard.line, b.guard.column, b.guard.function, b.value, text_of(b.at), b.count,
                       of_points(), b.value < b.guard.low ? b.guard.low : b.guard.high));
     }
+  }
+
+  /// For a map that scales, r log r / (2 dr) is longer than the distance.
+  void judge_estimate() {
+    JsonValue last = value_;
+    if (value_.json().contains("steps")) last = value_.member("steps", "").items("")[field_.steps.size() - 1];
+    if (last_.estimate == EscapeEstimate::logarithmic && last.json().contains("map") &&
+        !last.json().contains("estimate") && !has_safety_ && FormulaEvaluator(field_).scales())
+      last.member("map", "").warn(
+          "far points' lengths grow in proportion, not by a power: the logarithmic estimate is too long and "
+          "leaves holes; set \"estimate\": \"linear\", with so many \"iterations\" that orbits escape");
   }
 
   /// The largest safety not contradicted by the survey.

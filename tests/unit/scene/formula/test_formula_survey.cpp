@@ -137,7 +137,7 @@ TEST_CASE("an argument outside of its function's domain is reported with its pla
 }
 
 TEST_CASE("points without a number, and intervals without a surface, are reported with a point") {
-  const auto lost = scene_of_formula({{"distance", "p.x > 0.5 ? exp(70) * exp(70) * p.x : length(p) - 0.4"}});
+  const auto lost = scene_of_formula({{"distance", "p.x > 0.5 ? exp(70 + p.x) * exp(70) : length(p) - 0.4"}});
   CHECK(says(lost, "", "no finite distance at"));
   CHECK(says(lost, "", "of 1024 points"));
   CHECK(says(scene_of_formula({{"distance", "length(p) + 5"}}), "/distance",
@@ -145,4 +145,24 @@ TEST_CASE("points without a number, and intervals without a surface, are reporte
   CHECK(says(scene_of_formula({{"distance", "length(p) - 5"}}), "/distance",
              "the whole interval is inside: the greatest distance found is -2.92"));
   CHECK(says(scene_of_formula({{"map", "z = z ^ 2 + c + vec3(9, 0, 0)"}}), "", "holds no surface"));
+}
+
+TEST_CASE("a map that scales is told to take the linear estimate, a power is not") {
+  const auto warnings = [](nlohmann::json members) {
+    members["interval"] = {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}};
+    const auto all = scene_of_formula(members).warnings;
+    return all.empty() ? std::string() : all.at(0).substr(all[0].find("/objects"));
+  };
+  const nlohmann::json box = "z = 2 * ballfold(boxfold(z, 1), 0.5, 1) + c", turn = "z = rotate(z, c, 0.3)";
+  CHECK_THAT(warnings({{"map", box}}), ContainsSubstring("/0/map: far points' lengths grow in proportion"));
+  CHECK(warnings({{"map", box}, {"estimate", "linear"}, {"iterations", 24}}).empty());
+  CHECK(warnings({{"map", box}, {"safety", 0.3}}).empty());
+  CHECK(warnings({{"map", "z = i < 2 ? z ^ 8 + c : 2 * z"}}).empty());
+  const auto hybrid = [&](const char* first) {
+    const nlohmann::json listed{{"type", "fractal"}, {"formula", first}},
+        own{{"type", "formula"}, {"map", turn}};
+    return warnings({{"type", "hybrid"}, {"steps", {listed, own}}, {"iterations", 24}});
+  };
+  CHECK_THAT(hybrid("mandelbox"), ContainsSubstring("/0/steps/1/map: far points"));
+  CHECK(hybrid("mandelbulb").empty());
 }
