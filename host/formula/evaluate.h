@@ -37,6 +37,8 @@ class FormulaEvaluator {
   explicit FormulaEvaluator(const FormulaField& field);
   /// The estimate times the field's safety; 0 inside if the formula gives no depth.
   FieldValue at(const glm::dvec3& p);
+  /// Whether each map changes far points' lengths in proportion, as the Mandelbox's does and no power.
+  bool scales();
   /// Maximum number of operations of an evaluation.
   std::size_t cost() const;
   /// Over all points so far.

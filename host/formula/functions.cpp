@@ -1,6 +1,5 @@
 #include "formula/functions.h"
 
-#include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -66,14 +65,6 @@ Value smooth_minimum(Values& v, const Value& a, const Value& b, const Value& k) 
   const Value bulge = v.multiply(v.multiply(h, h), v.multiply(wide, v.number(0.25)));
   return v.add(v.each(Op::minimum, a, b), bulge, true);
 }
-Value pow_of(Values& v, const Value& a, const Value& b) {
-  std::optional<int> whole;
-  if (b.type == ValueType::scalar && v.g.is_constant(b.x())) {
-    const double n = v.g[b.x()].value;
-    if (n == std::floor(n) && std::abs(n) <= 16) whole = static_cast<int>(n);
-  }
-  return v.power(a, b, whole);
-}
 
 struct Function {
   std::string call, meaning;
@@ -136,7 +127,7 @@ std::map<std::string, Function> make_functions() {
   f["log"] = {"log(x)", "natural logarithm; of 1e-30 at least", 1, 1,
               [](V v, A a) { return of_number(v, Op::logarithm, "log", a[0], 1e-30, {}); }};
   f["pow"] = {"pow(x, n)", "x^n: of a vec3 the triplex power, of a quat the quaternion's", 2, 2,
-              [](V v, A a) { return pow_of(v, a[0], a[1]); }};
+              [](V v, A a) { return v.power(a[0], a[1], std::nullopt); }};
   f["sin"] = {"sin(x)", "sine; angles are in radians", 1, 1, [](V v, A a) { return sine(v, a[0]); }};
   f["cos"] = {"cos(x)", "cosine", 1, 1, [](V v, A a) { return cosine(v, a[0]); }};
   f["tan"] = {"tan(x)", "tangent", 1, 1, [](V v, A a) { return v.divide(sine(v, a[0]), cosine(v, a[0])); }};

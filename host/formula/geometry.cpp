@@ -154,9 +154,9 @@ Value Values::invert(const Value& v, const Value& square_radius) {
 
 Value Values::wrap(const Value& v, const Value& period) {
   folds = true;
-  const Value cells = each(Op::round_down, add(divide(v, period), number(0.5)));
-  Value r = add(v, multiply(period, cells), true);
-  if (!period.varies) {
+  const Value cells = each(Op::round_down, each(Op::add, each(Op::divide, v, period), number(0.5)));
+  Value r = add(v, each(Op::multiply, period, cells), true);
+  if (!period.varies && r.type == v.type) {
     r.tight = v.tight;
     r.slope = v.slope;
   }

@@ -63,7 +63,8 @@ bool Graph::is_not_negative(NodeId id, int depth) const {
 }
 
 NodeId Graph::constant(double value) {
-  if (!std::isfinite(value)) throw std::domain_error("the value is not a finite number");
+  if (!std::isfinite(static_cast<float>(value)))
+    throw std::domain_error("the value is not a finite number of at most 3.4e38");
   return insert({Op::constant, no_node, no_node, no_node, value == 0 ? 0.0 : value});
 }
 
@@ -71,7 +72,7 @@ NodeId Graph::input(int index) { return insert({Op::input, no_node, no_node, no_
 
 NodeId Graph::div(NodeId a, NodeId b) {
   if (is_constant(b)) {
-    if (nodes_[b].value == 0) throw std::domain_error("division by zero");
+    if (static_cast<float>(nodes_[b].value) == 0) throw std::domain_error("division by zero");
     return apply(Op::divide, a, b);
   }
   const NodeId size = apply(Op::absolute, b), tiny = constant(1e-30);
@@ -121,6 +122,11 @@ NodeId Graph::simplified(Op op, NodeId a, NodeId b, NodeId c) {
       return a == b ? a : no_node;
     case Op::power:
       return is_constant(b, 1) ? a : no_node;
+    case Op::both:
+    case Op::either:
+      for (const auto& [known, other] : {std::pair(a, b), std::pair(b, a)})
+        if (is_constant(known)) return (nodes_[known].value != 0) == (op == Op::both) ? other : known;
+      return a == b ? a : no_node;
     case Op::choose:
       if (is_constant(a)) return nodes_[a].value != 0 ? b : c;
       return b == c ? b : no_node;

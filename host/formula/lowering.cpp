@@ -165,7 +165,9 @@ Value Lowering::power(const Expression& e) {
       n = parameter_values_.at(static_cast<std::size_t>(node.value) -
                                static_cast<std::size_t>(in::parameter));
   }
-  if (n && *n == std::floor(*n) && std::abs(*n) <= 16)
+  // A constant exponent of a number costs no more than its digits; others would make a kernel for each value.
+  const double most = base.type == ValueType::scalar && g.is_constant(exponent.x()) ? 1024 : 16;
+  if (n && *n == std::floor(*n) && std::abs(*n) <= most)
     return v.power(base, v.number(*n), static_cast<int>(*n));
   return v.power(base, exponent, std::nullopt);
 }

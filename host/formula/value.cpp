@@ -225,6 +225,11 @@ Value Values::choose(const Value& condition, const Value& a, const Value& b) {
           "both sides of a choice must be of one type, found " + name_of(a.type) + " and " + name_of(b.type));
   Value r = result(a.type, {&a, &b});
   r.depends_z |= condition.depends_z;
+  if (r.type == ValueType::condition) {
+    const NodeId of_b = g.apply(Op::both, g.apply(Op::opposite, condition.x()), b.x());
+    r.part[0] = g.apply(Op::either, g.apply(Op::both, condition.x(), a.x()), of_b);
+    return r;
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(r.size()); ++i)
     r.part[i] = g.choose(condition.x(), a.part[i], b.part[i]);
   r.tight = a.tight && b.tight;
@@ -258,8 +263,8 @@ Value Values::each(Op op, const Value& a, const Value& b) {
     r.part[i] =
         op == Op::divide ? g.div(left.part[i], right.part[i]) : g.apply(op, left.part[i], right.part[i]);
   if ((op == Op::minimum || op == Op::maximum) && a.varies != b.varies) {
-    r.tight = (a.varies ? a : b).tight;
-    r.slope = (a.varies ? a : b).slope;
+    r.tight = (a.varies ? left : right).tight;
+    r.slope = (a.varies ? left : right).slope;
   }
   return r;
 }

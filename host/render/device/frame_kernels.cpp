@@ -101,7 +101,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
   const Integrator& integrator = *find_integrator(scene.integrator);
   const auto config_of = kernels.choice == KernelChoice::general ? general_config
-                         : kernels.choice == KernelChoice::draft ? draft_config
+                         : kernels.choice == KernelChoice::draft ? drawing_draft_config
                                                                  : make_kernel_config;
   KernelConfig config = config_of(scene, device.info(), tuning);
   if (kernels.mattes) config.numbers["HAS_MATTES"] = 1;
@@ -210,7 +210,7 @@ bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tu
     return device.has(integrator.entry, config.defines(), config.generated) &&
            (!scene.features.caustics || device.has(photon_entry, config.defines(), config.generated));
   };
-  return !has(make_kernel_config(scene, info, tuning)) && has(draft_config(scene, info, tuning));
+  return !has(make_kernel_config(scene, info, tuning)) && has(drawing_draft_config(scene, info, tuning));
 }
 
 FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,

@@ -48,7 +48,7 @@ FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, con
                                  const WorkGroup& asked, bool aovs, RenderTimes& times);
 
 /// Whether the frame's kernels must be built on the device, while those of its draft are in its cache.
-bool has_only_draft(const DeviceInfo& device, const CompiledScene& scene, const Tuning& tuning);
+bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning);
 
 /// The result of an update.
 struct KernelUpdate {

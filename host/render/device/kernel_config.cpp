@@ -210,6 +210,12 @@ KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, 
   return config;
 }
 
+KernelConfig drawing_draft_config(const CompiledScene& scene, const DeviceInfo& device,
+                                  const Tuning& tuning) {
+  const bool lacks_programs = !scene.field_source.empty() && !have_programs(scene.sdf_parameters);
+  return lacks_programs ? general_config(scene, device, tuning) : draft_config(scene, device, tuning);
+}
+
 KernelConfig interpreting_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning) {
   KernelConfig config = general_config(scene, device, tuning);
   config.generated[fields_file] = interpreting_source;

@@ -57,6 +57,9 @@ bool drafts(const KernelConfig& draft, const KernelConfig& wanted);
 /// All features except the scene's own fog, lens, filter and motion: slow and rounding differently, so its
 /// picture is replaced later. general_config() if interpreting_config() may not be built. Pure.
 KernelConfig draft_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning = {});
+/// The draft that draws this scene: general_config() if its fields are no programs, as from very near. Pure.
+KernelConfig drawing_draft_config(const CompiledScene& scene, const DeviceInfo& device,
+                                  const Tuning& tuning = {});
 
 /// general_config() and, with fields, interpreting_config(); the first one also with and without features
 /// that an edit toggles by a number (fog, a lens); and drafts. Ordered by how many edits need them. Pure.

@@ -36,11 +36,16 @@ class FormulaJudge {
 
   void run(const dvec3& lower, const dvec3& upper) {
     const bool escapes = last_.kind == FormulaKind::escape;
-    const bool closely = !escapes && (is_own_ || value_.json().contains("parameters"));
+    const auto& json = value_.json();
+    bool is_changed = is_own_ || json.contains("parameters");
+    for (const char* key : {"steps", "iterations", "bailout"}) is_changed |= escapes && json.contains(key);
+    // The derivative of a power is a bound; the distance to a set that only scales needs the set's size.
+    const bool closely = is_changed && (!escapes || FormulaEvaluator(field_).scales());
     found_ = survey_formula(field_, lower, upper, closely);
     size_ = glm::length(upper - lower);
     judge_values(escapes);
     judge_domains();
+    if (closely && escapes) judge_estimate();
     if (closely && found_.finite > 0) judge_length();
   }
 
@@ -89,6 +94,17 @@ class FormulaJudge {
     }
   }
 
+  /// For a map that scales, r log r / (2 dr) is longer than the distance, so that steps must be short.
+  void judge_estimate() {
+    JsonValue last = value_;
+    if (value_.json().contains("steps")) last = value_.member("steps", "").items("")[field_.steps.size() - 1];
+    if (last_.estimate == EscapeEstimate::logarithmic && last.json().contains("map") &&
+        !last.json().contains("estimate") && !has_safety_)
+      last.member("map", "").warn(
+          "far points' lengths grow in proportion, not by a power: the logarithmic estimate is too long; "
+          "set \"estimate\": \"linear\", with so many \"iterations\" that orbits escape");
+  }
+
   /// The largest safety not contradicted by the survey.
   double bearable_safety() const {
     const bool is_distance = is_own_ && !last_.normalize && found_.is_bounded && found_.steepest.value > 0;
@@ -102,12 +118,12 @@ class FormulaJudge {
     const double reached = found_.reach.value * field_.safety;
     if (found_.reach.value < 0.98 && safety > reached)
       safety = 0.75 * reached;  // worse points lie between those found
-    return safety;
+    return last_.kind == FormulaKind::escape ? std::max(safety, 0.1) : safety;  // a tear costs no more
   }
 
   std::string reason() const {
-    const bool is_steep = is_own_ && !last_.normalize && found_.is_bounded &&
-                          (found_.steepest.value > 1.01 || found_.steepest.value < 0.5);
+    const bool is_steep = is_own_ && last_.kind != FormulaKind::escape && !last_.normalize &&
+                          found_.is_bounded && (found_.steepest.value > 1.01 || found_.steepest.value < 0.5);
     if (is_steep)
       return fmt::format("changes by {:.3g} a unit of length{} at {}, where a distance changes by 1",
                          found_.steepest.value, last_.kind == FormulaKind::folded ? " of z" : "",
@@ -136,7 +152,7 @@ class FormulaJudge {
     }
     if (bearable > field_.safety && last_.kind != FormulaKind::direct) return;
     field_.safety = rounded_down(bearable);
-    const std::string mend = !is_own_ || last_.kind == FormulaKind::folded || last_.normalize
+    const std::string mend = !is_own_ || last_.kind != FormulaKind::direct || last_.normalize
                                  ? fmt::format("\"safety\": {:g}", field_.safety)
                                  : fmt::format("a factor of {:g} in the expression, or \"safety\": {:g}",
                                                field_.safety, field_.safety);

@@ -195,9 +195,11 @@ TEST_CASE("fields are marched in doubles only where floats are too coarse, each 
 TEST_CASE("a deep view is rendered sharp, with its shadows, a batch of rays or a ray at a time") {
   NearView view = near_view(1e-9);
   view.scene.render.tracer = GENERATE(Tracer::automatic, Tracer::compact);
+  RenderOptions options;
+  options.kernels = GENERATE(KernelChoice::own, KernelChoice::draft);  // the interpreter has no doubles
   on_every_device([&](const DeviceInfo& info) {
     if (!has_doubles(info) || !is_quick(info)) return;
-    const RenderResult result = scenes::render_on(info, view.scene);
+    const RenderResult result = scenes::render_on(info, view.scene, options);
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < result.image.data.size(); i += 3) {
       sum += result.image.data[i];

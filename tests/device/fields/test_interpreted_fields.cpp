@@ -43,6 +43,16 @@ SdfNode with_amount(SdfNode::Kind kind, SdfNode child) {
   return node;
 }
 
+/// Conditions that are known, or chosen, beside those of the point.
+SdfNode conditions() {
+  SdfNode node = leaf("sphere");
+  FormulaDefinition& d = node.formula.steps[0].definition;
+  d.distance =
+      "known = 1 < 2 && p.x > 0 || 2 < 1\n"
+      "length(p) - ((known ? p.y > 0 : p.z > 0) ? 1 : 1.1)";
+  return node;
+}
+
 SdfDescription named(const std::string& name, SdfNode root) {
   SdfDescription field;
   field.name = name;
@@ -54,6 +64,7 @@ std::vector<SdfDescription> composed_fields() {
   using Kind = SdfNode::Kind;
   return {
       named("hybrid", hybrid()),
+      named("conditions", conditions()),
       named("unite", joint(Kind::unite, 0.2, {leaf("torus"), moved(leaf("sphere")), leaf("mandelbulb")})),
       named("subtract", joint(Kind::subtract, 0.1, {leaf("sphere"), moved(leaf("torus"))})),
       named("intersect", joint(Kind::intersect, 0, {leaf("sphere"), moved(moved(leaf("menger")))})),

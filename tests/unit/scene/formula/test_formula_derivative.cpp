@@ -215,6 +215,8 @@ TEST_CASE("a map that tears space apart is differentiated exactly, one that keep
   CHECK(lower(map_of("z = abs(z + 1) - abs(z - 1) - z"), {}).jacobian);
   CHECK(lower(map_of("z = vec3(z.x * z.x - z.y, sin(z.y), z.z) + c"), {}).jacobian);
   CHECK(lower(map_of("z.x = 2 * z.x"), {}).jacobian);
+  CHECK(lower(map_of("z = max(z.x, vec3(-9, -9, -9)) + c"), {}).jacobian);  // longer by sqrt(3)
+  CHECK(lower(map_of("z = wrap(z.x, vec3(9, 9, 9)) + c"), {}).jacobian);
   FormulaDefinition forced = map_of("z.x = 2 * z.x");
   forced.derivative = FormulaDerivative::running;
   CHECK_THROWS_AS(lower(forced, {}), FormulaError);

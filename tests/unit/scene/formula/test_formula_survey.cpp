@@ -137,7 +137,7 @@ TEST_CASE("an argument outside of its function's domain is reported with its pla
 }
 
 TEST_CASE("points without a number, and intervals without a surface, are reported with a point") {
-  const auto lost = scene_of_formula({{"distance", "p.x > 0.5 ? exp(70) * exp(70) * p.x : length(p) - 0.4"}});
+  const auto lost = scene_of_formula({{"distance", "p.x > 0.5 ? exp(70 + p.x) * exp(70) : length(p) - 0.4"}});
   CHECK(says(lost, "", "no finite distance at"));
   CHECK(says(lost, "", "of 1024 points"));
   CHECK(says(scene_of_formula({{"distance", "length(p) + 5"}}), "/distance",
@@ -145,4 +145,35 @@ TEST_CASE("points without a number, and intervals without a surface, are reporte
   CHECK(says(scene_of_formula({{"distance", "length(p) - 5"}}), "/distance",
              "the whole interval is inside: the greatest distance found is -2.92"));
   CHECK(says(scene_of_formula({{"map", "z = z ^ 2 + c + vec3(9, 0, 0)"}}), "", "holds no surface"));
+}
+
+TEST_CASE("a map that scales is measured, and told to take the linear estimate; a power is not") {
+  const auto scene = [](nlohmann::json members) {
+    members["interval"] = {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}};
+    return scene_of_formula(members);
+  };
+  const nlohmann::json box = "z = -1.5 * ballfold(boxfold(z, 1), 0.5, 1) + c";
+  const auto unset = scene({{"map", box}});
+  CHECK(says(unset, "/map", "set \"estimate\": \"linear\""));
+  CHECK(safety_of(unset) < 0.6);
+  // Orbits that escape by the last iterations measure the distance to a set as large as the bailout.
+  const auto few = scene({{"map", box}, {"estimate", "linear"}, {"iterations", 20}});
+  CHECK(says(few, "", "is too long at"));
+  CHECK(safety_of(few) < 0.6);
+  const auto listed = [](const std::string& iterations) {
+    return load_scene_text(scene_of(R"({"type": "fractal", "formula": "mandelbox", "material": "m",
+                                        "parameters": {"scale": -1.5}, "iterations": )" +
+                                    iterations + "}"));
+  };
+  CHECK(safety_of(listed("20")) < 0.6);
+  CHECK(listed("60").warnings.empty());
+  CHECK(scene({{"map", box}, {"estimate", "linear"}, {"iterations", 60}}).warnings.empty());
+  CHECK(scene({{"map", "z = i < 2 ? z ^ 8 + c : 2 * z"}}).warnings.empty());
+  const auto hybrid = [&](const char* first) {
+    const nlohmann::json other{{"type", "fractal"}, {"formula", first}},
+        turn{{"type", "formula"}, {"map", "z = rotate(z, vec3(1, 1, 0), 0.3)"}};
+    return scene({{"type", "hybrid"}, {"steps", {other, turn}}, {"iterations", 24}});
+  };
+  CHECK(says(hybrid("mandelbox"), "/steps/1/map", "set \"estimate\""));
+  CHECK(hybrid("mandelbulb").warnings.empty());
 }
