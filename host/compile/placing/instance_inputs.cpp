@@ -7,7 +7,7 @@ namespace {
 
 SurfaceFacts facts_of(const Material& material) {
   constexpr u32 known = MATERIAL_TRANSMITS | MATERIAL_REFLECTS | MATERIAL_SHADOW_OPAQUE | MATERIAL_THIN |
-                        MATERIAL_WALL | MATERIAL_FROSTED;
+                        MATERIAL_WALL | MATERIAL_FROSTED | MATERIAL_CATCHER;
   const float4& shines = material.emission;
   return {material.flags & known, material.kind, material.reflection.w > 0,
           shines.x != 0 || shines.y != 0 || shines.z != 0};

@@ -191,7 +191,8 @@ class Placer {
     if (material.flags & (MATERIAL_WALL | MATERIAL_FROSTED)) out_.features.thin_walls = true;
     if (material.shines) out_.features.emission = true;
     if (flags & INSTANCE_TRANSMITS) out_.features.media = true;
-    if (flags & INSTANCE_TRANSMITS && instance.shape == SHAPE_SDF) out_.features.two_sided_fields = true;
+    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER) && instance.shape == SHAPE_SDF)
+      out_.features.two_sided_fields = true;
     if (flags & INSTANCE_FILTERS) out_.features.shadow_filters = true;
   }
 

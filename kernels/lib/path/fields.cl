@@ -131,7 +131,7 @@ static inline void pay_for_steps(__global const SdfField* restrict field, u32 st
 static inline void march_field(const Scene* scene, u32 index, FieldSearch* search, u32* counts) {
   __global const SdfField* restrict field = scene->sdf_fields + scene->instances[index].root;
   const u32 flags = scene->materials[scene->instances[index].material].flags;
-  const bool two_sided = (flags & MATERIAL_TRANSMITS) && !(flags & MATERIAL_THIN);
+  const bool two_sided = flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER);
   MarchRays rays = march_from(scene, index, two_sided, search);
   rays.step_limit = min(field->step_limit, steps_left(field, counts));
   if (rays.step_limit == 0u) {

@@ -122,6 +122,24 @@ TEST_CASE("light through a field is absorbed over the length inside, as far as t
     }
 }
 
+TEST_CASE("light through a wall of a field meets the wall behind it, too") {
+  const auto ball = [](const std::string& shape, const char* material) {
+    return scene_of_text(fmt::format(R"({{"image": {{"width": 1, "height": 1, "background": [1, 1, 1]}},
+      "camera": {{"position": [0, 0, 5], "target": [0, 0, 0], "fov": 0.001}},
+      "materials": {{"half": {{"ambient": 0, "diffuse": 0, {}}}}}, "objects": [{{{}, "material": "half"}}]}})",
+                                     material, shape));
+  };
+  for (const DeviceInfo& device : picture_devices())
+    for (const char* shape :
+         {R"("type": "formula", "distance": "length(p) - 1")",
+          R"x("type": "formula", "distance": "abs(p.z)")x",  // without thickness
+          R"("type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]})"})
+      for (const char* material : {R"("transmission": 0.5)", R"("opacity": 0.5)"}) {
+        CAPTURE(shape, material);
+        CHECK(scenes::pixel_on(device, ball(shape, material)).x == Approx(0.25));
+      }
+}
+
 TEST_CASE("a glass fractal refracts as its exact solid does, and one of the air's own index cannot be seen") {
   const auto with = [](const std::string& object, double ior) {
     return scene_of_text(fmt::format(R"({{"image": {{"width": 96, "height": 96,

@@ -86,6 +86,23 @@ TEST_CASE("without --transparent a shadow catcher darkens the background, and ot
   });
 }
 
+TEST_CASE("the far wall of a ball that catches shadows lies in the shadow of the near one") {
+  json scene = json::parse(stage);
+  scene["camera"]["fov"] = 0.01;
+  scene["lights"] = {{{"type", "directional"}, {"direction", {0, -1, 0}}}};
+  scene.erase("environment");
+  scene["materials"]["floor"]["shadow_catcher"] = true;
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const json& ball : {json{{"type", "sphere"}}, json{{"type", "fractal"}, {"formula", "sphere"}}}) {
+      scene["objects"] = {ball};
+      scene["objects"][0]["material"] = "floor";
+      const Image seen = render(device, scene);
+      CHECK(seen.data[0] == 0);
+      CHECK(seen.data[3] == 1);
+    }
+  });
+}
+
 TEST_CASE("a shadow catcher needs paths and a surface without an inside") {
   const auto refusal = [](const char* material, const char* integrator) {
     json scene = json::parse(stage);
