@@ -104,8 +104,9 @@ void tag_as_srgb(spng_ctx* context, int dpi, std::string& profile) {
   check_encoder(spng_set_phys(context, &density));
 }
 
+/// The texts stay in use until the image is encoded.
 void add_texts(spng_ctx* context, const ImageTexts& texts) {
-  char none[] = "";  // neither a language nor a translation
+  static constexpr char none[] = "";  // neither a language nor a translation
   std::vector<spng_text> chunks;
   for (const auto& [keyword, text] : texts) {
     spng_text chunk{.keyword = "",
@@ -114,8 +115,8 @@ void add_texts(spng_ctx* context, const ImageTexts& texts) {
                     .text = const_cast<char*>(text.data()),  // it is only read
                     .compression_flag = 0,
                     .compression_method = 0,
-                    .language_tag = none,
-                    .translated_keyword = none};
+                    .language_tag = const_cast<char*>(none),
+                    .translated_keyword = const_cast<char*>(none)};
     keyword.copy(chunk.keyword, sizeof chunk.keyword - 1);
     chunks.push_back(chunk);
   }
