@@ -27,7 +27,7 @@
   FEATURE(bool, HAS_GLOW, glow, same)                   /* some field glows */                                    \
   FEATURE(bool, HAS_OCCLUSION, occlusion, same)         /* some field occludes ambient light in crevices */       \
   FEATURE(bool, HAS_SOFT_SHADOWS, soft_shadows, same)   /* some field's shadow has a penumbra */                  \
-  FEATURE(bool, SDF_TWO_SIDED, two_sided_fields, same)  /* some field transmits: rays may be inside it */         \
+  FEATURE(bool, SDF_TWO_SIDED, two_sided_fields, same)  /* rays may be inside some field, or pass it */           \
   FEATURE(bool, HAS_CHECKER, checker, rounds)           /* some material has two colours in a checkerboard */     \
   FEATURE(bool, HAS_UV, surface_coordinates, unlayered) /* some material needs surface coordinates */             \
   FEATURE(bool, HAS_FILTER, filter, alters)             /* samples are not uniform in their pixels */             \
