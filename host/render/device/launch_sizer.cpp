@@ -15,6 +15,8 @@ constexpr double launch_seconds = 0.05;
 constexpr unsigned unit_work_items = 16;
 // Initial pixel-samples; those of fields may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
+// On a CPU so many in the sky take 30 ms; among fields behind it, seconds, which is no hang yet.
+constexpr std::size_t most_launch_size_of_fields = 65536;
 
 // Groups above this size may be the reason when resources run out.
 constexpr std::size_t small_group = 64;
@@ -30,6 +32,7 @@ LaunchSizer::LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, con
       tuning_(tuning),
       next_size_(fields ? first_launch_size_of_fields : first_launch_size),
       most_group_(limits.most_group) {
+  if (fields && limits_.device_class == DeviceClass::cpu) most_size_ = most_launch_size_of_fields;
   // The fastest group for a shallower scene may be too large for this one.
   if (most_group_ > 0 && tuning_.work_group.x * tuning_.work_group.y > most_group_) tuning_.work_group = {};
   if (most_group_ > 0 && tuning_.surfaces_group.x > most_group_) tuning_.surfaces_group = {};
