@@ -92,6 +92,18 @@ TEST_CASE("launches grow to the wanted time and shrink where they take longer") 
   CHECK(fields.next()->samples <= 512);
 }
 
+TEST_CASE("on a CPU launches among fields stay short enough for what is behind a quick sky") {
+  LaunchSizer sizer(cpu(), {}, {}, true);
+  sizer.begin({0, 0, 4096, 4096}, 16);
+  std::size_t most = 0;
+  for (int i = 0; i < 12; ++i) {
+    most = std::max(most, sizer.next()->samples);
+    sizer.note_time(1e-9);
+  }
+  CHECK(most > 40'000);  // whole rounds of samples of whole items
+  CHECK(most <= 65'536);
+}
+
 TEST_CASE("work-items take runs of items where each unit has enough work-items left") {
   LaunchLimits limits = cpu();
   limits.most_run = 8;
