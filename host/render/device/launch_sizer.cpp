@@ -15,7 +15,7 @@ constexpr double launch_seconds = 0.05;
 constexpr unsigned unit_work_items = 16;
 // Initial pixel-samples; those of fields may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
-// On a CPU so many in the sky take 30 ms; among fields behind it, seconds, which is no hang yet.
+// Launches grow in a quick sky: on a CPU so many among slow fields behind it do not look like a hang yet.
 constexpr std::size_t most_launch_size_of_fields = 65536;
 
 // Groups above this size may be the reason when resources run out.

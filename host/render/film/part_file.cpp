@@ -223,8 +223,9 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
 PartFile read_part(const std::filesystem::path& path) {
   std::string bytes = read_input(path, most_frame_bytes);
   const auto refuse = [&](const char* why) { return SceneError(path.string(), "", why); };
-  const auto is_of = [format = bytes.substr(0, bytes.find('\n'))](const char* name) {
-    return format.starts_with('{') && format.find(name) != std::string::npos;
+  const auto is_of = [&](const char* name) {
+    const std::string_view format = std::string_view(bytes).substr(0, bytes.find('\n'));
+    return format.starts_with('{') && format.find(name) != std::string_view::npos;
   };
   if (!is_of(any_format))
     throw SceneError(path.string(), "", "is no part of a frame: a render of one part writes them",
