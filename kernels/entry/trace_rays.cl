@@ -75,8 +75,8 @@ NEVER_INLINE void trace_rays_item(const Scene* scene, __global const Ray* restri
   Batch batch;
   load_batch(rays, ray_count, first, &batch);
   Hits found;
-  trace_batch(scene, &batch.o, &batch.d, &batch.t_min, batch.t_max, (REAL)(0.0f), batch.lanes, coherent != 0u,
-              &found);
+  const TraceRays traced = {&batch.o, &batch.d, &batch.t_min, &found, 0, 0};
+  trace_batch(scene, &traced, batch.t_max, (REAL)(0.0f), batch.lanes, coherent != 0u);
 #if LANES == 16
   if (first + BATCH <= ray_count) {
     float16 v[8] = {found.t,    found.u,    found.v,   as_float16(found.prim), as_float16(found.instance),

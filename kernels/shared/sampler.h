@@ -25,12 +25,15 @@ SUNDOG_SHARED_BEGIN
 
 // Dimensions of a pixel's sample. Each four from a multiple of four belong together: their points are
 // stratified in all four, best in the first two, so pairs of values start at even numbers. The dimensions of
-// a surface begin at dimension_of_bounce(); individually sampled lights take a copy each.
+// the surface hit by a ray of `depth` (1: from the camera) begin at DIMENSION_BOUNCE + DIMENSIONS_A_BOUNCE *
+// (depth - 1); individually sampled lights take a copy each, the light of index i from DIMENSIONS_OF_LIGHT(i)
+// later.
 #define DIMENSION_PIXEL 0u  // two: position in the pixel
 #define DIMENSION_LENS 2u   // two: position on the lens
 #define DIMENSION_TIME 4u   // one; 5, 6 and 7 are free
 #define DIMENSION_BOUNCE 8u
 #define DIMENSIONS_A_BOUNCE 8u
+#define DIMENSIONS_OF_LIGHT(light) ((light) << 12)
 #define BOUNCE_LIGHT_POINT 0u   // two: position on a light
 #define BOUNCE_LIGHT_CHOICE 2u  // one: which light
 #define BOUNCE_DIRECTION 4u     // two: scattered direction
@@ -40,12 +43,6 @@ SUNDOG_SHARED_BEGIN
 // uses another set.
 #define DIMENSION_STRETCH 0x10000u
 #define DIMENSIONS_A_CROSSING 0x1000000u
-
-// The first dimension for the surface hit by a ray of `depth` (1: from the camera), and for the light of
-// index `light` (0 otherwise).
-static inline u32 dimension_of_bounce(u32 depth, u32 light) {
-  return DIMENSION_BOUNCE + DIMENSIONS_A_BOUNCE * (depth - 1u) + (light << 12);
-}
 
 // PCG's output permutation of a counter (O'Neill 2014; Jarzynski and Olano 2020).
 static inline u32 hash_u32(u32 x) {

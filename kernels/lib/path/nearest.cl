@@ -10,16 +10,16 @@
 // The hits of the lanes of `active`; no hits elsewhere. `coherent`: the rays are coherent.
 static inline void nearest_hits(const Scene* scene, SceneRays* rays, MASK active, bool coherent, Hits* hits,
                                 u32* counts) {
-  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
-              hits);
+  const TraceRays traced = {&rays->o, &rays->d, &rays->t_min, hits, 0, 0};
+  trace_batch(scene, &traced, rays->t_max, time_of_rays(rays), active, coherent);
   HAVING(HAS_SDF, march_fields(scene, rays, active, MARCH_TO_SEE, hits, counts);)
 }
 
 // nearest_hits() for shadow rays.
 static inline void nearest_to_light(const Scene* scene, SceneRays* rays, MASK active, bool coherent,
                                     Hits* hits, u32* counts) {
-  trace_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, coherent,
-              hits);
+  const TraceRays traced = {&rays->o, &rays->d, &rays->t_min, hits, 0, 0};
+  trace_batch(scene, &traced, rays->t_max, time_of_rays(rays), active, coherent);
   HAVING(HAS_SDF, march_fields(scene, rays, active, MARCH_TO_LIGHT, hits, counts);)
 }
 
@@ -42,8 +42,8 @@ static inline MASK any_hits(const Scene* scene, SceneRays* rays, MASK active, bo
 static inline void next_hits(const Scene* scene, SceneRays* rays, MASK active, bool to_light, Hits* hits,
                              u32* counts) {
   const bool any = to_light && !HAS_SHADOW_FILTERS;
-  find_hits(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active,
-            any ? TRACE_ANY : TRACE_NEAREST, hits, 0, 0);
+  const TraceRays traced = {&rays->o, &rays->d, &rays->t_min, hits, 0, 0};
+  find_hits(scene, &traced, rays->t_max, time_of_rays(rays), active, any ? TRACE_ANY : TRACE_NEAREST);
   finish_triangles(scene, false, hits);
   HAVING(HAS_SDF, const u32 purpose = any ? MARCH_TO_BLOCK : to_light ? MARCH_TO_LIGHT : MARCH_TO_SEE;)
   if (any) active &= ~hit_anything(hits);

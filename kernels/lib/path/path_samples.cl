@@ -27,16 +27,16 @@ static inline MASK child_branch(MASK branch, u32 kind) {
 
 #if HAS_RANDOM
 
-// The numbers of the surfaces hit by the rays of `lanes`: pixels, and dimensions from `offset` (BOUNCE_...)
-// on, for the light `light` (0 otherwise).
+// The numbers of the surfaces hit by the rays of `lanes`: pixels, and dimensions from `dimension` on, which
+// counts from a bounce's first.
 typedef struct BounceNumbers {
   LaneSamples at;
   MASK first;
   bool later;
 } BounceNumbers;
 
-static inline void begin_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
-                                 MASK lanes, BounceNumbers* numbers) {
+static inline void begin_numbers(const TileSamples* tile, const WaitingRays* paths, u32 dimension, MASK lanes,
+                                 BounceNumbers* numbers) {
   numbers->at.x = numbers->at.y = NO_LANES;
   numbers->at.seed = tile->seed;
   EACH_LANE(i, lanes) {
@@ -44,9 +44,8 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
-  numbers->first = depth_of(paths, lanes) * (int)DIMENSIONS_A_BOUNCE + paths->branch +
-                   (int)(dimension_of_bounce(0u, light) + (offset & ~3u));
-  numbers->later = offset & 2u;
+  numbers->first = depth_of(paths, lanes) * (int)DIMENSIONS_A_BOUNCE + paths->branch + (int)(dimension & ~3u);
+  numbers->later = dimension & 2u;
 }
 
 // Two of these numbers for part `part` of the `parts` into which the pixel's sample is divided.
@@ -58,9 +57,9 @@ static inline void next_numbers(const TileSamples* tile, u32 part, u32 parts, Bo
 
 #endif
 
-NEVER_INLINE void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 light, u32 offset,
-                                 u32 part, u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
+NEVER_INLINE void bounce_numbers(const TileSamples* tile, const WaitingRays* paths, u32 dimension, u32 part,
+                                 u32 parts, MASK lanes, REAL* u_x, REAL* u_y) {
   *u_x = *u_y = (REAL)(0.5f);
-  HAVING(HAS_RANDOM, BounceNumbers numbers; begin_numbers(tile, paths, light, offset, lanes, &numbers);
+  HAVING(HAS_RANDOM, BounceNumbers numbers; begin_numbers(tile, paths, dimension, lanes, &numbers);
          next_numbers(tile, part, parts, &numbers, u_x, u_y);)
 }

@@ -27,8 +27,8 @@ static inline MASK meet_listed(const Scene* scene, SceneRays* rays, MASK active,
   Hits last, hits;
   MASK listed;
   const MASK priorities = priority_around(scene, rays, active);
-  list_batch(scene, &rays->o, &rays->d, &rays->t_min, rays->t_max, time_of_rays(rays), active, &priorities,
-             &last, lists);
+  const TraceRays traced = {&rays->o, &rays->d, &rays->t_min, &last, lists, &priorities};
+  list_batch(scene, &traced, rays->t_max, time_of_rays(rays), active);
   start_encounters(met, active);
   met->hit = last;
   do {

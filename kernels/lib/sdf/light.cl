@@ -26,10 +26,10 @@ static inline REAL sdf_openness(const Scene* scene, u32 index, REAL3 p, REAL3 no
 }
 
 // The fraction of a light that reaches p along the unit direction wi, within t_max: 0 behind the surface,
-// between 0 and 1 if the way passes it within 1 / hardness of the distance. Takes its steps from *steps_left;
-// when they run out, returns the estimate so far.
+// between 0 and 1 if the way passes it within 1 / shadow_hardness of the distance. Takes its steps from
+// *steps_left; when they run out, returns the estimate so far.
 static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3 wi, REAL t_min, REAL t_max,
-                                   float hardness, u32* steps_left, MASK active) {
+                                   u32* steps_left, MASK active) {
   __global const SdfField* restrict field = scene->sdf_fields + index;
   REAL enter = t_min, leave = t_max;
   clip_to_interval(field, p, wi, &enter, &leave);
@@ -42,7 +42,7 @@ static inline REAL sdf_soft_shadow(const Scene* scene, u32 index, REAL3 p, REAL3
     REAL beside = d;
     if (sdf_uneven(index, scene->sdf_parameters))
       beside = open_distance(scene, index, along3(p, t, wi), active);
-    open = select(open, real_min(open, hardness * beside * rough_inverse(t)), active);
+    open = select(open, real_min(open, field->shadow_hardness * beside * rough_inverse(t)), active);
     t += real_max(d, 0.02f * t);  // minimum step in a penumbra
     active &= MASK_OF(open > 0.002f) & MASK_OF(t < leave);
   }

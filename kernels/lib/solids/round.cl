@@ -45,19 +45,20 @@ static inline REAL curvature_of_plane(const Scene* scene, float4 parameters, REA
 static inline float4 reach_of_plane(float4 parameters) { return (float4)(0.0f); }
 static inline u32 convexity_of_plane(float4 parameters) { return CONVEX; }
 
-// A ring in the plane y = height, inner <= radius <= outer, with its normal towards `side` of y.
-static inline void offer_ring(REAL3 o, REAL3 d, float height, float inner, float outer, float side, int part,
-                              REAL t_min, MASK active, SolidHits* hits) {
-  const REAL t = (height - o.y) / d.y;
+// A ring in a plane of constant y, with its normal towards `side` of y. `ring`: y, inner and outer radius,
+// side.
+static inline void offer_ring(REAL3 o, REAL3 d, float4 ring, int part, REAL t_min, MASK active,
+                              SolidHits* hits) {
+  const REAL t = (ring.x - o.y) / d.y;
   const REAL x = fma(t, d.x, o.x), z = fma(t, d.z, o.z);
   const REAL r2 = fma(x, x, z * z);
-  const MASK within = MASK_OF(d.y != 0.0f) & MASK_OF(r2 <= outer * outer) & MASK_OF(r2 >= inner * inner);
-  offer(t, up_or_down((REAL)(side)), (MASK)(part), active & within, t_min, hits);
+  const MASK within = MASK_OF(d.y != 0.0f) & MASK_OF(r2 <= ring.z * ring.z) & MASK_OF(r2 >= ring.y * ring.y);
+  offer(t, up_or_down((REAL)(ring.w)), (MASK)(part), active & within, t_min, hits);
 }
 
 static inline void closest_in_disk(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                    SolidHits* hits) {
-  offer_ring(o, d, 0.0f, parameters.x, 1.0f, 1.0f, 0, t_min, active, hits);
+  offer_ring(o, d, (float4)(0.0f, parameters.x, 1.0f, 1.0f), 0, t_min, active, hits);
 }
 
 // Coordinates on the square around a unit disk, seen from above or, if `below`, from below.
@@ -125,8 +126,8 @@ static inline void closest_in_cylinder(float4 parameters, REAL3 o, REAL3 d, REAL
           t_min, hits);
   }
   if (parameters.x != 0.0f) {
-    offer_ring(o, d, 1.0f, 0.0f, 1.0f, 1.0f, 1, t_min, active, hits);
-    offer_ring(o, d, -1.0f, 0.0f, 1.0f, -1.0f, 2, t_min, active, hits);
+    offer_ring(o, d, (float4)(1.0f, 0.0f, 1.0f, 1.0f), 1, t_min, active, hits);
+    offer_ring(o, d, (float4)(-1.0f, 0.0f, 1.0f, -1.0f), 2, t_min, active, hits);
   }
 }
 
@@ -164,8 +165,8 @@ static inline void closest_in_cone(float4 parameters, REAL3 o, REAL3 d, REAL t_m
           real & MASK_OF(fabs(p.y) <= 1.0f) & MASK_OF(r >= 0.0f), t_min, hits);
   }
   if (parameters.z != 0.0f) {
-    offer_ring(o, d, 1.0f, 0.0f, parameters.y, 1.0f, 1, t_min, active, hits);
-    offer_ring(o, d, -1.0f, 0.0f, parameters.x, -1.0f, 2, t_min, active, hits);
+    offer_ring(o, d, (float4)(1.0f, 0.0f, parameters.y, 1.0f), 1, t_min, active, hits);
+    offer_ring(o, d, (float4)(-1.0f, 0.0f, parameters.x, -1.0f), 2, t_min, active, hits);
   }
 }
 

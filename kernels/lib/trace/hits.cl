@@ -141,17 +141,16 @@ ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 
   take_solids(&solid, solid.found, hits);
 }
 
-// Tests the instances [first, last), all solids, for the lanes of `active`; world-space rays, whose hits so
-// far are on other instances or on `first`. With `any`, lanes with a hit are done, and only their instance is
-// set. The loop is in this function to keep rays and hits in registers.
-NEVER_INLINE void hit_solids(__global const Instance* restrict instances, u32 first, u32 last,
-                             const REAL3* rays_o, const REAL3* rays_d, const REAL* rays_t_min, MASK active,
-                             bool any, Hits* hits) {
+// Tests the instances from range.x up to, but not, range.y, all solids, for the lanes of `active`;
+// world-space rays, whose hits so far are on other instances or on the first. With `any`, lanes with a hit
+// are done, and only their instance is set. The loop is in this function to keep rays and hits in registers.
+NEVER_INLINE void hit_solids(__global const Instance* restrict instances, uint2 range, const REAL3* rays_o,
+                             const REAL3* rays_d, const REAL* rays_t_min, MASK active, bool any, Hits* hits) {
   const REAL3 o = *rays_o, d = *rays_d;
   const REAL t_min = *rays_t_min;
-  SolidHits solid = begin_solids(hits, (MASK)((int)first));
+  SolidHits solid = begin_solids(hits, (MASK)((int)range.x));
   MASK found = NO_LANES, nearest = hits->instance;
-  for (u32 i = first; i < last; ++i) {
+  for (u32 i = range.x; i < range.y; ++i) {
     if (any) active &= ~found;
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;

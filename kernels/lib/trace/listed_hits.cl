@@ -20,6 +20,16 @@ typedef struct HitList {
   u32 place[MOST_LISTED], instance[MOST_LISTED];
 } HitList;
 
+// Rays by lane; hits->t is their end.
+typedef struct TraceRays {
+  const REAL3 *o, *d;
+  const REAL* t_min;
+  Hits* hits;
+  HitList* lists;          // one list per ray of the hits that do not end it; 0: find the nearest hit
+  const MASK* priorities;  // of the rays' media: hits of lower priority are listed; 0: all hits that may
+                           // transmit light
+} TraceRays;
+
 // The lanes of `lanes` whose hits are opaque.
 static inline MASK opaque_hits(__global const Instance* restrict instances, const Hits* hits, MASK lanes) {
   MASK found = NO_LANES;

@@ -18,7 +18,8 @@ static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d
   Hits hits = no_hits((REAL)(hit->t));
   hits.instance = (MASK)((int)hit->instance);
   prepare_hits(scene, (REAL)(time), &hits);
-  hit_solids(scene->instances, index, index + 1u, &origins, &directions, &starts, ALL_LANES, false, &hits);
+  hit_solids(scene->instances, (uint2)(index, index + 1u), &origins, &directions, &starts, ALL_LANES, false,
+             &hits);
   if ((u32)MASK_LANE(hits.instance, 0) == index) *hit = get_hit(&hits, 0);
 }
 

@@ -33,19 +33,18 @@ static inline MASK traceable(const REAL3* o, const REAL3* d, REAL t_min, REAL t_
 #if PACKETS
 // Makes a packet of the rays; inactive lanes become copies of an active one, switched off. Returns false if
 // the rays cannot form a packet.
-NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min, MASK active, Hits* hits,
-                              PacketRays* rays, PacketHits* packet) {
+NEVER_INLINE bool make_packet(const TraceRays* rays, MASK active, PacketRays* packet, PacketHits* hits) {
   const u32 stand_in = lowest_bit(lane_bits(active));
-  const REAL3 oo = select3(all3(get3(o, stand_in)), *o, active),
-              dd = select3(all3(get3(d, stand_in)), *d, active);
-  rays->o[0] = oo.x, rays->o[1] = oo.y, rays->o[2] = oo.z;
-  rays->d[0] = dd.x, rays->d[1] = dd.y, rays->d[2] = dd.z;
-  if (!aim_packet(rays)) return false;
-  packet->found = hits;
-  hits->t = select((REAL)(-1.0f), hits->t, active);
-  packet->t_min = select((REAL)(REAL_LANE(*t_min, stand_in)), *t_min, active);
-  packet->t_least = least_of(packet->t_min);
-  renew_bounds(packet);
+  const REAL3 o = select3(all3(get3(rays->o, stand_in)), *rays->o, active),
+              d = select3(all3(get3(rays->d, stand_in)), *rays->d, active);
+  packet->o[0] = o.x, packet->o[1] = o.y, packet->o[2] = o.z;
+  packet->d[0] = d.x, packet->d[1] = d.y, packet->d[2] = d.z;
+  if (!aim_packet(packet)) return false;
+  hits->found = rays->hits;
+  rays->hits->t = select((REAL)(-1.0f), rays->hits->t, active);
+  hits->t_min = select((REAL)(REAL_LANE(*rays->t_min, stand_in)), *rays->t_min, active);
+  hits->t_least = least_of(hits->t_min);
+  renew_bounds(hits);
   return true;
 }
 #endif
@@ -53,66 +52,64 @@ NEVER_INLINE bool make_packet(const REAL3* o, const REAL3* d, const REAL* t_min,
 // trace_packet(): traces the lanes of `active` as a packet; false: they cannot form one. trace_alone():
 // traces each lane singly. A `lone_mesh` is the only bounded instance.
 #if PACKETS
-static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                                MASK active, bool lone_mesh, bool any, Hits* hits) {
-  PacketRays rays;
-  PacketHits packet;
-  const REAL t = hits->t;
-  if (lane_count(active) <= PACKET_LEAST || !make_packet(o, d, t_min, active, hits, &rays, &packet))
-    return false;
+static inline bool trace_packet(const Scene* scene, const TraceRays* rays, MASK active, bool lone_mesh,
+                                bool any) {
+  PacketRays packet;
+  PacketHits hits;
+  const REAL t = rays->hits->t;
+  if (lane_count(active) <= PACKET_LEAST || !make_packet(rays, active, &packet, &hits)) return false;
   if (lone_mesh)
-    packet_in_mesh(scene, &rays, &packet, scene->instances->root, 0u, any);
+    packet_in_mesh(scene, &packet, &hits, scene->instances->root, 0u, any);
   else
-    packet_in_scene(scene, &rays, &packet, any);
-  hits->t = select(t, hits->t, active);
+    packet_in_scene(scene, &packet, &hits, any);
+  rays->hits->t = select(t, rays->hits->t, active);
   return true;
 }
 #else
-static inline bool trace_packet(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                                MASK active, bool lone_mesh, bool any, Hits* hits) {
+static inline bool trace_packet(const Scene* scene, const TraceRays* rays, MASK active, bool lone_mesh,
+                                bool any) {
   return false;
 }
 #endif
 
 #if WALKS_IN_TURN
-static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists,
-                               const MASK* priorities) {
-  const WalkRays walkers = {o, d, t_min, hits, lists, priorities};
+static inline void trace_alone(const Scene* scene, const TraceRays* rays, MASK active, bool lone_mesh,
+                               bool any) {
   const u32 bits = lane_bits(active);
   if (lone_mesh)
-    walk_rays(scene, &walkers, bits, scene->instances->root, 0u, any);
+    walk_rays(scene, rays, bits, scene->instances->root, 0u, any);
   else
-    walk_rays(scene, &walkers, bits, scene->info->tlas_root, NO_INSTANCE, any);
+    walk_rays(scene, rays, bits, scene->info->tlas_root, NO_INSTANCE, any);
 }
 #else
-static inline void trace_alone(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               MASK active, bool lone_mesh, bool any, Hits* hits, HitList* lists,
-                               const MASK* priorities) {
+static inline void trace_alone(const Scene* scene, const TraceRays* rays, MASK active, bool lone_mesh,
+                               bool any) {
   EACH_LANE(i, active) {
-    Hit hit = get_hit(hits, i);
-    const REAL time = time_of_hits(hits);
-    trace_instances(scene, get3(o, i), get3(d, i), REAL_LANE(*t_min, i), REAL_LANE(time, i), any, &hit);
-    set_hit(hits, i, &hit);
+    Hit hit = get_hit(rays->hits, i);
+    const REAL time = time_of_hits(rays->hits);
+    trace_instances(scene, get3(rays->o, i), get3(rays->d, i), REAL_LANE(*rays->t_min, i), REAL_LANE(time, i),
+                    any, &hit);
+    set_hit(rays->hits, i, &hit);
   }
 }
 #endif
 
 // Traces the bounded instances for the lanes of `active`. `way`: TRACE_* bits.
-static inline void trace_bounded_batch(const Scene* scene, const REAL3* world_o, const REAL3* world_d,
-                                       const REAL* t_min, MASK active, u32 way, Hits* hits, HitList* lists,
-                                       const MASK* priorities) {
-  REAL3 o = *world_o, d = *world_d;
+static inline void trace_bounded_batch(const Scene* scene, const TraceRays* world, MASK active, u32 way) {
+  TraceRays rays = *world;
+  REAL3 o, d;
   // A lone mesh needs no scene BVH, and all rays are transformed to its space at once.
   const bool lone_mesh =
       HAS_MESH && scene->info->tlas_root == BVH_LEAF && scene->instances->shape == SHAPE_MESH;
   if (WIDE_VECTORS && lone_mesh && !(scene->instances->flags & INSTANCE_IDENTITY)) {
-    o = object_points(scene->instances, still_origins(hits, 0u, o));
-    d = object_vectors(scene->instances, still_directions(hits, 0u, d));
+    o = object_points(scene->instances, still_origins(rays.hits, 0u, *rays.o));
+    d = object_vectors(scene->instances, still_directions(rays.hits, 0u, *rays.d));
+    rays.o = &o;
+    rays.d = &d;
   }
   const bool any = way & TRACE_ANY;
-  if ((way & TRACE_COHERENT) && trace_packet(scene, &o, &d, t_min, active, lone_mesh, any, hits)) return;
-  trace_alone(scene, &o, &d, t_min, active, lone_mesh, any, hits, lists, priorities);
+  if ((way & TRACE_COHERENT) && trace_packet(scene, &rays, active, lone_mesh, any)) return;
+  trace_alone(scene, &rays, active, lone_mesh, any);
 }
 
 // Whether a batch traverses the BVH; otherwise all solids are tested.
@@ -121,25 +118,24 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
   return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
 }
 
-// The hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, if objects move. `way`: TRACE_*
-// bits.
-static inline void find_hits(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                             REAL t_max, REAL time, MASK active, u32 way, Hits* hits, HitList* lists,
-                             const MASK* priorities) {
+// Sets the hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, if objects move. `way`:
+// TRACE_* bits.
+static inline void find_hits(const Scene* scene, const TraceRays* rays, REAL t_max, REAL time, MASK active,
+                             u32 way) {
+  Hits* hits = rays->hits;
   *hits = no_hits(t_max);
   prepare_hits(scene, time, hits);
   if (!HAS_TRACED) return;
-  active &= traceable(o, d, *t_min, t_max);
+  active &= traceable(rays->o, rays->d, *rays->t_min, t_max);
   const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);
   const u32 first = in_tree ? scene->info->bounded_count : 0u;
   if (HAS_SOLID && first < scene->info->instance_count)
-    hit_solids(scene->instances, first, scene->info->instance_count, o, d, t_min, active, way & TRACE_ANY,
-               hits);
+    hit_solids(scene->instances, (uint2)(first, scene->info->instance_count), rays->o, rays->d, rays->t_min,
+               active, way & TRACE_ANY, hits);
   if (!HAS_BVH) return;
   if (way & TRACE_ANY) active &= ~hit_anything(hits);
-  if (LISTS_HITS && lists && !priorities) active &= ~opaque_hits(scene->instances, hits, active);
-  if (in_tree && any_lane(active))
-    trace_bounded_batch(scene, o, d, t_min, active, way, hits, lists, priorities);
+  if (LISTS_HITS && rays->lists && !rays->priorities) active &= ~opaque_hits(scene->instances, hits, active);
+  if (in_tree && any_lane(active)) trace_bounded_batch(scene, rays, active, way);
 }
 
 // Sets indices and geometric normals of hit triangles. `coherent`: several rays hit the same one.
@@ -173,21 +169,19 @@ static inline void finish_triangles(const Scene* scene, bool coherent, Hits* hit
 }
 
 // The nearest hits of the lanes of `active` in (t_min, t_max].
-static inline void trace_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                               REAL t_max, REAL time, MASK active, bool coherent, Hits* hits) {
-  find_hits(scene, o, d, t_min, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST, hits, 0, 0);
-  finish_triangles(scene, coherent, hits);
+static inline void trace_batch(const Scene* scene, const TraceRays* rays, REAL t_max, REAL time, MASK active,
+                               bool coherent) {
+  find_hits(scene, rays, t_max, time, active, coherent ? TRACE_COHERENT : TRACE_NEAREST);
+  finish_triangles(scene, coherent, rays->hits);
 }
 
 #if LISTS_HITS
-// The hits of the lanes of `active` in (t_min, t_max]: triangles that do not end a ray in `lists`, one list
-// per lane; behind these, or instead, `last`: for rays to lights (`priorities` is 0) something opaque, or
-// else the nearest solid; for others, in media of `priorities`, what they see, or a solid.
-static inline void list_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
-                              REAL t_max, REAL time, MASK active, const MASK* priorities, Hits* last,
-                              HitList* lists) {
-  for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
-  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_NEAREST, last, lists, priorities);
+// Sets the hits of the lanes of `active` in (t_min, t_max]: triangles that do not end a ray in its list;
+// behind these, or instead: for rays to lights (without priorities) something opaque, or else the nearest
+// solid; for others what they see, or a solid.
+static inline void list_batch(const Scene* scene, const TraceRays* rays, REAL t_max, REAL time, MASK active) {
+  for (u32 i = 0; i < BATCH; ++i) clear_list(rays->lists + i);
+  find_hits(scene, rays, t_max, time, active, TRACE_NEAREST);
 }
 
 // The nearest hits behind t_min of the lanes of `lanes`; `listed` receives lanes whose hit comes from a list.
@@ -219,7 +213,7 @@ NEVER_INLINE MASK next_listed(const Scene* scene, const HitList* lists, const RE
 static inline MASK occluded_batch(const Scene* scene, const REAL3* o, const REAL3* d, const REAL* t_min,
                                   REAL t_max, REAL time, MASK active, bool coherent) {
   Hits hits;
-  find_hits(scene, o, d, t_min, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u), &hits, 0,
-            0);
+  const TraceRays rays = {o, d, t_min, &hits, 0, 0};
+  find_hits(scene, &rays, t_max, time, active, TRACE_ANY | (coherent ? TRACE_COHERENT : 0u));
   return active & hit_anything(&hits);
 }

@@ -31,16 +31,6 @@ typedef struct Walk {
   float stack_t[WALK_STACK];  // entry distances of waiting nodes, never beyond the hit; unset for `any`
 } Walk;
 
-// Rays by lane; hits->t is their end.
-typedef struct WalkRays {
-  const REAL3 *o, *d;
-  const REAL* t_min;
-  Hits* hits;
-  HitList* lists;          // one list per ray of the hits that do not end it; 0: find the nearest hit
-  const MASK* priorities;  // of the rays' media: hits of lower priority are listed; 0: all hits that may
-                           // transmit light
-} WalkRays;
-
 static inline void push_word(Walk* walk, u32 word) {
   walk->stack[walk->top] = word;
   walk->stack_t[walk->top++] = -INFINITY;
@@ -80,7 +70,7 @@ static inline bool enter_mesh(__global const Instance* restrict instances, Walk*
 }
 
 // Prepares the rays of `entering` in the spaces of the meshes they have entered, together for each mesh.
-NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const WalkRays* rays,
+NEVER_INLINE void aim_in_meshes(__global const Instance* restrict instances, const TraceRays* rays,
                                 PreparedRays* turned, Walk* walks, u32 entering) {
   while (entering) {
     const u32 index = walks[lowest_bit(entering)].instance;
@@ -105,7 +95,7 @@ static inline void leave_mesh(Walk* walk, const PreparedRays* world) {
 }
 
 // Processes a block's hits: lists unseen ones; the nearest of the others ends the ray.
-static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
+static inline void list_overruled(const Scene* scene, const TraceRays* rays, Walk* walk, u32 index,
                                   const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;
   const int priority = MASK_LANE(*rays->priorities, ray);
@@ -129,7 +119,7 @@ static inline void list_overruled(const Scene* scene, const WalkRays* rays, Walk
 }
 
 // Lists a block's hits, or ends the walk at an opaque one.
-NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk, u32 index,
+NEVER_INLINE void list_hits(const Scene* scene, const TraceRays* rays, Walk* walk, u32 index,
                             const BlockTest* test) {
   const u32 ray = walk->ray, first = walk->instance;
   HitList* list = rays->lists + ray;
@@ -156,7 +146,7 @@ NEVER_INLINE void list_hits(const Scene* scene, const WalkRays* rays, Walk* walk
 }
 
 // Processes the first block of a leaf; the others wait.
-ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* walk, u32 word) {
+ALWAYS_INLINE void walk_block(const Scene* scene, const TraceRays* rays, Walk* walk, u32 word) {
   __global const TriangleBlock* blocks = scene->blocks;
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;
@@ -181,7 +171,7 @@ ALWAYS_INLINE void walk_block(const Scene* scene, const WalkRays* rays, Walk* wa
 #define LEAF_SOLID 2u  // it has reached a solid
 
 // Processes a walk's next word, a leaf.
-ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const PreparedRays* world, Walk* walk,
+ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const TraceRays* rays, const PreparedRays* world, Walk* walk,
                             u32 word, bool any) {
   if (HAS_MESH && word == WALK_BACK) {
     leave_mesh(walk, world);
@@ -200,7 +190,8 @@ ALWAYS_INLINE u32 walk_leaf(const Scene* scene, const WalkRays* rays, const Prep
 }
 
 // Ends the walks of `bits` that have hit something opaque, and returns them.
-static inline u32 end_at_opaque(__global const Instance* restrict instances, const WalkRays* rays, u32 bits) {
+static inline u32 end_at_opaque(__global const Instance* restrict instances, const TraceRays* rays,
+                                u32 bits) {
   const u32 ended = lane_bits(opaque_hits(instances, rays->hits, lanes_of(bits)));
   for (u32 left = ended; left; left &= left - 1u) clear_list(rays->lists + lowest_bit(left));
   return ended;
@@ -208,7 +199,7 @@ static inline u32 end_at_opaque(__global const Instance* restrict instances, con
 
 // Tests the walks of `bits`, which is not 0, against solids[ray]. Returns those that continue.
 NEVER_INLINE u32 walk_solids(__global const Instance* restrict instances, const u32* solids, u32 bits,
-                             const WalkRays* rays, Walk* walks, bool any) {
+                             const TraceRays* rays, Walk* walks, bool any) {
   const REAL before = rays->hits->t;
   hit_solids_by_lane(instances, solids, bits, rays->o, rays->d, rays->t_min, rays->hits);
   if (any) return bits & ~lane_bits(hit_anything(rays->hits));
@@ -269,7 +260,7 @@ static inline MASK crossing_child(__global const BvhNode* node, u32 slot, const 
 }
 
 // The lanes of `bits` that cross a child of the node `word`, if it has few; else all.
-static inline u32 crossing_few(const Scene* scene, u32 word, const WalkRays* walkers,
+static inline u32 crossing_few(const Scene* scene, u32 word, const TraceRays* walkers,
                                const PreparedRays* rays, u32 bits) {
   if (word & BVH_LEAF) return bits;
   __global const BvhNode* node = node_at(scene->nodes, word);
@@ -283,7 +274,7 @@ static inline u32 crossing_few(const Scene* scene, u32 word, const WalkRays* wal
 
 // Finds the nearest hits, or with `any` the first found, of the lanes of `bits`, which is not 0, from `word`
 // of the scene BVH on or, for rays in object space, of the mesh BVH of `instance`.
-NEVER_INLINE void walk_rays(const Scene* scene, const WalkRays* rays, u32 bits, u32 word, u32 instance,
+NEVER_INLINE void walk_rays(const Scene* scene, const TraceRays* rays, u32 bits, u32 word, u32 instance,
                             bool any) {
   const REAL* t_min = rays->t_min;
   Hits* hits = rays->hits;

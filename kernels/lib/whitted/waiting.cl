@@ -62,14 +62,13 @@ static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pi
 #include "plain/whitted/shaft_light.cl"
 #include "plain/whitted/steps.cl"
 
-// The shadow ray *index is the next of the surfaces of `lanes`: returns whether any of them, `casting`, sends
-// it. If shafts serve its light, *index becomes the first ray to the next one.
-static inline bool sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
+// The shadow ray *index is the next of the surfaces of `lanes`: returns those that send it. If none does,
+// since shafts serve its light, *index becomes the first ray to the next one.
+static inline MASK sends_ray(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                              const WaitingRays* paths, MASK lanes, const SurfaceShadings* at, u32* index,
-                             MASK* casting, u32* counts) {
-  if (!HAS_SHAFTS || scene->light_rays[*index].ray) return true;
-  *casting = lanes & needs_rays(scene, *index, tile, rays, paths, at, counts, lanes);
-  if (any_lane(*casting)) return true;
-  *index += scene->light_rays[*index].rays;
-  return false;
+                             u32* counts) {
+  if (!HAS_SHAFTS || scene->light_rays[*index].ray) return lanes;
+  const MASK casting = lanes & needs_rays(scene, *index, tile, rays, paths, at, counts, lanes);
+  if (!any_lane(casting)) *index += scene->light_rays[*index].rays;
+  return casting;
 }

@@ -16,12 +16,13 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
   HitList lists[BATCH];
   Hits last, hits;
   MASK lanes = pop_shadows(stack, most, &rays, &paths);
+  TraceRays traced = {&rays.o, &rays.d, &rays.t_min, &last, lists, 0};
   if (coherent) {
     for (u32 i = 0; i < BATCH; ++i) clear_list(lists + i);
-    find_hits(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, TRACE_COHERENT,
-              &last, 0, 0);
+    traced.lists = 0;
+    find_hits(scene, &traced, rays.t_max, time_of_rays(&rays), lanes, TRACE_COHERENT);
   } else
-    list_batch(scene, &rays.o, &rays.d, &rays.t_min, rays.t_max, time_of_rays(&rays), lanes, 0, &last, lists);
+    list_batch(scene, &traced, rays.t_max, time_of_rays(&rays), lanes);
   do {
     MASK listed;
     const MASK again = next_listed(scene, lists, &rays.t_min, lanes, &last, &hits, &listed);
@@ -52,22 +53,29 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
 }
 #endif
 
+// What rays have met, shaded.
+typedef struct SeenSurfaces {
+  Encounters met;
+  SurfaceShadings at;
+} SeenSurfaces;
+
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
-// to one light; else shadow rays wait until there are many, or with `last` until no others come.
+// to one light; else shadow rays wait until there are many, or until no other rays come.
 static inline void add_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                              const WaitingRays* paths, MASK lanes, bool coherent, bool last,
-                              const Encounters* met, const SurfaceShadings* at, u32* counts) {
+                              const WaitingRays* paths, MASK lanes, bool coherent, const SeenSurfaces* seen,
+                              u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
-  MASK casting = lanes;
+  const bool last = tile->stack->count == 0u;
   ShadowStack* stack = tile->shadows;
   for (;;) {
     u32 most = BATCH;
     bool together = false;
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
-        if (!sends_ray(scene, tile, rays, paths, lanes, at, &light, &casting, counts)) continue;
+        const MASK casting = sends_ray(scene, tile, rays, paths, lanes, &seen->at, &light, counts);
+        if (!any_lane(casting)) continue;
         const u32 before = stack->count;
-        cast_shadow(scene, light++, tile, rays, paths, met, at, counts, casting);
+        cast_shadow(scene, light++, tile, rays, paths, &seen->met, &seen->at, counts, casting);
         most = stack->count - before;
         together = coherent && most;
         if (!together) continue;
@@ -83,18 +91,18 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 // of it on the stacks.
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                                WaitingRays* paths, MASK lanes, bool coherent, u32* counts) {
-  Encounters met;
-  SurfaceShadings at;
+  SeenSurfaces seen;
+  Encounters* met = &seen.met;
   MASK unseen =
-      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, &met, counts, lanes)
-                                         : meet_listed(scene, rays, lanes, &met, counts));
+      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, met, counts, lanes)
+                                         : meet_listed(scene, rays, lanes, met, counts));
   const MASK straight = lanes & ~unseen & is_from_camera(paths, lanes);
-  unseen |= straight & pass_hidden(scene, rays, &met, straight);
+  unseen |= straight & pass_hidden(scene, rays, met, straight);
   if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
-  const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, lanes);
-  const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
-  add_lights(scene, tile, rays, paths, hit, coherent, tile->stack->count == 0u, &met, &at, counts);
-  add_to_pixels(seen, paths->pixel, lanes, tile->radiance);
+  const REAL3 radiance = see_met(scene, tile, rays, paths, unseen, met, &seen.at, counts, lanes);
+  const MASK hit = lanes & ~unseen & hit_anything(&met->hit);
+  add_lights(scene, tile, rays, paths, hit, coherent, &seen, counts);
+  add_to_pixels(radiance, paths->pixel, lanes, tile->radiance);
 }
 
 // The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them.

@@ -6,16 +6,16 @@
 #include "lib/whitted/waiting.cl"
 
 #if BATCH == 1
-// Shadow rays of the surface from the number `light` on, as far as there is room; the ray `whole` waits for
-// the rest.
+// Shadow rays of the surface to the lights that `whole` has left, as far as there is room; it waits for the
+// rest.
 static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
-                                  const WaitingRays* paths, const WaitingRays* whole, u32 light,
-                                  const Encounters* met, const SurfaceShadings* at, u32* counts) {
+                                  const WaitingRays* paths, const WaitingRays* whole, const Encounters* met,
+                                  const SurfaceShadings* at, u32* counts) {
+  u32 light = (u32)next_light(whole, ALL_LANES);
 #if HAS_SHAFTS
   u32 sent[LIGHT_ROOM], count = 0;
-  MASK casting;
   while (light < scene->info->light_count && count < LIGHT_ROOM)
-    if (sends_ray(scene, tile, rays, paths, ALL_LANES, at, &light, &casting, counts)) sent[count++] = light++;
+    if (any_lane(sends_ray(scene, tile, rays, paths, ALL_LANES, at, &light, counts))) sent[count++] = light++;
 #else
   const u32 first = light, count = min(scene->info->light_count - light, (u32)LIGHT_ROOM);
   light += count;
@@ -47,15 +47,14 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   const MASK straight = ~unseen & is_from_camera(paths, ALL_LANES);
   unseen |= straight & pass_hidden(scene, rays, &met, straight);
   const WaitingRays whole = *paths;
-  const u32 light = (u32)next_light(paths, ALL_LANES);
   // Ways to lights ask for hits in reliefs while the surface waits.
   EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(SurfaceShadings, at);, SurfaceShadings shading CLEARED_ON_GPUS;
          SurfaceShadings* at = &shading;)
   const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, at, counts, ALL_LANES);
-  add_to_pixels(seen, paths->pixel, MASK_OF(light == 0u), tile->radiance);
+  add_to_pixels(seen, paths->pixel, MASK_OF(next_light(&whole, ALL_LANES) == 0), tile->radiance);
   forget_glow(rays, ALL_LANES);
   if (unseen | ~hit_anything(&met.hit)) return unseen;
-  send_to_lights(scene, tile, rays, paths, &whole, light, &met, at, counts);
+  send_to_lights(scene, tile, rays, paths, &whole, &met, at, counts);
   return NO_LANES;
 }
 

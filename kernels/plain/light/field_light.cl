@@ -5,7 +5,7 @@ float time_of_rays(const SceneRay* ray);
 float sdf_openness(UNIFORM const Scene* scene, UNIFORM u32 field, float3 p, float3 normal,
                    UNIFORM float reach, HERE);
 float sdf_soft_shadow(UNIFORM const Scene* scene, UNIFORM u32 field, float3 p, float3 wi, float t_min,
-                      float t_max, UNIFORM float hardness, UNIFORM u32* steps_left, HERE);
+                      float t_max, UNIFORM u32* steps_left, HERE);
 UNIFORM u32 steps_left(UNIFORM __global const SdfField* field, UNIFORM const u32* counts);
 void pay_for_steps(UNIFORM __global const SdfField* field, UNIFORM u32 steps, UNIFORM u32* counts);
 
@@ -36,8 +36,7 @@ static float soft_shadows(UNIFORM const Scene* scene, const SceneRay* ray, UNIFO
     const float start = leaving ? 4.0f * threshold : ray->t_min * speed;  // off its own surface
     const u32 before = steps_left(field, counts);
     u32 left = before;
-    through *= sdf_soft_shadow(scene, number, o, d * (1.0f / speed), start, ray->t_max * speed,
-                               field->shadow_hardness, &left);
+    through *= sdf_soft_shadow(scene, number, o, d * (1.0f / speed), start, ray->t_max * speed, &left);
     pay_for_steps(field, before - left, counts);
   }
   return through;

@@ -38,7 +38,7 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
                                   const SurfaceShading* at, UNIFORM u32* counts) {
   const float3 wo = -ray->d;
   float u_x = 0.0f, u_y = 0.0f, way;
-  if (HAS_ROUGH) bounce_numbers(tile, path, 0u, BOUNCE_DIRECTION, 0u, 1u, &u_x, &u_y);
+  if (HAS_ROUGH) bounce_numbers(tile, path, BOUNCE_DIRECTION, 0u, 1u, &u_x, &u_y);
   const MetFacet facet = meet_facet(scene, &at->bsdf, wo, u_x, u_y);
   SpecularSplit split = bsdf_specular(scene, &facet.bsdf, wo);
   if (!split.branches) return false;

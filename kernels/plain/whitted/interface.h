@@ -6,9 +6,10 @@
 typedef struct LANES(TileSamples) {
 } TileSamples;
 
-// Two random numbers at the surface that the ray meets: for the light `light`, for part `part` of `parts`.
-void bounce_numbers(UNIFORM const TileSamples* tile, const WaitingRay* path, UNIFORM u32 light,
-                    UNIFORM u32 offset, UNIFORM u32 part, UNIFORM u32 parts, HERE, float* u_x, float* u_y);
+// Two random numbers at the surface that the ray meets, for part `part` of `parts`. `dimension`:
+// BOUNCE_... of the surface or, with DIMENSIONS_OF_LIGHT(), of a light there.
+void bounce_numbers(UNIFORM const TileSamples* tile, const WaitingRay* path, UNIFORM u32 dimension,
+                    UNIFORM u32 part, UNIFORM u32 parts, HERE, float* u_x, float* u_y);
 int child_branch(int branch, UNIFORM u32 kind);
 
 // The ray waits, if there is room. Counts it as one of `kind`.

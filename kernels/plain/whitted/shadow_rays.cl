@@ -13,9 +13,9 @@ static LightSample choose_among(UNIFORM const Scene* scene, UNIFORM __global con
                                 UNIFORM const TileSamples* tile, const WaitingRay* path, float3 p,
                                 bool* met) {
   float u_x, u_y, choice, unused, chance;
-  const u32 turn = scene->info->table_lights;  // of the lights whose numbers these are: none's
-  bounce_numbers(tile, path, turn, BOUNCE_LIGHT_POINT, way->ray, way->rays, &u_x, &u_y);
-  bounce_numbers(tile, path, turn, BOUNCE_LIGHT_CHOICE, way->ray, way->rays, &choice, &unused);
+  const u32 first = DIMENSIONS_OF_LIGHT(scene->info->table_lights);  // no light's
+  bounce_numbers(tile, path, first + BOUNCE_LIGHT_POINT, way->ray, way->rays, &u_x, &u_y);
+  bounce_numbers(tile, path, first + BOUNCE_LIGHT_CHOICE, way->ray, way->rays, &choice, &unused);
   const int chosen = choose_light(scene, p, choice, &chance);
   LightSample light = sample_chosen(scene, p, u_x, u_y, chosen, met);
   light.pdf *= chance;
@@ -33,8 +33,9 @@ static inline LightSample choose_way(UNIFORM const Scene* scene, UNIFORM u32 ind
   float u_x = 0.5f, u_y = 0.5f;
   LightSample light;
   if (way->light != LIGHT_CHOSEN) {
+    const u32 first = DIMENSIONS_OF_LIGHT(way->light);
     if (has_extent(scene->lights + way->light))
-      bounce_numbers(tile, path, way->light, BOUNCE_LIGHT_POINT, way->ray, way->rays, &u_x, &u_y);
+      bounce_numbers(tile, path, first + BOUNCE_LIGHT_POINT, way->ray, way->rays, &u_x, &u_y);
     light = sample_light(scene, way->light, p, u_x, u_y);
     *met = rays_meet(scene, way->light);
   } else if (HAS_LIGHT_TREE) {

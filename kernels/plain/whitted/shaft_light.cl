@@ -20,8 +20,8 @@ void cast_shafts(UNIFORM const Scene* scene, UNIFORM u32 light, const Shaft* sha
                  bool* hard, UNIFORM u32* solids);
 bool outside_convex(UNIFORM __global const Instance* instance, float3 o);
 bool blocked_by(UNIFORM const Scene* scene, UNIFORM u32 solids, float3 o, float3 d, float t_max, HERE);
-void begin_numbers(UNIFORM const TileSamples* tile, const WaitingRay* path, UNIFORM u32 light,
-                   UNIFORM u32 offset, HERE, BounceNumbers* numbers);
+void begin_numbers(UNIFORM const TileSamples* tile, const WaitingRay* path, UNIFORM u32 dimension, HERE,
+                   BounceNumbers* numbers);
 void next_numbers(UNIFORM const TileSamples* tile, UNIFORM u32 part, UNIFORM u32 parts,
                   BounceNumbers* numbers, float* u_x, float* u_y);
 
@@ -62,7 +62,7 @@ static inline float3 sampled_light(UNIFORM const Scene* scene, UNIFORM __global 
   __global const Light* light = scene->lights + way->light;
   const float3 o = along(s->p, s->offset + s->lift, s->ng);
   BounceNumbers numbers;
-  begin_numbers(tile, path, way->light, BOUNCE_LIGHT_POINT, &numbers);
+  begin_numbers(tile, path, DIMENSIONS_OF_LIGHT(way->light) + BOUNCE_LIGHT_POINT, &numbers);
   SphericalRectangle rectangle;
   if (is_rectangle(light)) rectangle = see_rectangle(light, s->p);
   float3 sum = (float3)(0.0f);

@@ -110,7 +110,8 @@ __kernel void look(SCENE_PARAMETERS, __global const Ray* rays, __global float* o
   const REAL3 o = real3(rays[i].ox, rays[i].oy, rays[i].oz), d = unit3(real3(rays[i].dx, rays[i].dy, rays[i].dz));
   const REAL t_min = 0.0f;
   Hits hits;
-  trace_batch(&scene, &o, &d, &t_min, 1e30f, 0.0f, ALL_LANES, false, &hits);
+  const TraceRays rays_of = {&o, &d, &t_min, &hits, 0, 0};
+  trace_batch(&scene, &rays_of, 1e30f, 0.0f, ALL_LANES, false);
   const Faces faces = hit_faces(&scene, d, &hits, hit_anything(&hits));
   SurfaceInteractions s;
   interact(&scene, o, d, &hits, &faces, &s, hit_anything(&hits));

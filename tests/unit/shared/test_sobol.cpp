@@ -123,5 +123,7 @@ TEST_CASE("dimensions of bounces and of lights do not meet") {
   for (const u32 depth : {1u, 2u, 64u})
     for (const u32 light : {0u, 1u, 999u})
       for (u32 i = 0; i < DIMENSIONS_A_BOUNCE; ++i)
-        CHECK(seen.insert(dimension_of_bounce(depth, light) + i).second);
+        CHECK(
+            seen.insert(DIMENSION_BOUNCE + DIMENSIONS_A_BOUNCE * (depth - 1) + DIMENSIONS_OF_LIGHT(light) + i)
+                .second);
 }
