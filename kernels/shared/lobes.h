@@ -9,6 +9,10 @@
 //                                            ray also sees if `met`
 //   send_NAME(bsdf, lobes, wo, &part)        perfect lobes: the direction, and the part of light that it gets
 //   albedo_NAME(scene, bsdf, lobes, wo)      about what it returns of white surroundings
+//   drop_narrow_NAME(&bsdf, &lobes)          scattering lobes: takes away what is too narrow for photons;
+//                                            returns whether that is any
+//   matte_NAME(lobes)                        matte lobes: the share that is matte
+//   drop_matte_NAME(&bsdf, &lobes)           matte lobes: takes that away
 #pragma once
 
 // The scene's features that lobes need, as in features.h, which includes these.
@@ -30,11 +34,12 @@
 
 // Those that Whitted's integrator has lamps light.
 #define LOCAL_LOBES(LOBE) \
-  COLORED_LOBES(LOBE)     \
+  MATTE_LOBES(LOBE)       \
   LOBE(HAS_HIGHLIGHTS, highlight)
 
-// Those whose albedo is the colour of a surface, for AOVs.
-#define COLORED_LOBES(LOBE) \
+// Those that scatter evenly, at least in part: their albedo is the colour of a surface in AOVs, guides aim
+// their paths, and their light is the diffuse part.
+#define MATTE_LOBES(LOBE)   \
   LOBE(HAS_LAYERS, layered) \
   LOBE(HAS_SURFACES, diffuse)
 

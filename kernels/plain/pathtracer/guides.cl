@@ -8,8 +8,10 @@
 
 // Whether the surface sends paths to balls.
 static inline bool is_guided(const LobeSet* lobes) {
-  bool matte = lobes->diffuse > 0.0f;
-  if (HAS_LAYERS) matte = matte || lobes->layers.matte > 0.0f;
+  bool matte = false;
+#define IS_MATTE(feature, name) \
+  if (feature) matte = matte || matte_##name(lobes) > 0.0f;
+  MATTE_LOBES(IS_MATTE)
   return matte && perfect_share(lobes) <= 0.0f;
 }
 

@@ -16,8 +16,9 @@ static inline float3 glossy_scatter(UNIFORM const Scene* scene, const Bsdf* bsdf
   float unused;
   Bsdf glossy_bsdf = *bsdf;
   LobeSet glossy = *lobes;
-  glossy_bsdf.diffuse = (float3)(0.0f);
-  if (HAS_LAYERS) glossy.layers.only_glossy = true;
+#define KEEP_GLOSSY(feature, name) \
+  if (feature) drop_matte_##name(&glossy_bsdf, &glossy);
+  MATTE_LOBES(KEEP_GLOSSY)
   return bsdf_scatter(scene, &glossy_bsdf, &glossy, wo, wi, &unused);
 }
 

@@ -32,6 +32,9 @@ typedef struct LobeNumbers {
   float at, x, y;
 } LobeNumbers;
 
+// Facets with a narrower distribution see few of the photons about them.
+#define LEAST_WIDE_ALPHA 0.15f
+
 static inline bool is_above(const Bsdf* bsdf, float3 wi) {
   return dot(bsdf->ns, wi) > 0.0f && dot(bsdf->side, wi) > 0.0f;
 }

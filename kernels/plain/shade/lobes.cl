@@ -43,7 +43,7 @@ ENTRY static inline float3 surface_color(UNIFORM const Scene* scene, const Bsdf*
   const LobeSet made = make_lobes(scene, bsdf, wo);
   const LobeSet* lobes = &made;
   float3 sum = (float3)(0.0f);
-  COLORED_LOBES(ADD_ALBEDO)
+  MATTE_LOBES(ADD_ALBEDO)
   return sum;
 }
 

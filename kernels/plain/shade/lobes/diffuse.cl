@@ -26,3 +26,11 @@ static inline void local_diffuse(UNIFORM const Scene* scene, const Bsdf* bsdf, f
                                  float3* light) {
   *light += bsdf->diffuse * dot(bsdf->ns, wi);
 }
+
+HAVING(HAS_CAUSTICS)
+static inline bool drop_narrow_diffuse(Bsdf* bsdf, LobeSet* lobes) { return false; }
+
+static inline float matte_diffuse(const LobeSet* lobes) { return lobes->diffuse; }
+
+HAVING(HAS_LIGHT_PARTS)
+static inline void drop_matte_diffuse(Bsdf* bsdf, LobeSet* lobes) { bsdf->diffuse = (float3)(0.0f); }

@@ -187,3 +187,14 @@ static inline float3 sample_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, co
   if (is_frosted(facets)) return reflect_direction(reflected, bsdf->ns);
   return refract_direction(-wo, facet.ns, split.cos_i, split.cos_t, split.eta);
 }
+
+HAVING(HAS_CAUSTICS)
+static inline bool drop_narrow_ggx(Bsdf* bsdf, LobeSet* lobes) {
+  if (lobes->rough.alpha >= LEAST_WIDE_ALPHA) return false;
+  const bool narrow = lobes->rough.rough;
+  lobes->rough.rough = false;
+  lobes->rough.bends = false;
+  lobes->rough.transmits = false;
+  if (HAS_THIN_WALLS) lobes->rough.frosted = false;
+  return narrow;
+}

@@ -97,3 +97,12 @@ static inline float3 sample_highlight(UNIFORM const Scene* scene, const Bsdf* bs
   return lobes->blinn ? half_vector * (2.0f * dot(half_vector, wo)) - wo
                       : direction_about(reflect_direction(-wo, bsdf->ns), cosine, u->y);
 }
+
+// cos^e is about as wide as facets with alpha = sqrt(2 / (e + 2)).
+HAVING(HAS_CAUSTICS)
+static inline bool drop_narrow_highlight(Bsdf* bsdf, LobeSet* lobes) {
+  if (!(lobes->exponent > 2.0f / (LEAST_WIDE_ALPHA * LEAST_WIDE_ALPHA) - 2.0f)) return false;
+  if (HAS_MAPS) bsdf->specular = (float3)(0.0f);
+  if (!HAS_MAPS) bsdf->flags &= ~(int)MATERIAL_SHINES;
+  return true;
+}

@@ -68,3 +68,15 @@ static inline void local_layered(UNIFORM const Scene* scene, const Bsdf* bsdf, f
     *light = along(*light, bsdf->there, own);
   }
 }
+
+// The base below may be narrow.
+HAVING(HAS_CAUSTICS)
+static inline bool drop_narrow_layered(Bsdf* bsdf, LobeSet* lobes) {
+  lobes->layers.least = LEAST_WIDE_ALPHA;
+  return lobes->layered > 0.0f;
+}
+
+static inline float matte_layered(const LobeSet* lobes) { return lobes->layers.matte; }
+
+HAVING(HAS_LIGHT_PARTS)
+static inline void drop_matte_layered(Bsdf* bsdf, LobeSet* lobes) { lobes->layers.only_glossy = true; }
