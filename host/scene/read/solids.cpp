@@ -198,7 +198,7 @@ struct Solid {
 };
 
 constexpr std::array solids{
-#define SUNDOG_SOLID(constant, type, name)                       \
+#define SUNDOG_SOLID(constant, type, name, effect)               \
   Solid{#name, [](JsonObject& object, const JsonValue* meshes) { \
           return read_shape(type##Shape{}, object, meshes);      \
         }},
