@@ -1,3 +1,5 @@
+// A file is written to a locked temporary beside it, which then takes its name; pipes and devices are written
+// to directly.
 #include "base/file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// One pass makes up to six levels while edges are even, so that rows stay in the cache; odd edges take
+// weighted means of three pixels.
 #include "base/pixels/image_levels.h"
 
 #include <tbb/blocked_range.h>

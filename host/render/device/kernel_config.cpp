@@ -1,3 +1,4 @@
+// Definitions are numbers by name; effect_of() says which kernels may draw a scene that wants other numbers.
 #include "render/device/kernel_config.h"
 
 #include <algorithm>
