@@ -1,3 +1,5 @@
+// A file is written to a locked temporary beside it, which then takes its name; pipes and devices are written
+// to directly.
 #include "base/file.h"
 
 #include <fcntl.h>
@@ -7,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -198,6 +202,13 @@ void check_writable(const fs::path& path) {
 bool is_there(const fs::path& path) {
   std::error_code failed;
   return fs::exists(path, failed);
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 fs::path working_folder() {

@@ -31,6 +31,9 @@ bool is_pipe_or_device(const std::filesystem::path& path);
 /// Whether `path` exists. False if that cannot be determined, as in a folder that may not be entered.
 bool is_there(const std::filesystem::path& path);
 
+/// The extension in lower case, with its dot.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// The current folder. Throws IoError if it has been deleted.
 std::filesystem::path working_folder();
 

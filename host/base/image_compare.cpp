@@ -1,3 +1,5 @@
+// A pixel differs by its worst channel. NaN equals NaN; any other value that is not finite differs
+// infinitely.
 #include "base/image_compare.h"
 
 #include <algorithm>

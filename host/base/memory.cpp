@@ -1,3 +1,5 @@
+// Available is the least of /proc/meminfo, of the limits of cgroups (versions 1 and 2) and of the address
+// space.
 #include "base/memory.h"
 
 #if __has_include(<malloc.h>)

@@ -9,13 +9,13 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "compile/lights/all_lights.h"
 #include "compile/placing/instances.h"
+#include "compile/steps.h"
 #include "compile/surfaces/lobe_energy.h"
-#include "compile/view/camera.h"
 #include "compile/view/field_view.h"
 #include "compile/view/local_origin.h"
 #include "scene/integrators.h"
+#include "scene/light_groups.h"
 
 namespace sundog {
 namespace {
@@ -189,7 +189,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.integrator = scene.render.integrator;
   out.tracer = scene.render.tracer;
   out.sampling = scene.render.sampling;
-  take(compile_view(scene, origin), out);
+  take(compile_view({file_of(scene), origin, scene.camera, scene.image, scene.render}), out);
 
   auto& [halo, lights, surfaces, meshes, mapping, instances, touching, fields] = *parts_;
   work_.surfaces += memo(surfaces, surface_inputs(scene), compile_surfaces);
@@ -228,7 +228,21 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   memo(halo, HaloInputs{&scene.environment}, compile_halo);
   work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
   take(lights.value, out);
-  complete_lights(scene, lights.value, instances.value, out);
+  const AllLights all_lights = compile_all_lights({.origin = origin,
+                                                   .camera_position = out.info.camera_position,
+                                                   .lights = scene.lights,
+                                                   .materials = scene.materials,
+                                                   .meshes = scene.meshes,
+                                                   .objects = scene.objects,
+                                                   .environment_group = scene.environment.group,
+                                                   .groups = light_groups(scene),
+                                                   .render = scene.render,
+                                                   .of_scene = lights.value,
+                                                   .packed_materials = surfaces.value.materials,
+                                                   .instances = out.instances,
+                                                   .boxes = instances.value.boxes});
+  take_tables(all_lights, out);
+  out.photons_by = all_lights.photons_by;
   finish(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -15,8 +15,8 @@ std::logic_error no_such(const UnitShape& unit, const char* what) {
 template <class Result, class F>
 Result of_solid(const UnitShape& unit, F f) {
   switch (unit.shape) {
-#define SUNDOG_SOLID(constant, type, name) \
-  case SHAPE_##constant:                   \
+#define SUNDOG_SOLID(constant, type, name, effect) \
+  case SHAPE_##constant:                           \
     return f(static_cast<const type##Shape*>(nullptr));
     SOLIDS(SUNDOG_SOLID)
 #undef SUNDOG_SOLID

@@ -21,6 +21,23 @@ inline SceneFile file_of(const SceneDescription& scene) { return {scene.file.str
 /// Whether the world's fog is a scattering medium instead of emitting light itself.
 bool fog_scatters(const SceneDescription& scene);
 
+struct ViewInputs {
+  SceneFile file;
+  dvec3 origin;
+  const Camera& camera;
+  const ImageSettings& image;
+  const RenderSettings& render;
+};
+struct CompiledView {
+  SceneInfo info{};
+  SceneFeatures features;
+  SharedTable<float> filter;
+  SharedTable<float4> guides;
+};
+/// Positions are relative to the origin. Throws SceneError for an empty image, a zero view direction, or an
+/// up vector parallel to it.
+CompiledView compile_view(const ViewInputs& in);
+
 struct HaloInputs {
   const EnvironmentDescription* environment;
 };
@@ -214,6 +231,39 @@ Fields compile_field_tables(const FieldInputs& in);
 FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
                          const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,
                          u32 first);
+
+/// `instances` have their marks of touching others.
+struct AllLightsInputs {
+  dvec3 origin;
+  float4 camera_position;  // from the origin
+  std::span<const LightDescription> lights;
+  std::span<const MaterialDescription> materials;
+  std::span<const Mesh> meshes;
+  std::span<const Object> objects;
+  const std::string& environment_group;
+  std::vector<std::string> groups;  // light_groups()
+  const RenderSettings& render;
+  const Lights& of_scene;
+  const SharedTable<Material>& packed_materials;
+  const SharedTable<Instance>& instances;
+  std::span<const Bounds> boxes;  // one for each instance
+};
+/// All lights, those of meshes among them, with the tree over them and photons, and the tables that hold
+/// numbers of lights or of light groups.
+struct AllLights {
+  SharedTable<Light> lights;
+  SharedTable<LightRay> light_rays;
+  SharedTable<LightNode> light_nodes;
+  SharedTable<u32> light_leaves;
+  SharedTable<Environment> environments;
+  SharedTable<Material> materials;
+  SharedTable<Instance> instances;
+  SharedTable<PhotonTarget> photon_targets;
+  SharedTable<float> photon_lights;
+  PhotonPlan photons_by;
+  SceneFeatures features;
+};
+AllLights compile_all_lights(const AllLightsInputs& in);
 
 ContentKey key_of(const HaloInputs& inputs);
 ContentKey key_of(const LightInputs& inputs);

@@ -1,3 +1,4 @@
+// Joins the three parts of the list (list_parts.h) and prints it for `sundog formulas`.
 #include "formula/list.h"
 
 #include <fmt/format.h>

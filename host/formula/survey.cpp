@@ -1,3 +1,5 @@
+// Samples points, climbs from the best ones, and compares estimates with distances to surface points found by
+// bisection.
 #include "formula/survey.h"
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/input.h"
 
 namespace sundog::models {
@@ -17,13 +17,6 @@ namespace {
 constexpr std::size_t most_bytes = std::size_t{1} << 31;
 // Vertex text compresses to between a tenth and a third; gzip reaches a thousandth.
 constexpr std::size_t most_growth = 100, grows_freely = std::size_t{64} << 20;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 class Inflater {
  public:

@@ -1,3 +1,4 @@
+// Halves edges until none is too long, then moves each point along its mean normal by the mean height there.
 #include "scene/displace.h"
 
 #include <fmt/format.h>

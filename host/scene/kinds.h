@@ -10,7 +10,7 @@ namespace sundog {
 
 /// Names in scene files and figures, by Shape index.
 inline constexpr std::array<std::string_view, SHAPE_COUNT> shape_names = {"mesh",
-#define SUNDOG_SHAPE_NAME(constant, type, name) #name,
+#define SUNDOG_SHAPE_NAME(constant, type, name, effect) #name,
                                                                           SOLIDS(SUNDOG_SHAPE_NAME)
 #undef SUNDOG_SHAPE_NAME
                                                                               "field"};

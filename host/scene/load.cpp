@@ -1,3 +1,4 @@
+// In order: the document of the file or around the model, settings, the frame's tracks, then the readers.
 #include "scene/load.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// A camera frames the model; a key light and a sky suit its brightest material; a ground meets the
+// background.
 #include "scene/model_scene.h"
 
 #include <algorithm>

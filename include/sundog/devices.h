@@ -47,7 +47,7 @@ SUNDOG_API std::vector<Device> choose_devices(const std::vector<std::string>& sp
 /// Returns the number of threads that are still inside drivers: they compile for a stopped render, or hang.
 /// While it is above 0, exit() waits for them, up to a minute; _exit() does not. Thread-safe.
 SUNDOG_API unsigned threads_left_behind();
-/// The same, whichever the devices: the threads belong to the process.
+/// Returns the same number for any devices, since the threads belong to the process.
 inline unsigned threads_left_behind(const std::vector<Device>&) { return threads_left_behind(); }
 
 /// Waits for these threads now, up to a minute, then detaches them. Call it before exit() where a process may

@@ -1,30 +1,32 @@
 // Shapes of instances: meshes, exact solids, distance fields. The list of solids generates SHAPE_*, HAS_*,
 // HAS_SOLID, the description's Shape, and names in scene files and figures.
-//   SOLID(constant after SHAPE_ and HAS_, description's struct before Shape, name)
+//   SOLID(constant after SHAPE_ and HAS_, description's struct before Shape, name, effect as in features.h)
 // Exact solids are unit shapes scaled by their transform; `parameters` holds what a transform cannot express
 // (in object space, y is the axis).
 #pragma once
 #include "shared/types.h"
 SUNDOG_SHARED_BEGIN
 
-#define SOLIDS(SOLID)                                                                                        \
-  SOLID(SPHERE, Sphere, sphere)          /* radius 1 at the origin */                                        \
-  SOLID(PLANE, Plane, plane)             /* y = 0, inside is y < 0; unbounded */                             \
-  SOLID(BOX, Box, box)                   /* [-1, 1]^3 */                                                     \
-  SOLID(CYLINDER, Cylinder, cylinder)    /* radius 1, y in [-1, 1]; parameters.x: 1 = capped */              \
-  SOLID(CONE, Cone, cone)                /* radius parameters.x at y = -1, parameters.y at y = 1 (>= 0, not  \
-                                            both 0); parameters.z: 1 = capped */                             \
-  SOLID(DISK, Disk, disk)                /* radius 1 in y = 0, normal +y; parameters.x: inner radius         \
-                                            (0 <= x < 1) */                                                  \
-  SOLID(RECTANGLE, Rectangle, rectangle) /* [-1, 1]^2 in y = 0, normal +y */                                 \
-  SOLID(TORUS, Torus, torus)             /* major radius 1 about y, minor radius parameters.x (0 < x < 1) */ \
-  SOLID(ROUNDBOX, RoundBox, round_box)   /* half sizes parameters.xyz, edges rounded with radius             \
-                                            parameters.w (<= the smallest half size) */                      \
-  SOLID(LATHE, Lathe, lathe)             /* a profile about y: parameters.y rows of ProfileArc from row      \
-                                            parameters.x; within radius parameters.z, |y| <= parameters.w */
+#define SOLIDS(SOLID)                                                                                      \
+  SOLID(SPHERE, Sphere, sphere, same)          /* radius 1 at the origin */                                \
+  SOLID(PLANE, Plane, plane, same)             /* y = 0, inside is y < 0; unbounded */                     \
+  SOLID(BOX, Box, box, same)                   /* [-1, 1]^3 */                                             \
+  SOLID(CYLINDER, Cylinder, cylinder, rounds)  /* radius 1, y in [-1, 1]; parameters.x: 1 = capped */      \
+  SOLID(CONE, Cone, cone, rounds)              /* radius parameters.x at y = -1, parameters.y at y = 1     \
+                                                  (>= 0, not both 0); parameters.z: 1 = capped */          \
+  SOLID(DISK, Disk, disk, same)                /* radius 1 in y = 0, normal +y; parameters.x: inner radius \
+                                                  (0 <= x < 1) */                                          \
+  SOLID(RECTANGLE, Rectangle, rectangle, same) /* [-1, 1]^2 in y = 0, normal +y */                         \
+  SOLID(TORUS, Torus, torus, rounds)           /* major radius 1 about y, minor radius parameters.x        \
+                                                  (0 < x < 1) */                                           \
+  SOLID(ROUNDBOX, RoundBox, round_box, rounds) /* half sizes parameters.xyz, edges rounded with radius     \
+                                                  parameters.w (<= the smallest half size) */              \
+  SOLID(LATHE, Lathe, lathe, rounds)           /* a profile about y: parameters.y rows of ProfileArc from  \
+                                                  row parameters.x; within radius parameters.z,            \
+                                                  |y| <= parameters.w */
 
 // Instance.shape, and the alternatives' indices in the description's Shape.
-#define SHAPE_CONSTANT(constant, type, name) SHAPE_##constant,
+#define SHAPE_CONSTANT(constant, type, name, effect) SHAPE_##constant,
 typedef enum ShapeKind SUNDOG_ENUM_OF_U32 { SHAPE_MESH, SOLIDS(SHAPE_CONSTANT) SHAPE_SDF } ShapeKind;
 #undef SHAPE_CONSTANT
 #define SHAPE_COUNT (SHAPE_SDF + 1u)
@@ -39,7 +41,7 @@ typedef struct ProfileArc {
 SUNDOG_SHARED_SIZE(ProfileArc, 64)
 
 // Whether the scene contains exact solids.
-#define HAS_SOLID_OR(constant, type, name) HAS_##constant ||
+#define HAS_SOLID_OR(constant, type, name, effect) HAS_##constant ||
 #define HAS_SOLID (SOLIDS(HAS_SOLID_OR) 0)
 
 SUNDOG_SHARED_END

@@ -52,7 +52,7 @@ sundog::KernelDefines all_features() {
   using sundog::u32;
   sundog::KernelDefines defines;
   for (const char* shape : {"HAS_MESH", "HAS_BVH", "HAS_SDF"}) defines[shape] = "1";
-#define SUNDOG_DEFINE_SOLID(constant, type, name) defines["HAS_" #constant] = "1";
+#define SUNDOG_DEFINE_SOLID(constant, type, name, effect) defines["HAS_" #constant] = "1";
   SOLIDS(SUNDOG_DEFINE_SOLID)
 #undef SUNDOG_DEFINE_SOLID
 #define SUNDOG_DEFINE_FEATURE(type, definition, name, effect) \

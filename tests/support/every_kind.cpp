@@ -8,7 +8,7 @@ using namespace sundog;
 
 std::vector<Shape> every_solid() {
   return {
-#define SUNDOG_SOLID(constant, type, name) type##Shape{},
+#define SUNDOG_SOLID(constant, type, name, effect) type##Shape{},
       SOLIDS(SUNDOG_SOLID)
 #undef SUNDOG_SOLID
   };

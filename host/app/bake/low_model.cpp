@@ -1,3 +1,5 @@
+// Draws the triangles into the texture's square, which repeats: each texel keeps a triangle and its place
+// there.
 #include "app/bake/low_model.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Each rank lists its devices and the SPECs choose among them; then each device of a machine goes to one
+// rank.
 #include "app/job/job.h"
 
 #include <fmt/format.h>

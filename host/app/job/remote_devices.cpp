@@ -1,3 +1,4 @@
+// Settings in JSON name the scene and the frame; the devices of one process share what it has loaded.
 #include "app/job/remote_devices.h"
 
 #include <nlohmann/json.hpp>

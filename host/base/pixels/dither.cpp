@@ -1,11 +1,11 @@
 #include "base/pixels/dither.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "base/image_io.h"
 #include "base/parallel.h"
+#include "base/pixels/image_levels.h"
 
 namespace sundog {
 namespace {
@@ -19,17 +19,9 @@ double dither_threshold(std::size_t x, std::size_t y, std::size_t channel) {
   return (double(folded >> 24) + 0.5) / 256;
 }
 
-/// Linear values of the 256 sRGB levels.
-std::array<float, 256> make_levels() {
-  std::array<float, 256> levels{};
-  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = linear_from_srgb(static_cast<float>(i) / 255);
-  return levels;
-}
-
 }  // namespace
 
 void dither_to_8_bits(Image& image) {
-  static const std::array<float, 256> levels = make_levels();
   const auto channels = static_cast<std::size_t>(image.channels),
              width = static_cast<std::size_t>(image.width);
   in_parallel(image.data.size() / channels, [&](std::size_t pixel) {
@@ -37,7 +29,7 @@ void dither_to_8_bits(Image& image) {
       float& value = image.data[pixel * channels + channel];
       if (!(value > 0 && value < 1)) continue;
       const double up = dither_threshold(pixel % width, pixel / width, channel);
-      value = levels[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
+      value = linear_bytes()[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
     }
   });
 }

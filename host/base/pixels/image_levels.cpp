@@ -1,3 +1,5 @@
+// One pass makes up to six levels while edges are even, so that rows stay in the cache; odd edges take
+// weighted means of three pixels.
 #include "base/pixels/image_levels.h"
 
 #include <tbb/blocked_range.h>
@@ -23,15 +25,6 @@ struct LinearLevel {
   std::size_t channels = 4;
   std::vector<float> data;
 };
-
-const std::array<float, 256>& linear_bytes() {
-  static const auto table = [] {
-    std::array<float, 256> values{};
-    for (std::size_t i = 0; i < 256; ++i) values[i] = linear_from_srgb(static_cast<float>(i) / 255);
-    return values;
-  }();
-  return table;
-}
 
 /// Linear value to sRGB byte, in steps fine enough that the result is within a quarter of a level.
 constexpr std::size_t srgb_steps = std::size_t{1} << 14;
@@ -335,6 +328,15 @@ std::vector<StoredImage> levels_of(const StoredImage& image, SampleUse use, std:
 }
 
 }  // namespace
+
+const std::array<float, 256>& linear_bytes() {
+  static const auto table = [] {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < 256; ++i) values[i] = linear_from_srgb(static_cast<float>(i) / 255);
+    return values;
+  }();
+  return table;
+}
 
 void settle_samples(StoredImage& image, bool srgb) {
   const auto channels = static_cast<std::size_t>(image.channels);

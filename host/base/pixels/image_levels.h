@@ -1,12 +1,16 @@
 // Mip levels of images, each half as wide and high as the one before, averaged in linear light (Williams
 // 1983, "Pyramidal Parametrics").
 #pragma once
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "base/pixels/stored_image.h"
 
 namespace sundog {
+
+/// Linear values of the 256 sRGB bytes.
+const std::array<float, 256>& linear_bytes();
 
 /// Converts samples for textures: colour bytes to sRGB, colour words to linear halves. Data bytes and words
 /// are unchanged; the file's exponent is applied and dropped.

@@ -1,3 +1,4 @@
+// An operation's text is its expression in FIELD_OPS with the operands in place of their letters.
 #include "compile/fields/field_code.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Fuses products that one sum uses, and writes what no iteration changes before the loop.
 #include "compile/fields/sdf_emit.h"
 
 #include <algorithm>

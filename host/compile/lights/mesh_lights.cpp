@@ -12,9 +12,9 @@ namespace sundog {
 namespace {
 
 /// The radiance emitted outside by a material's triangles, if uniform.
-dvec3 even_emission(const SceneDescription& scene, int material) {
+dvec3 even_emission(const AllLightsInputs& in, int material) {
   if (material < 0) return dvec3(0);
-  const MaterialDescription& of = scene.materials[static_cast<std::size_t>(material)];
+  const MaterialDescription& of = in.materials[static_cast<std::size_t>(material)];
   const bool even = of.textures.emission < 0 && of.textures.opacity < 0 && of.opacity == 1;
   return even ? of.emission : dvec3(0);
 }
@@ -45,43 +45,42 @@ Light light_of(const Object& object, const Mesh& mesh, const glm::uvec3& corners
   return light;
 }
 
-bool shines_somewhere(const SceneDescription& scene, const Object& object, const Mesh& mesh) {
-  if (object.material >= 0 || mesh.materials.empty())
-    return even_emission(scene, object.material) != dvec3(0);
+bool shines_somewhere(const AllLightsInputs& in, const Object& object, const Mesh& mesh) {
+  if (object.material >= 0 || mesh.materials.empty()) return even_emission(in, object.material) != dvec3(0);
   return std::ranges::any_of(mesh.materials,
-                             [&](int material) { return even_emission(scene, material) != dvec3(0); });
+                             [&](int material) { return even_emission(in, material) != dvec3(0); });
 }
 
 /// For each object, the row of the light that it shows, or NO_LIGHT. Ambient lights have no row.
-std::vector<u32> lamps_of(const SceneDescription& scene) {
+std::vector<u32> lamps_of(const AllLightsInputs& in) {
   std::vector<u32> rows, lamps;
   u32 row = 0;
-  for (const LightDescription& light : scene.lights)
+  for (const LightDescription& light : in.lights)
     rows.push_back(light.type == LightType::ambient ? NO_LIGHT : row++);
-  for (const Object& object : scene.objects)
+  for (const Object& object : in.objects)
     lamps.push_back(object.light < 0 ? NO_LIGHT : rows.at(static_cast<std::size_t>(object.light)));
   return lamps;
 }
 
 }  // namespace
 
-MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, MeshLights out) {
-  std::vector<u32> first = lamps_of(scene);
-  const std::vector<std::string> groups = light_groups(scene);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const Object& object = scene.objects[i];
+MeshLights add_mesh_lights(const AllLightsInputs& in) {
+  MeshLights out{in.of_scene.lights, in.instances};
+  std::vector<u32> first = lamps_of(in);
+  for (std::size_t i = 0; i < in.objects.size(); ++i) {
+    const Object& object = in.objects[i];
     const auto* shape = std::get_if<MeshShape>(&object.shape);
     if (!shape || object.light >= 0) continue;
-    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(shape->mesh)];
+    const Mesh& mesh = in.meshes[static_cast<std::size_t>(shape->mesh)];
     if (object.moves()) continue;  // found by rays, not sampled
-    if (mesh.triangles.size() > most_shining || !shines_somewhere(scene, object, mesh)) continue;
+    if (mesh.triangles.size() > most_shining || !shines_somewhere(in, object, mesh)) continue;
     first[i] = static_cast<u32>(out.lights.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const int material = material_of(object, mesh, t);
-      Light light = light_of(object, mesh, mesh.triangles[t], even_emission(scene, material), origin);
+      Light light = light_of(object, mesh, mesh.triangles[t], even_emission(in, material), in.origin);
       if (material >= 0)
         light.color.w = static_cast<float>(
-            number_of_group(groups, scene.materials[static_cast<std::size_t>(material)].group));
+            number_of_group(in.groups, in.materials[static_cast<std::size_t>(material)].group));
       out.lights.push_back(light);
     }
     out.any = true;

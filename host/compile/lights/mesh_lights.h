@@ -1,6 +1,6 @@
 // Compiles emissive meshes to one light per triangle.
 #pragma once
-#include "compile/compiled_scene.h"
+#include "compile/steps.h"
 
 namespace sundog {
 
@@ -13,9 +13,8 @@ struct MeshLights {
 
 /// Appends a light for each triangle of meshes whose materials have a uniform emission. Stores the light's
 /// index in their instances, and in those of visible lights for path tracing. Meshes with textured emission
-/// or more than `most_shining` triangles are left to rays that hit them. `before`: lights and instances
-/// without these.
-MeshLights add_mesh_lights(const SceneDescription& scene, const dvec3& origin, MeshLights before);
+/// or more than `most_shining` triangles are left to rays that hit them.
+MeshLights add_mesh_lights(const AllLightsInputs& in);
 
 constexpr std::size_t most_shining = 200'000;
 

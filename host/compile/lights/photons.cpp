@@ -24,21 +24,21 @@ bool is_smooth(const Material& material) {
   return material.flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS) && material.reflection.w == 0;
 }
 
-bool sends_on(const SceneDescription& scene, const Instance& instance, const CompiledScene& out) {
-  if (instance.material != NO_MATERIAL) return is_smooth(out.materials[instance.material]);
-  const auto* shape = std::get_if<MeshShape>(&scene.objects[instance.object].shape);
+bool sends_on(const AllLightsInputs& in, const Instance& instance) {
+  if (instance.material != NO_MATERIAL) return is_smooth(in.packed_materials[instance.material]);
+  const auto* shape = std::get_if<MeshShape>(&in.objects[instance.object].shape);
   if (!shape) return false;
-  return std::ranges::any_of(scene.meshes[static_cast<std::size_t>(shape->mesh)].materials, [&](int index) {
-    return index >= 0 && is_smooth(out.materials[static_cast<std::size_t>(index)]);
+  return std::ranges::any_of(in.meshes[static_cast<std::size_t>(shape->mesh)].materials, [&](int index) {
+    return index >= 0 && is_smooth(in.packed_materials[static_cast<std::size_t>(index)]);
   });
 }
 
 glm::dvec3 middle_of(const float4& ball) { return {ball.x, ball.y, ball.z}; }
 
 /// A ball around the instance over its motion; exact for a uniformly scaled sphere.
-float4 ball_about(const SceneDescription& scene, const Instance& instance, const Bounds& box) {
+float4 ball_about(const AllLightsInputs& in, const Instance& instance, const Bounds& box) {
   float4 ball = sphere_around(box);
-  if (instance.shape != SHAPE_SPHERE || scene.objects[instance.object].moves()) return ball;
+  if (instance.shape != SHAPE_SPHERE || in.objects[instance.object].moves()) return ball;
   const auto row = [&](int i) { return middle_of(instance.object_from_world[i]); };
   const double square = glm::dot(row(0), row(0)), least = 1e-5 * square;
   for (const int i : {0, 1, 2})
@@ -50,24 +50,23 @@ float4 ball_about(const SceneDescription& scene, const Instance& instance, const
 
 /// The balls of smooth objects, after one around everything. Of a plane, which is infinite, the relevant part
 /// is assumed to be not much farther away than the camera and all other objects.
-std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bounds> boxes,
-                               const CompiledScene& out) {
+std::vector<float4> find_balls(const AllLightsInputs& in) {
   Bounds all = Bounds::none(), smooth = Bounds::none();
   std::vector<float4> balls{{}};
   bool plane = false;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Instance& instance = out.instances[i];
-    const bool sends = sends_on(scene, instance, out), endless = instance.shape == SHAPE_PLANE;
+  for (std::size_t i = 0; i < in.boxes.size(); ++i) {
+    const Instance& instance = in.instances[i];
+    const bool sends = sends_on(in, instance), endless = instance.shape == SHAPE_PLANE;
     plane |= sends && endless;
     if (endless) continue;
-    all.extend(boxes[i]);
+    all.extend(in.boxes[i]);
     if (!sends) continue;
-    smooth.extend(boxes[i]);
-    balls.push_back(ball_about(scene, instance, boxes[i]));
+    smooth.extend(in.boxes[i]);
+    balls.push_back(ball_about(in, instance, in.boxes[i]));
   }
   if (balls.size() > most_targets + 1) balls = {{}, sphere_around(smooth)};
   balls[0] = all.lower[0] <= all.upper[0] ? sphere_around(all) : float4{};
-  const glm::dvec3 camera(out.info.camera_position.x, out.info.camera_position.y, out.info.camera_position.z);
+  const glm::dvec3 camera = middle_of(in.camera_position);
   const double away = glm::distance(camera, middle_of(balls[0]));
   if (plane) {
     balls[0].w = static_cast<float>(2 * (double(balls[0].w) + away));
@@ -77,12 +76,13 @@ std::vector<float4> find_balls(const SceneDescription& scene, std::span<const Bo
 }
 
 /// The environment's mean radiance over all directions.
-double mean_luminance(const CompiledScene& out) {
-  const Environment& e = out.environments[0];
+double mean_luminance(const Lights& of_scene) {
+  const Environment& e = of_scene.environments[0];
   double sum = 0, weights = 0;
   for (std::size_t y = 0; y < e.height; ++y) {
     const double weight = std::sin(pi * (double(y) + 0.5) / e.height);
-    for (std::size_t x = 0; x < e.width; ++x) sum += weight * luminance(out.environment[y * e.width + x]);
+    for (std::size_t x = 0; x < e.width; ++x)
+      sum += weight * luminance(of_scene.environment[y * e.width + x]);
     weights += weight * e.width;
   }
   return sum / weights;
@@ -106,10 +106,11 @@ double light_to_ball(const Light& light, const float4& ball, double environment)
 }
 
 /// Cumulative shares of the lights; empty if none emits.
-std::vector<float> share_photons(const std::vector<float4>& balls, const CompiledScene& out) {
-  const double environment = out.environments.empty() ? 0 : mean_luminance(out);
+std::vector<float> share_photons(const std::vector<float4>& balls, const std::vector<Light>& lights,
+                                 const Lights& of_scene) {
+  const double environment = of_scene.environments.empty() ? 0 : mean_luminance(of_scene);
   std::vector<double> parts;
-  for (const Light& light : out.lights)
+  for (const Light& light : lights)
     parts.push_back(std::accumulate(balls.begin() + 1, balls.end(), 0.0, [&](double sum, const float4& ball) {
       return sum + light_to_ball(light, ball, environment);
     }));
@@ -132,13 +133,12 @@ std::vector<float> share_photons(const std::vector<float4>& balls, const Compile
 /// Appends planes after the balls, with a negative weight and never sampled
 /// (kernels/plain/pathtracer/photon_start.cl): at their positions when the shutter opens and, if they move,
 /// when it closes.
-void append_planes(const SceneDescription& scene, const CompiledScene& out,
-                   std::vector<PhotonTarget>& targets) {
-  for (const Instance& instance : out.instances.rows()) {
+void append_planes(const AllLightsInputs& in, std::vector<PhotonTarget>& targets) {
+  for (const Instance& instance : in.instances.rows()) {
     if (instance.shape != SHAPE_PLANE) continue;
     float4 plane = instance.object_from_world[1];
     targets.push_back({plane, -1, 2, 0, 0});
-    const dvec3 move = scene.objects[instance.object].moves_by;
+    const dvec3 move = in.objects[instance.object].moves_by;
     if (move == dvec3(0)) continue;
     plane.w -= static_cast<float>(glm::dot(middle_of(plane), move));
     targets.push_back({plane, -1, 2, 0, 0});
@@ -165,29 +165,28 @@ double usual_radius(const std::vector<float4>& balls, double count) {
   return std::sqrt(photons_within * squares / count);
 }
 
-bool may_be_inside(const Light& light, std::span<const Bounds> boxes, const CompiledScene& out) {
-  return has_place(light) && is_camera_inside(middle_of(light.position), out.instances.rows(), boxes);
+bool may_be_inside(const Light& light, const AllLightsInputs& in) {
+  return has_place(light) && is_camera_inside(middle_of(light.position), in.instances.rows(), in.boxes);
 }
 
 constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of a float
 
 }  // namespace
 
-Photons plan_photons(const SceneDescription& description, std::span<const Bounds> boxes,
-                     const CompiledScene& scene) {
-  const RenderSettings& settings = description.render;
-  if (!settings.caustics || !traces_paths(settings.integrator) || scene.lights.empty()) return {};
-  const std::vector<float4> balls = find_balls(description, boxes, scene);
+Photons plan_photons(const AllLightsInputs& in, const std::vector<Light>& lights) {
+  const RenderSettings& settings = in.render;
+  if (!settings.caustics || !traces_paths(settings.integrator) || lights.empty()) return {};
+  const std::vector<float4> balls = find_balls(in);
   if (balls.size() < 2 || std::ranges::all_of(balls, [](const float4& ball) { return !(ball.w > 0); }))
     return {};
-  std::vector<float> shares = share_photons(balls, scene);
+  std::vector<float> shares = share_photons(balls, lights, in.of_scene);
   if (shares.empty()) return {};
   std::vector<PhotonTarget> targets = share_balls(balls);
-  append_planes(description, scene, targets);
+  append_planes(in, targets);
   const double radius =
       settings.photon_radius > 0 ? settings.photon_radius : usual_radius(balls, settings.photons);
-  const bool inside = std::ranges::any_of(
-      scene.lights, [&](const Light& light) { return may_be_inside(light, boxes, scene); });
+  const bool inside =
+      std::ranges::any_of(lights, [&](const Light& light) { return may_be_inside(light, in); });
   return {std::move(targets),
           std::move(shares),
           {static_cast<u32>(settings.photons), std::max(radius, least_radius), inside}};

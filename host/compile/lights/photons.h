@@ -1,8 +1,6 @@
 // Chooses the targets of photons and each light's share of them (kernels/shared/photons.h).
 #pragma once
-#include <span>
-
-#include "compile/compiled_scene.h"
+#include "compile/steps.h"
 
 namespace sundog {
 
@@ -13,8 +11,7 @@ struct Photons {
 };
 
 /// For path tracing with caustics in a scene with lights and smooth reflecting or refracting objects; else
-/// nothing. `boxes`: one per instance of `scene`, whose other tables must be complete.
-Photons plan_photons(const SceneDescription& description, std::span<const Bounds> boxes,
-                     const CompiledScene& scene);
+/// nothing. `lights`: all of the scene.
+Photons plan_photons(const AllLightsInputs& in, const std::vector<Light>& lights);
 
 }  // namespace sundog

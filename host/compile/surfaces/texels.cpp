@@ -1,3 +1,4 @@
+// Levels are rounded up to whole units, so that no tile crosses the end of a page.
 #include "compile/surfaces/texels.h"
 
 #include <algorithm>

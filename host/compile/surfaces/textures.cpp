@@ -1,3 +1,5 @@
+// A texture's nodes follow those of its operands. An image is weighted by alpha where that is the material's
+// opacity.
 #include "compile/surfaces/textures.h"
 
 #include <fmt/format.h>

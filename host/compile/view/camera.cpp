@@ -1,5 +1,5 @@
-// See camera.h.
-#include "compile/view/camera.h"
+// Compiles the view: the camera's frame and pixel vectors, the background, the filter and the settings.
+#include "compile/steps.h"
 
 #include <fmt/format.h>
 
@@ -16,15 +16,14 @@
 namespace sundog {
 namespace {
 
-[[noreturn]] void fail(const SceneDescription& scene, const char* place, const std::string& what) {
-  throw SceneError(scene.file.string(), place, what);
+[[noreturn]] void fail(const ViewInputs& in, const char* place, const std::string& what) {
+  throw SceneError(*in.file, place, what);
 }
 
 /// Normalises `vector`; fails with `what` if it has no direction.
-dvec3 unit_vector(const SceneDescription& scene, const dvec3& vector, const char* place,
-                  const std::string& what) {
+dvec3 unit_vector(const ViewInputs& in, const dvec3& vector, const char* place, const std::string& what) {
   const double length = glm::length(vector);
-  if (!(length > 0) || !std::isfinite(length)) fail(scene, place, what);
+  if (!(length > 0) || !std::isfinite(length)) fail(in, place, what);
   return vector / length;
 }
 
@@ -35,21 +34,19 @@ struct Frame {
 
 std::string text(const dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
-Frame frame_of(const SceneDescription& scene, const View& view, const std::string& place) {
-  const ImageSettings& image = scene.image;
+Frame frame_of(const ViewInputs& in, const View& view, const std::string& place) {
+  const ImageSettings& image = in.image;
   Frame frame;
-  frame.forward = unit_vector(scene, view.target - view.position, (place + "/target").c_str(),
+  frame.forward = unit_vector(in, view.target - view.position, (place + "/target").c_str(),
                               "wanted a target apart from the position, found both at " + text(view.target));
-  frame.up =
-      unit_vector(scene, scene.camera.up, "/camera/up", "wanted a direction, found " + text(scene.camera.up));
+  frame.up = unit_vector(in, in.camera.up, "/camera/up", "wanted a direction, found " + text(in.camera.up));
   const dvec3 side = glm::cross(frame.forward, frame.up);
   if (glm::length(side) < 1e-9)
-    fail(scene, "/camera/up",
-         "wanted a direction across the view, found one along it: " + text(scene.camera.up));
+    fail(in, "/camera/up", "wanted a direction across the view, found one along it: " + text(in.camera.up));
   const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, frame.forward);
-  const bool parallel = scene.camera.orthographic > 0;
+  const bool parallel = in.camera.orthographic > 0;
   const double height =
-      parallel ? scene.camera.orthographic : 2 * std::tan(scene.camera.fov * std::numbers::pi / 360);
+      parallel ? in.camera.orthographic : 2 * std::tan(in.camera.fov * std::numbers::pi / 360);
   const double pixel = height / image.height;
   frame.corner = (parallel ? dvec3(0) : frame.forward) - right * (pixel * image.width / 2) +
                  screen_up * (pixel * image.height / 2);
@@ -81,17 +78,17 @@ u32 sampler_of(const RenderSettings& settings) {
   return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;
 }
 
-SceneInfo camera_and_settings(const SceneDescription& scene, const dvec3& origin) {
+SceneInfo camera_and_settings(const ViewInputs& in) {
   SceneInfo info{};
-  const Camera& camera = scene.camera;
-  const ImageSettings& image = scene.image;
+  const Camera& camera = in.camera;
+  const ImageSettings& image = in.image;
   if (image.width < 1 || image.height < 1)
-    fail(scene, "/image/size", fmt::format("wanted at least 1x1, found {}x{}", image.width, image.height));
+    fail(in, "/image/size", fmt::format("wanted at least 1x1, found {}x{}", image.width, image.height));
   if (!(camera.fov > 0 && camera.fov < 180))
-    fail(scene, "/camera/fov", fmt::format("wanted degrees between 0 and 180, found {}", camera.fov));
+    fail(in, "/camera/fov", fmt::format("wanted degrees between 0 and 180, found {}", camera.fov));
 
-  const Frame frame = frame_of(scene, {camera.position, camera.target}, "/camera");
-  info.camera_position = pack(camera.position - origin);
+  const Frame frame = frame_of(in, {camera.position, camera.target}, "/camera");
+  info.camera_position = pack(camera.position - in.origin);
   const double spread = camera.orthographic > 0 ? 1 / glm::length(camera.target - camera.position) : 0;
   info.camera_corner = pack(frame.corner, spread);
   info.camera_dx = pack(frame.dx);
@@ -99,43 +96,43 @@ SceneInfo camera_and_settings(const SceneDescription& scene, const dvec3& origin
   info.camera_forward = pack(frame.forward, camera.near);
   info.background_bottom = pack(image.background_bottom, camera.far);
   if (camera.lens.radius > 0) set_lens(camera, frame, info);
-  if (camera.moves_to) set_motion(camera, frame, frame_of(scene, *camera.moves_to, "/camera/moves_to"), info);
+  if (camera.moves_to) set_motion(camera, frame, frame_of(in, *camera.moves_to, "/camera/moves_to"), info);
   info.background_top = pack(image.background_top);
   info.transparent = image.transparent;
   info.up = pack(frame.up);
-  const SplitPoint place = split_point(origin);
+  const SplitPoint place = split_point(in.origin);
   info.origin = place.high;
   info.origin_rest = place.low;
   if (!is_frame_size(image.width, image.height))
-    fail(scene, "/image",
+    fail(in, "/image",
          fmt::format("wanted at most {} pixels in all, found {} x {}", most_pixels, image.width,
                      image.height));
   info.width = static_cast<u32>(image.width);
   info.height = static_cast<u32>(image.height);
-  info.max_depth = static_cast<u32>(scene.render.max_depth);
-  info.samples = static_cast<u32>(scene.render.samples);
-  info.seed = scene.render.seed ? hash_u32(static_cast<u32>(scene.render.seed)) & ~3u : 0;
-  info.cutoff = static_cast<float>(scene.render.cutoff);
-  info.max_component = static_cast<float>(scene.render.max_component);
-  info.roulette_depth = static_cast<u32>(scene.render.roulette == 65 ? 65537 : scene.render.roulette);
-  info.light_strategy = scene.render.light_strategy;
+  info.max_depth = static_cast<u32>(in.render.max_depth);
+  info.samples = static_cast<u32>(in.render.samples);
+  info.seed = in.render.seed ? hash_u32(static_cast<u32>(in.render.seed)) & ~3u : 0;
+  info.cutoff = static_cast<float>(in.render.cutoff);
+  info.max_component = static_cast<float>(in.render.max_component);
+  info.roulette_depth = static_cast<u32>(in.render.roulette == 65 ? 65537 : in.render.roulette);
+  info.light_strategy = in.render.light_strategy;
   return info;
 }
 
 }  // namespace
 
-CompiledView compile_view(const SceneDescription& scene, const dvec3& origin) {
+CompiledView compile_view(const ViewInputs& in) {
   CompiledView view;
-  view.info = camera_and_settings(scene, origin);
-  view.filter = filter_table(scene.render);
-  if (traces_paths(scene.render.integrator) && !scene.render.caustics)
-    for (const Guide& guide : scene.render.guides)
-      view.guides.push_back(pack(guide.center - origin, guide.radius));
-  view.features.clear_glass = scene.image.transparent_glass;
-  view.features.lens = scene.camera.lens.radius > 0;
-  view.features.orthographic = scene.camera.orthographic > 0;
-  view.features.camera_motion = scene.camera.moves_to.has_value();
-  view.features.sampler = sampler_of(scene.render);
+  view.info = camera_and_settings(in);
+  view.filter = filter_table(in.render);
+  if (traces_paths(in.render.integrator) && !in.render.caustics)
+    for (const Guide& guide : in.render.guides)
+      view.guides.push_back(pack(guide.center - in.origin, guide.radius));
+  view.features.clear_glass = in.image.transparent_glass;
+  view.features.lens = in.camera.lens.radius > 0;
+  view.features.orthographic = in.camera.orthographic > 0;
+  view.features.camera_motion = in.camera.moves_to.has_value();
+  view.features.sampler = sampler_of(in.render);
   view.features.filter = !view.filter.empty();
   view.features.guides = !view.guides.empty();
   return view;

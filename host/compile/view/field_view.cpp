@@ -1,3 +1,4 @@
+// Compares a pixel's footprint at the estimated distance of the surface with the spacing of floats there.
 #include "compile/view/field_view.h"
 
 #include <algorithm>

@@ -64,11 +64,6 @@ std::vector<glm::uvec3> triangles_of(std::uint64_t mode, std::span<const std::ui
 }
 
 template <class Vector>
-bool is_finite(const Vector& v) {
-  return std::isfinite(glm::dot(v, Vector(0)));
-}
-
-template <class Vector>
 Vector element(const std::vector<float>& values, std::size_t stride, std::size_t index) {
   Vector out;
   for (int c = 0; c < Vector::length(); ++c) out[c] = values[index * stride + static_cast<std::size_t>(c)];

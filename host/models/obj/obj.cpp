@@ -36,11 +36,6 @@ constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"l", 
 
 constexpr std::string_view axis_names[] = {"x", "y", "z"};
 
-template <class Vector>
-bool is_finite(const Vector& v) {
-  return std::isfinite(glm::dot(v, Vector(0)));
-}
-
 class ObjReader {
  public:
   ObjReader(const Source& source, Model& model)

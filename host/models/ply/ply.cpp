@@ -167,8 +167,10 @@ class DataReader {
 
   void add_triangle(glm::uvec3 t, bool with_uvs) {
     content_.mesh.triangles.emplace_back(corners_[t.x], corners_[t.y], corners_[t.z]);
-    for (int k = 0; k < 3 && with_uvs; ++k)
-      content_.corner_uvs.emplace_back(uvs_[2 * t[k]], uvs_[2 * t[k] + 1]);
+    for (int k = 0; k < 3 && with_uvs; ++k) {
+      const std::size_t u = std::size_t{2} * t[k];
+      content_.corner_uvs.emplace_back(uvs_[u], uvs_[u + 1]);
+    }
   }
 
   void add_polygon(bool with_uvs) {
@@ -297,6 +299,7 @@ void warn_of_no_numbers(std::size_t count, const char* what, const char* mend, M
 
 }  // namespace
 
+// Readers are declared so: NOLINTNEXTLINE(performance-unnecessary-value-param)
 Model load_ply(Source source, const ModelOptions& options) {
   const PlyHeader header = read_ply_header(source);
   Content content = read_content(source, header);

@@ -50,7 +50,7 @@ double slot_value(Slot slot, PlyType type, double value) {
 
 glm::vec3 color_of(const Values& values) {
   const dvec3 color(values[red], values[green], values[blue]);
-  return std::isfinite(glm::dot(color, dvec3(0))) ? glm::max(glm::vec3(color), glm::vec3(0)) : glm::vec3(1);
+  return is_finite(color) ? glm::max(glm::vec3(color), glm::vec3(0)) : glm::vec3(1);
 }
 
 }  // namespace sundog::models::ply

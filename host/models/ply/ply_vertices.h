@@ -125,7 +125,7 @@ class VertexReader {
     for (std::size_t i = begin; i < end; ++i) {
       read_element(cursor, element_, layout_, v, [](std::size_t, double) {});
       positions_[i] = dvec3(bounded(cursor, v[px]), bounded(cursor, v[py]), bounded(cursor, v[pz]));
-      if (!is_number(positions_[i])) lost.push_back(static_cast<std::uint32_t>(i));
+      if (!is_finite(positions_[i])) lost.push_back(static_cast<std::uint32_t>(i));
       if (normals_) normals_[i] = number_or_zero(glm::vec3(narrow(nx), narrow(ny), narrow(nz)), bad_normals);
       if (uvs_) uvs_[i] = number_or_zero(glm::vec2(narrow(tu), narrow(tv)), bad_uvs);
       if (colors_) colors_[i] = color_of(v);
@@ -144,12 +144,8 @@ class VertexReader {
   }
 
   template <class Vector>
-  static bool is_number(const Vector& value) {
-    return std::isfinite(glm::dot(value, Vector(0)));
-  }
-  template <class Vector>
   static Vector number_or_zero(const Vector& value, std::size_t& count) {
-    if (is_number(value)) return value;
+    if (is_finite(value)) return value;
     ++count;
     return Vector(0);
   }

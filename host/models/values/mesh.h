@@ -1,5 +1,6 @@
 // A mesh of triangles.
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <string>
@@ -25,6 +26,11 @@ struct Mesh {
       materials;  // per triangle, index into the materials of the scene or model; empty: the object's
   std::size_t source_vertex_count = 0;  // in the file, before vertices are split or dropped
 };
+
+template <glm::length_t N, class T>
+bool is_finite(const glm::vec<N, T>& v) {
+  return std::isfinite(glm::dot(v, glm::vec<N, T>(0)));
+}
 
 /// A triangle's normal, twice its area long; in double precision, so that tiny and huge triangles have one.
 inline glm::dvec3 face_normal(const Mesh& mesh, const glm::uvec3& triangle) {

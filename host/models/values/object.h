@@ -17,7 +17,7 @@ struct FieldShape {
   int field = 0;
 };  // index into fields
 
-#define SUNDOG_SHAPE_TYPE(constant, type, name) type##Shape,
+#define SUNDOG_SHAPE_TYPE(constant, type, name, effect) type##Shape,
 /// Alternatives are in the order of the SHAPE_* constants.
 using Shape = std::variant<MeshShape, SOLIDS(SUNDOG_SHAPE_TYPE) FieldShape>;
 #undef SUNDOG_SHAPE_TYPE

@@ -1,3 +1,4 @@
+// Definitions are numbers by name; effect_of() says which kernels may draw a scene that wants other numbers.
 #include "render/device/kernel_config.h"
 
 #include <algorithm>
@@ -70,7 +71,8 @@ template <class Define>
 void define_features(const SceneFeatures& features, const Define& define) {
   define("HAS_MESH", features.shapes[SHAPE_MESH]);
   define("HAS_SDF", features.shapes[SHAPE_SDF]);
-#define SUNDOG_DEFINE_SOLID(constant, type, name) define("HAS_" #constant, features.shapes[SHAPE_##constant]);
+#define SUNDOG_DEFINE_SOLID(constant, type, name, effect) \
+  define("HAS_" #constant, features.shapes[SHAPE_##constant]);
   SOLIDS(SUNDOG_DEFINE_SOLID)
 #undef SUNDOG_DEFINE_SOLID
 #define SUNDOG_DEFINE_FEATURE(type, definition, name, effect) define(#definition, features.name);
@@ -83,12 +85,11 @@ enum class Effect { same, unlayered, rounds, mask, room, alters };
 
 Effect effect_of(const std::string& definition) {
   static const std::map<std::string, Effect> effects = [] {
-    std::map<std::string, Effect> all{
-        {"HAS_BVH", Effect::same},    {"HAS_MESH", Effect::rounds}, {"HAS_SDF", Effect::rounds},
-        {"BVH_LEVELS", Effect::room}, {"BVH_STACK", Effect::room},  {"LIGHT_ROOM", Effect::room},
-        {"RAY_STACK", Effect::room},  {"HAS_SPHERE", Effect::same}, {"HAS_PLANE", Effect::same},
-        {"HAS_BOX", Effect::same},    {"HAS_DISK", Effect::same},   {"HAS_RECTANGLE", Effect::same}};
-#define SUNDOG_SOLID_EFFECT(constant, type, name) all.emplace("HAS_" #constant, Effect::rounds);
+    std::map<std::string, Effect> all{{"HAS_BVH", Effect::same},   {"HAS_MESH", Effect::rounds},
+                                      {"HAS_SDF", Effect::rounds}, {"BVH_LEVELS", Effect::room},
+                                      {"BVH_STACK", Effect::room}, {"LIGHT_ROOM", Effect::room},
+                                      {"RAY_STACK", Effect::room}};
+#define SUNDOG_SOLID_EFFECT(constant, type, name, effect) all.emplace("HAS_" #constant, Effect::effect);
     SOLIDS(SUNDOG_SOLID_EFFECT)
 #undef SUNDOG_SOLID_EFFECT
 #define SUNDOG_FEATURE_EFFECT(type, definition, name, effect) all.emplace(#definition, Effect::effect);

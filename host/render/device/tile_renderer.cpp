@@ -1,3 +1,5 @@
+// A tile: write its initial values, launch samples, read the sums. After a failure it begins anew, in smaller
+// launches.
 #include "render/device/tile_renderer.h"
 
 #include <fmt/format.h>

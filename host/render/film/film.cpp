@@ -1,3 +1,4 @@
+// The table `places` says where each AOV stands among a pixel's vectors.
 #include "render/film/film.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// A part has bands of rows from all over the frame, so that parts take about as long.
 #include "render/film/part.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// A pixel's error is estimated from how far its mean moved with its last samples.
 #include "render/film/pass.h"
 
 #include <tbb/blocked_range.h>

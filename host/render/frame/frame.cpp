@@ -183,7 +183,7 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
 
 }  // namespace
 
-Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds)
+Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::vector<DeviceSpeed>& speeds)
     : options(std::move(options_)),
       plan(std::move(plan_)),
       film(std::move(film_)),

@@ -31,7 +31,7 @@ struct CoarsePasses {
 /// end.
 struct Frame : std::enable_shared_from_this<Frame> {
   /// `film` is empty: begin_pass() or continue_pass() come next.
-  Frame(RenderOptions options_, SamplingPlan plan_, Film film_, std::vector<DeviceSpeed> speeds);
+  Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::vector<DeviceSpeed>& speeds);
 
   enum class Phase { opening, working, closing, gone };
   struct Worker {

@@ -82,6 +82,7 @@ class Schema {
   void compile_object(const json& node, SchemaRule& rule) {
     if (node.contains("additionalProperties") && node["additionalProperties"].is_object())
       rule.others = compile(node["additionalProperties"]);
+    compile_together(node, rule);
     const json required = node.value("required", json::array());
     if (node.contains("properties"))
       for (const auto& [name, of] : node["properties"].items()) {
@@ -92,6 +93,28 @@ class Schema {
         if (const json* text = annotation(of, "description"))
           key.description = text->get_ref<const std::string&>();
       }
+  }
+
+  /// The rules of keys together: "not" any of pairs, "dependentRequired", and "oneOf" some lists of keys.
+  static void compile_together(const json& node, SchemaRule& rule) {
+    static const json none;
+    const auto part = [](const json& of, const char* keyword) -> const json& {
+      const auto found = of.find(keyword);
+      return found == of.end() ? none : *found;
+    };
+    const auto text = [](const json& key) -> std::string_view { return key.get_ref<const std::string&>(); };
+    if (const json& no = part(node, "not"); !no.contains("required"))
+      for (const json& pair : part(no, "anyOf"))
+        rule.clashes.emplace_back(text(pair["required"][0]), text(pair["required"][1]));
+    for (const auto& [key, needed] : part(node, "dependentRequired").items())
+      for (const json& other : needed) rule.needs.emplace_back(key, text(other));
+    const json& ways = part(node, "oneOf");
+    for (const json& way : ways) {
+      const json& keys = way["required"];
+      if (keys.size() == 1) rule.one_of.push_back(text(keys[0]));
+      for (const json& key : keys)  // where a way has several keys, the last one has a key of its own
+        if (keys.size() > 1) rule.clashes.emplace_back(text(ways.back()["required"][0]), text(key));
+    }
   }
 
   json document_;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sundog {
@@ -46,6 +47,10 @@ struct SchemaRule {
   };
   std::map<std::string_view, Key> keys;  // of an object
   std::vector<const SchemaRule*> options;
+  using KeyPair = std::pair<std::string_view, std::string_view>;
+  std::vector<KeyPair> clashes;          // keys that an object does not have both
+  std::vector<KeyPair> needs;            // the first key needs the second
+  std::vector<std::string_view> one_of;  // keys of which an object has just one
 
   /// This rule or its first option for values of that type; nullptr: none.
   const SchemaRule* as(Type wanted) const;

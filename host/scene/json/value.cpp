@@ -198,7 +198,11 @@ std::string JsonValue::type() const {
 JsonObject::JsonObject(const JsonValue& value, std::string_view kind)
     : value_(value), kind_(kind), rule_(schema_rule(kind)) {
   if (!value.json().is_object()) value.wanted("an object");
-  if (rule_) asked_.reserve(rule_->keys.size());
+  if (rule_) {
+    asked_.reserve(rule_->keys.size());
+    check_together();
+    for (const auto& [one, other] : rule_->clashes) asked_.insert(asked_.end(), {one, other});
+  }
   if (knows("type") && rule_->keys.at("type").rule->names.size() == 1) find("type");
 }
 
@@ -237,16 +241,30 @@ bool JsonObject::has(std::string_view key) {
 
 JsonValue JsonObject::at(std::string_view key, std::string_view what) {
   if (has(key)) return *find(key);
-  const SchemaRule::Key* known = ask(key);
+  fail_missing(key, "", what);
+}
+
+void JsonObject::fail_missing(std::string_view key, std::string_view beside, std::string_view what) const {
   std::vector<std::string> unknown;
   for (const auto& [name, value] : value_.json().items())
-    if (std::ranges::find(asked_, name) == asked_.end()) unknown.push_back(name);
+    if (!knows(name) && std::ranges::find(asked_, name) == asked_.end()) unknown.push_back(name);
   const auto near = nearest_name(key, unknown);
+  const SchemaRule::Key* known = knows(key) ? &rule_->keys.at(key) : nullptr;
   std::string wanted(what);
   if (wanted.empty()) wanted = known->rule->describe(false);
   if (what.empty() && !known->description.empty()) wanted += ": " + brief(known->description);
-  value_.fail(fmt::format("missing key \"{}\": wanted {}{}", key, wanted,
+  value_.fail(fmt::format("missing key \"{}\"{}: wanted {}{}", key,
+                          beside.empty() ? "" : fmt::format(" beside \"{}\"", beside), wanted,
                           near ? fmt::format(", found {}", json(*near).dump()) : std::string()));
+}
+
+void JsonObject::check_together() const {
+  const json& all = value_.json();
+  for (const auto& [one, other] : rule_->clashes)
+    if (all.contains(one) && all.contains(other))
+      value_.fail(fmt::format("wanted \"{}\" or \"{}\", found both", one, other));
+  for (const auto& [key, needed] : rule_->needs)
+    if (all.contains(key) && !all.contains(needed)) fail_missing(needed, key, "");
 }
 
 void JsonObject::check(std::string_view key) {
@@ -268,7 +286,8 @@ int JsonObject::integer(std::string_view key, int fallback, int low, int high) {
   return found ? found->integer(low, high) : fallback;
 }
 
-std::string JsonObject::one_of(Names keys) {
+std::string JsonObject::one_of() {
+  const Names keys = rule_->one_of;
   std::vector<std::string_view> found;
   for (const std::string_view key : keys)
     if (has(key)) found.push_back(key);
@@ -279,11 +298,6 @@ std::string JsonObject::one_of(Names keys) {
           .fail(fmt::format("unknown key {}: did you mean \"{}\"?", json(name).dump(), *near));
   value_.fail(fmt::format("wanted one of {}, found {}", list_names(keys),
                           found.empty() ? "none" : list_names(found, "and")));
-}
-
-void JsonObject::not_both(std::string_view first, std::string_view second) {
-  const bool one = has(first), other = has(second);
-  if (one && other) value_.fail(fmt::format("wanted \"{}\" or \"{}\", found both", first, second));
 }
 
 void JsonObject::refuse_unasked() const {

@@ -213,10 +213,8 @@ class JsonObject {
   double number(std::string_view key, double fallback, const Range& range);
   int integer(std::string_view key, int fallback, int low, int high);
 
-  /// Returns which of `keys` is present; exactly one must be.
-  std::string one_of(std::span<const std::string_view> keys);
-  /// Rejects `second` if `first` is present.
-  void not_both(std::string_view first, std::string_view second);
+  /// Returns which of the keys is present of which the schema wants just one.
+  std::string one_of();
 
  private:
   friend class JsonValue;
@@ -224,6 +222,8 @@ class JsonObject {
   /// The schema's entry of a key, which it must have if it has the kind.
   const SchemaRule::Key* ask(std::string_view key);
   std::optional<JsonValue> find_or_standard(std::string_view key);
+  [[noreturn]] void fail_missing(std::string_view key, std::string_view beside, std::string_view what) const;
+  void check_together() const;
   void refuse_unasked() const;
 
   JsonValue value_;

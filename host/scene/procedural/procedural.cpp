@@ -115,10 +115,7 @@ Terrain read_terrain(JsonObject& object, const ReadPicture& read_picture) {
   object.read("cells", terrain.cells);
   if (const auto file = object.find("file"); file && read_picture)
     terrain.picture = levels_of(*file, read_picture);
-  if (object.has("formula")) {
-    object.not_both("formula", "file");
-    terrain.formula = read_heights(object);
-  }
+  if (object.has("formula")) terrain.formula = read_heights(object);
   return terrain;
 }
 
@@ -194,8 +191,6 @@ Mesh generate_mesh(const JsonValue& recipe, const JsonValue& meshes, const ReadP
 }
 
 ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
-  object.not_both("mesh", "profile");
-  object.not_both("mesh", "curve");
   const auto name = object.find("mesh");
   Lathe lathe;
   object.read("curve", lathe.curve);

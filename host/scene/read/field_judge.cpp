@@ -1,3 +1,5 @@
+// Surveys each formula where its part of the field lies; sets the safety that it needs, or warns if the scene
+// gives one.
 #include "scene/read/field_judge.h"
 
 #include <fmt/format.h>

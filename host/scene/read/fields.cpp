@@ -1,3 +1,5 @@
+// Reads the tree first, solids by their formulas, then the interval, thresholds and colours; last, judges the
+// formulas.
 #include "scene/read/fields.h"
 
 #include <fmt/format.h>

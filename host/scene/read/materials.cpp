@@ -54,7 +54,6 @@ Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
 /// "ior", a number or a substance; a number may have "abbe" beside it.
 void read_ior(JsonObject& object, MediumDescription& medium) {
   const auto ior = object.find("ior"), abbe = object.find("abbe");
-  if (abbe && !ior) abbe->fail("wanted an \"ior\" beside it: the index of refraction at 587.6 nm");
   if (!ior) return;
   if (ior->json().is_string()) {
     if (abbe) abbe->fail("the \"ior\" is a substance's, which has its own dispersion");
@@ -70,9 +69,6 @@ void read_ior(JsonObject& object, MediumDescription& medium) {
 
 /// "ior" as above, "cauchy", or "sellmeier".
 void read_index(JsonObject& object, MediumDescription& medium) {
-  object.not_both("ior", "cauchy");
-  object.not_both("ior", "sellmeier");
-  object.not_both("cauchy", "sellmeier");
   read_ior(object, medium);
   static constexpr std::pair<std::string_view, DispersionKind> formulas[] = {
       {"cauchy", DispersionKind::cauchy}, {"sellmeier", DispersionKind::sellmeier}};
@@ -196,15 +192,13 @@ void read_wall(JsonObject& object, const JsonValue& thin, MaterialDescription& m
 
 void read_interior(JsonObject& object, MaterialDescription& material, const NameTable& names,
                    std::vector<MediumDescription>& media) {
-  object.not_both("medium", "ior");
-  object.not_both("medium", "abbe");
   if (const auto thin = object.find("thin_walled"); thin && thin->boolean()) {
     read_wall(object, *thin, material);
     return;
   }
   if (const auto medium = object.find("medium")) {
     material.medium = find_name(*medium, names, "medium");
-  } else if (object.has("ior") || object.has("abbe")) {
+  } else if (object.has("ior")) {
     material.medium = static_cast<int>(media.size());
     MediumDescription inside{.name = material.name};
     read_ior(object, inside);
@@ -237,7 +231,6 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
     material.textures.height =
         read_relief(*bump, textures, TextureUse::number, "bump_map", material, "height", material.bump);
   if (const auto parallax = object.find("parallax")) {
-    object.not_both("bump", "parallax");
     material.parallax = 1;
     material.textures.height = read_relief(*parallax, textures, TextureUse::number, "parallax_map", material,
                                            "depth", material.parallax);

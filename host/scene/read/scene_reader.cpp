@@ -141,9 +141,8 @@ class SceneReader {
   ModelOptions model_options() const { return {.outside_files = root_.context().outside_files}; }
 
   ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name, const JsonValue& meshes) {
-    static constexpr std::string_view sources[] = {"file", "generate"};
     return value.object("mesh", [&](JsonObject& object) {
-      const std::string source = object.one_of(sources);
+      const std::string source = object.one_of();
       const JsonValue from = *object.find(source);
       if (source == "file") {
         const fs::path file = find_model(from);

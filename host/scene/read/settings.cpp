@@ -26,8 +26,6 @@ void check_view(JsonObject& object, const Camera& camera) {
 /// `focal_length` in scene units, if there is one.
 Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   Lens lens;
-  object.not_both("radius", "f_number");
-  object.not_both("focus", "focus_on");
   object.read("radius", lens.radius, "focus", lens.focus, "blades", lens.blades, "rotate", lens.rotate);
   object.read("focus_on", lens.focus_on);
   if (const auto f_number = object.find("f_number")) {
@@ -41,9 +39,6 @@ Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
 
 /// Sets what the picture shows; returns the focal length in millimetres, if it is given.
 std::optional<double> read_angle(JsonObject& object, const ImageSettings& image, Camera& camera) {
-  object.not_both("fov", "focal_length");
-  object.not_both("fov", "orthographic");
-  object.not_both("focal_length", "orthographic");
   std::optional<double> focal_length;
   double film_width = 0;
   object.read("fov", camera.fov, "orthographic", camera.orthographic, "focal_length", focal_length,
@@ -69,8 +64,7 @@ dvec3 read_falloff(JsonObject& object) {
 
 /// The direction of emission, given directly or by a target point.
 void read_aim(JsonObject& object, LightDescription& light) {
-  static constexpr std::string_view aims[] = {"direction", "target"};
-  if (!object.knows("target") || object.one_of(aims) == "direction") {
+  if (!object.knows("target") || object.one_of() == "direction") {
     light.direction = object.at("direction").direction();
     return;
   }
@@ -91,11 +85,6 @@ void read_spot(JsonObject& object, LightDescription& light) {
 void read_power(JsonObject& object, double unit, LightDescription& light) {
   constexpr double lumens_a_watt = 179;  // of white light, as Radiance has it (Ward 1994)
   const auto watts = object.find("watts"), lumens = object.find("lumens");
-  for (const char* power : {"watts", "lumens"}) {
-    object.not_both("intensity", power);
-    if (object.knows("falloff")) object.not_both("falloff", power);
-  }
-  object.not_both("watts", "lumens");
   if (!watts && !lumens) return;
   const double luminance = glm::dot(light.color, dvec3(0.2126, 0.7152, 0.0722));
   if (!(luminance > 0)) object.value().fail("wanted a \"color\" that is not black with a power");
@@ -177,7 +166,6 @@ Camera read_camera(const JsonValue& value, const ImageSettings& image, double un
       });
     object.check("shutter_steps");
     if (const auto moves = object.find("moves_to")) {
-      if (!placed) moves->fail("wanted a camera with \"position\" and \"target\" that it moves from");
       camera.moves_to = moves->object("view", [&](JsonObject& view) {
         Camera closes = camera;
         const View end = read_view(view, camera);

@@ -41,14 +41,11 @@ PlacedShape read_shape(PlaneShape plane, JsonObject& object) {
 
 /// A box's half sizes, from "half" (and "center") or from the corners "min" and "max"; moves it into place.
 dvec3 read_extent(JsonObject& object, dmat4& placed) {
-  object.not_both("half", "min");
-  object.not_both("half", "max");
   if (!object.has("min") && !object.has("max")) {
     placed = read_point(object, "center");
     const auto half = object.find("half");
     return half ? half->vec3() : dvec3(1);
   }
-  object.not_both("center", "min");
   const dvec3 low = object.at("min").vec3();
   const dvec3 high = object.at("max").vec3();
   if (!glm::all(glm::lessThan(low, high)))
@@ -76,15 +73,12 @@ PlacedShape read_shape(RoundBoxShape box, JsonObject& object) {
 
 /// Half the height of a cylinder or cone along y, from "from" and "to" or from "height" (and "center").
 double read_span(JsonObject& object, dmat4& placed) {
-  object.not_both("height", "from");
-  object.not_both("height", "to");
   if (!object.has("from") && !object.has("to")) {
     placed = read_point(object, "center");
     double height = 0;
     object.read("height", height);
     return height / 2;
   }
-  object.not_both("center", "from");
   const dvec3 from = object.at("from").vec3();
   const JsonValue end = object.at("to");
   const dvec3 axis = end.vec3() - from;
@@ -198,7 +192,7 @@ struct Solid {
 };
 
 constexpr std::array solids{
-#define SUNDOG_SOLID(constant, type, name)                       \
+#define SUNDOG_SOLID(constant, type, name, effect)               \
   Solid{#name, [](JsonObject& object, const JsonValue* meshes) { \
           return read_shape(type##Shape{}, object, meshes);      \
         }},

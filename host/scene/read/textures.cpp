@@ -1,3 +1,4 @@
+// Entries are kept by name; a material's use adds one to the scene, once as a colour, a number or data.
 #include "scene/read/textures.h"
 
 #include <fmt/format.h>

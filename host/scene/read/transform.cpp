@@ -20,8 +20,6 @@ dmat4 read_quaternion(const JsonValue& value) {
 }
 
 dmat4 read_rotate(JsonObject& object) {
-  object.not_both("quaternion", "axis");
-  object.not_both("quaternion", "degrees");
   if (const auto quaternion = object.find("quaternion")) return read_quaternion(*quaternion);
   const dvec3 axis = object.at("axis").direction();
   const double degrees = object.at("degrees").number();
@@ -46,9 +44,8 @@ dmat4 read_matrix(const JsonValue& value) {
 }
 
 dmat4 read_step(const JsonValue& step) {
-  static constexpr std::string_view kinds[] = {"translate", "rotate", "scale", "matrix"};
   const dmat4 matrix = step.object("transform_step", [&](JsonObject& object) {
-    const std::string kind = object.one_of(kinds);
+    const std::string kind = object.one_of();
     const JsonValue value = *object.find(kind);
     if (kind == "translate") return glm::translate(dmat4(1), value.vec3());
     if (kind == "rotate") return value.object("rotate", read_rotate);

@@ -13,8 +13,8 @@
 // is one.
 ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
-#define CLOSEST(constant, type, name) \
-  case SHAPE_##constant:              \
+#define CLOSEST(constant, type, name, effect) \
+  case SHAPE_##constant:                      \
     HAVING(HAS_##constant, closest_in_##name(parameters, o, d, t_min, active, hits);) break;
   switch (shape) {
     SOLIDS(CLOSEST)
@@ -27,9 +27,9 @@ ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3
 // Coordinates of points p on the `part`s of a solid; `at` is unchanged for other shapes.
 static inline void points_on_solid(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part,
                                    SurfacePoints* at) {
-#define POINTS(constant, type, name) \
-  HAVING(                            \
-      HAS_##constant,                \
+#define POINTS(constant, type, name, effect) \
+  HAVING(                                    \
+      HAS_##constant,                        \
       if (shape == SHAPE_##constant) { *at = points_on_##name(scene, parameters, p, part); })
   SOLIDS(POINTS)
 #undef POINTS
@@ -37,8 +37,8 @@ static inline void points_on_solid(const Scene* scene, u32 shape, float4 paramet
 
 // Mean curvature of unit shapes at points p.
 static inline REAL solid_curvatures(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part) {
-#define CURVATURES(constant, type, name) \
-  HAVING(HAS_##constant,                 \
+#define CURVATURES(constant, type, name, effect) \
+  HAVING(HAS_##constant,                         \
          if (shape == SHAPE_##constant) return curvature_of_##name(scene, parameters, p, part);)
   SOLIDS(CURVATURES)
 #undef CURVATURES
@@ -46,7 +46,7 @@ static inline REAL solid_curvatures(const Scene* scene, u32 shape, float4 parame
 }
 
 static inline float4 solid_reach(u32 shape, float4 parameters) {
-#define REACH(constant, type, name) \
+#define REACH(constant, type, name, effect) \
   if (HAS_##constant && shape == SHAPE_##constant) return reach_of_##name(parameters);
   SOLIDS(REACH)
 #undef REACH
@@ -54,7 +54,7 @@ static inline float4 solid_reach(u32 shape, float4 parameters) {
 }
 
 static inline u32 solid_convexity(u32 shape, float4 parameters) {
-#define CONVEXITY(constant, type, name) \
+#define CONVEXITY(constant, type, name, effect) \
   if (HAS_##constant && shape == SHAPE_##constant) return convexity_of_##name(parameters);
   SOLIDS(CONVEXITY)
 #undef CONVEXITY
