@@ -60,8 +60,9 @@ void set_sample_room(CompiledScene& out) {
 /// Whether surfaces test occlusion of area lights by shafts: there are few instances, and only surfaces
 /// change light on its way.
 bool asks_by_shafts(const CompiledScene& scene) {
-  return scene.features.area_lights && !traces_paths(scene.integrator) && !scene.features.absorption &&
-         scene.info.instance_count <= SHAFT_INSTANCES && scene.info.field_end == scene.info.instance_count;
+  return scene.features.area_lights && integrator_of(scene.integrator).branches &&
+         !scene.features.absorption && scene.info.instance_count <= SHAFT_INSTANCES &&
+         scene.info.field_end == scene.info.instance_count;
 }
 
 void set_counts(CompiledScene& out) {

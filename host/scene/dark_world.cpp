@@ -42,7 +42,8 @@ bool has_light(const SceneDescription& scene) {
 
 void warn_of_dark_world(SceneDescription& scene) {
   const MediumDescription& world = scene.media[0];
-  const bool fog = traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
+  const bool fog =
+      integrator_of(scene.render.integrator).scatters && scene.fog.anisotropy && scene.fog.density > 0;
   const dvec3 scattering = world.scattering +
                            (fog ? scene.fog.density * glm::min(scene.fog.color, dvec3(1)) : dvec3(0)),
               taken = world.scattering + world.absorption + (fog ? dvec3(scene.fog.density) : dvec3(0));

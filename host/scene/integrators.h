@@ -12,14 +12,45 @@ struct Integrator {
   bool needs_camera_media;  // media that contain the camera
   unsigned most_run;        // pixels per work-item at most, so that idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
+  int least_samples;        // of a pixel, before its noise is judged
+  // What it does, of which scenes are compiled, kernels built and options refused.
+  bool branches;       // rays that come of a ray wait on a stack, and each light is sent a ray
+  bool scatters;       // in media and fog
+  bool own_materials;  // takes materials' variants for it: MaterialDescription::by_paths
+  bool photons;        // caustics and guides
+  bool light_parts;    // AOVs of light by lobes and by groups of lights
 };
 
 /// Paths end by roulette alone in scenes without max_depth, up to this cap.
 inline constexpr int depth_cap = 1024;
 
-inline constexpr std::array integrators{
-    Integrator{"whitted", "entry/render_whitted.cl", "render_whitted", true, 1, 8, 64},
-    Integrator{"path", "entry/render_path.cl", "render_path", true, 16, depth_cap, 65536}};
+inline constexpr std::array integrators{Integrator{.name = "whitted",
+                                                   .entry = "entry/render_whitted.cl",
+                                                   .kernel = "render_whitted",
+                                                   .needs_camera_media = true,
+                                                   .most_run = 1,
+                                                   .depth = 8,
+                                                   .most_depth = 64,
+                                                   .least_samples = 1,
+                                                   .branches = true,
+                                                   .scatters = false,
+                                                   .own_materials = false,
+                                                   .photons = false,
+                                                   .light_parts = false},
+                                        // One or two paths often find no light even if there is some.
+                                        Integrator{.name = "path",
+                                                   .entry = "entry/render_path.cl",
+                                                   .kernel = "render_path",
+                                                   .needs_camera_media = true,
+                                                   .most_run = 16,
+                                                   .depth = depth_cap,
+                                                   .most_depth = 65536,
+                                                   .least_samples = 4,
+                                                   .branches = false,
+                                                   .scatters = true,
+                                                   .own_materials = true,
+                                                   .photons = true,
+                                                   .light_parts = true}};
 
 /// Names in table order.
 inline constexpr auto integrator_names = [] {
@@ -28,15 +59,17 @@ inline constexpr auto integrator_names = [] {
   return names;
 }();
 
-/// Path tracing selects lights differently and ignores features of the classical model, so the compiled scene
-/// depends on it.
-constexpr bool traces_paths(std::string_view integrator) { return integrator == "path"; }
-
 /// The row of that name, or nullptr.
 constexpr const Integrator* find_integrator(std::string_view name) {
   for (const Integrator& integrator : integrators)
     if (integrator.name == name) return &integrator;
   return nullptr;
+}
+
+/// The row of that name, or the first.
+constexpr const Integrator& integrator_of(std::string_view name) {
+  const Integrator* row = find_integrator(name);
+  return row ? *row : integrators.front();
 }
 
 }  // namespace sundog

@@ -88,7 +88,7 @@ json resolved_json(const SceneDescription& scene) {
     if (objects.size() == most_objects) break;
     objects.push_back(object_json(scene, object));
   }
-  const bool apart = traces_paths(scene.render.integrator) && !scene.render.caustics;
+  const bool apart = integrator_of(scene.render.integrator).light_parts && !scene.render.caustics;
   const auto groups = apart ? light_groups(scene) : std::vector<std::string>();
   return {{"camera",
            {{"position", to_json(camera.position)},

@@ -62,8 +62,9 @@ std::vector<SdfDescription> placed_fields(const SceneDescription& scene,
 FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
                          const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,
                          u32 first) {
-  FieldInputs in{
-      .file = file_of(scene), .paths = traces_paths(scene.render.integrator), .deep = any_deep(views)};
+  FieldInputs in{.file = file_of(scene),
+                 .paths = integrator_of(scene.render.integrator).own_materials,
+                 .deep = any_deep(views)};
   if (!in.deep) {
     in.fields = near_fields(scene, views);
     return in;

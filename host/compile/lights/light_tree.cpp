@@ -70,13 +70,13 @@ LightTree make_light_tree(const RenderSettings& settings, const std::vector<Ligh
                           SharedTable<LightRay> rays) {
   LightTree tree;
   tree.light_rays = std::move(rays);
-  const bool paths = traces_paths(settings.integrator);
+  const bool chooses_one = !integrator_of(settings.integrator).branches;
   std::vector<Lamp> lamps;
   for (u32 i = 0; i < lights.size(); ++i)
     if (has_extent(lights[i])) lamps.push_back(lamp_of(lights[i], i));
   const bool triangles =
       std::ranges::any_of(lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
-  const bool chooses = settings.light_samples > 0 || paths || triangles;
+  const bool chooses = settings.light_samples > 0 || chooses_one || triangles;
   // General kernels request the path to each light, even where there is nothing to choose.
   std::vector<u32> leaves(lights.size());
   if (chooses && !lamps.empty() && (lamps.size() > 1 || triangles)) {
@@ -88,7 +88,7 @@ LightTree make_light_tree(const RenderSettings& settings, const std::vector<Ligh
     for (u32 ray = 0; ray < count; ++ray) tree.light_rays.push_back({LIGHT_CHOSEN, ray, count, 0});
   }
   tree.light_leaves = std::move(leaves);
-  if (paths) std::erase_if(tree.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
+  if (chooses_one) std::erase_if(tree.light_rays.edit(), [](const LightRay& ray) { return ray.ray > 0; });
   return tree;
 }
 

@@ -175,7 +175,7 @@ constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of 
 
 Photons plan_photons(const AllLightsInputs& in, const std::vector<Light>& lights) {
   const RenderSettings& settings = in.render;
-  if (!settings.caustics || !traces_paths(settings.integrator) || lights.empty()) return {};
+  if (!settings.caustics || !integrator_of(settings.integrator).photons || lights.empty()) return {};
   const std::vector<float4> balls = find_balls(in);
   if (balls.size() < 2 || std::ranges::all_of(balls, [](const float4& ball) { return !(ball.w > 0); }))
     return {};

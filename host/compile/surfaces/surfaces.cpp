@@ -32,12 +32,12 @@ bool has_fractional_exponent(const Material& material) {
 }  // namespace
 
 bool fog_scatters(const SceneDescription& scene) {
-  return traces_paths(scene.render.integrator) && scene.fog.anisotropy && scene.fog.density > 0;
+  return integrator_of(scene.render.integrator).scatters && scene.fog.anisotropy && scene.fog.density > 0;
 }
 
 SurfaceInputs surface_inputs(const SceneDescription& scene) {
   return {.file = file_of(scene),
-          .paths = traces_paths(scene.render.integrator),
+          .paths = integrator_of(scene.render.integrator).own_materials,
           .caustics = scene.render.caustics,
           .lacks_materials = lacks_materials(scene),
           .media = scene.media,

@@ -125,7 +125,7 @@ CompiledView compile_view(const ViewInputs& in) {
   CompiledView view;
   view.info = camera_and_settings(in);
   view.filter = filter_table(in.render);
-  if (traces_paths(in.render.integrator) && !in.render.caustics)
+  if (integrator_of(in.render.integrator).photons && !in.render.caustics)
     for (const Guide& guide : in.render.guides)
       view.guides.push_back(pack(guide.center - in.origin, guide.radius));
   view.features.clear_glass = in.image.transparent_glass;

@@ -267,7 +267,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
   // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Beyond
   // 32 levels, the kernel counts rays that do not fit and the frame reports them.
-  const bool waits = scene.features.secondary_rays && !traces_paths(scene.integrator);
+  const bool waits = scene.features.secondary_rays && integrator_of(scene.integrator).branches;
   const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
   define("RAY_STACK", rays);
   config.ray_stack = rays;

@@ -31,7 +31,7 @@ void check_variance(const std::vector<std::string>& names, const Sampling& sampl
 /// Only the path tracer knows which lobes light has come by.
 void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
   for (const std::string& name : names)
-    if (is_light(name) && !traces_paths(scene.integrator))
+    if (is_light(name) && !integrator_of(scene.integrator).light_parts)
       throw UsageError(fmt::format("the AOV '{}' wants the integrator path: set /render/integrator",
                                    name.substr(0, name.rfind('@'))));
   if (scene.features.caustics && std::ranges::any_of(names, is_light_group))

@@ -38,7 +38,7 @@ Picked pick_on(SceneWorker& worker, int x, int y) {
 
 /// Whether its light can be kept apart by groups.
 bool keeps_groups(const CompiledScene& scene) {
-  return traces_paths(scene.integrator) && !scene.features.caustics;
+  return integrator_of(scene.integrator).light_parts && !scene.features.caustics;
 }
 
 /// Ends a draft frame as soon as its own kernels are ready.

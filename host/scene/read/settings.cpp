@@ -124,14 +124,13 @@ void read_adaptive(JsonObject& object, Sampling& sampling) {
 
 void read_sampling(JsonObject& object, RenderSettings& render) {
   Sampling& sampling = render.sampling;
-  constexpr int least_paths = 4;  // one or two paths often find no light even if there is some
   if (const auto adaptive = object.find("adaptive"))
     adaptive->object("adaptive", [&](JsonObject& inner) { read_adaptive(inner, sampling); });
   if (const auto subsample = object.find("subsample"))
     subsample->object("subsample", [&](JsonObject& inner) {
       inner.read("on", sampling.subsample, "contrast", sampling.subsample_contrast);
     });
-  if (traces_paths(render.integrator)) sampling.first_samples = std::max(sampling.first_samples, least_paths);
+  sampling.first_samples = std::max(sampling.first_samples, integrator_of(render.integrator).least_samples);
   object.read("progressive", sampling.progressive);
   const bool grows = sampling.threshold > 0 || sampling.progressive;
   if (sampling.subsample && grows)
