@@ -41,7 +41,8 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
   if (!typed.max_depth.empty())
     all.push_back(
         fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 65536)));
-  if (const Integrator* named = find_integrator(typed.integrator); typed.caustics && named && !named->photons)
+  const Integrator* named = find_integrator(typed.integrator);
+  if (typed.caustics && !typed.integrator.empty() && !(named && named->photons))
     throw UsageError(fmt::format("--caustics: photons are for --integrator path, not {}", typed.integrator));
   if (typed.caustics) all.insert(all.end(), {"/render/integrator=\"path\"", "/render/caustics=true"});
   if (!typed.integrator.empty()) all.push_back(fmt::format("/render/integrator=\"{}\"", typed.integrator));
