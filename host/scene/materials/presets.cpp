@@ -149,11 +149,15 @@ double unit_of(const json& document) {
 }
 
 /// The inside of a preset, its lengths in the scene's unit, with an index that the scene gives.
-json make_medium(json inside, double unit, json& own) {
+json make_medium(json inside, double unit, json& own, const JsonContext& context, const std::string& place) {
   for (json& share : inside["absorption"]) share = share.get<double>() * unit;
   if (own.contains("ior")) inside.erase("abbe");
   for (const char* key : {"ior", "abbe"})
-    if (own.contains(key)) {
+    if (own.contains(key)) {  // checked here, as the medium has no place in the file
+      const SchemaRule* rule = schema_rule("medium")->keys.at(key).rule;
+      const JsonValue given(own[key], context, join_pointer(place, key), rule);
+      const bool is_name = own[key].is_string() && rule->as(SchemaRule::Type::string);
+      is_name ? void(given.choice()) : void(given.number());
       inside[key] = own[key];
       own.erase(key);
     }
@@ -216,13 +220,15 @@ json texture_section(const json& named, const json& materials, double unit, cons
 
 json preset_sections(const json& document, const JsonContext& context) {
   if (!document.is_object()) return json::object();
+  for (const char* key : {"materials", "media", "textures"})  // what else they are is refused as it stands
+    if (document.contains(key) && !document[key].is_object()) return json::object();
   const json &named = section(document, "materials"), &textures = section(document, "textures");
   const double unit = unit_of(document);
   json materials = named, media = section(document, "media");
   const auto add = [&](const std::string& name, json own, const json& preset) {
     json material = preset;
     if (preset.contains("inside") && !own.contains("medium")) {
-      const json medium = make_medium(preset["inside"], unit, own);
+      const json medium = make_medium(preset["inside"], unit, own, context, join_pointer("/materials", name));
       if (!media.contains(name)) media[name] = medium;
       material["medium"] = name;
     }
