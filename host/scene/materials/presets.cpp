@@ -149,15 +149,11 @@ double unit_of(const json& document) {
 }
 
 /// The inside of a preset, its lengths in the scene's unit, with an index that the scene gives.
-json make_medium(json inside, double unit, json& own, const JsonContext& context, const std::string& place) {
+json make_medium(json inside, double unit, json& own) {
   for (json& share : inside["absorption"]) share = share.get<double>() * unit;
   if (own.contains("ior")) inside.erase("abbe");
   for (const char* key : {"ior", "abbe"})
-    if (own.contains(key)) {  // checked here, as the medium has no place in the file
-      const SchemaRule* rule = schema_rule("medium")->keys.at(key).rule;
-      const JsonValue given(own[key], context, join_pointer(place, key), rule);
-      const bool is_name = own[key].is_string() && rule->as(SchemaRule::Type::string);
-      is_name ? void(given.choice()) : void(given.number());
+    if (own.contains(key)) {
       inside[key] = own[key];
       own.erase(key);
     }
@@ -228,7 +224,7 @@ json preset_sections(const json& document, const JsonContext& context) {
   const auto add = [&](const std::string& name, json own, const json& preset) {
     json material = preset;
     if (preset.contains("inside") && !own.contains("medium")) {
-      const json medium = make_medium(preset["inside"], unit, own, context, join_pointer("/materials", name));
+      const json medium = make_medium(preset["inside"], unit, own);
       if (!media.contains(name)) media[name] = medium;
       material["medium"] = name;
     }
