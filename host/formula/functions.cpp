@@ -193,9 +193,9 @@ Value call_function(Values& values, const std::string& name, const std::vector<V
     throw std::invalid_argument("no function '" + name + "': " + did_you_mean(name, names, known, "'"));
   }
   const Function& f = found->second;
-  require(
-      arguments.size() >= f.least && arguments.size() <= f.most,
-      "'" + name + "' is called as " + f.call + ", found " + std::to_string(arguments.size()) + " arguments");
+  require(arguments.size() >= f.least && arguments.size() <= f.most,
+          "'" + name + "' is called as " + f.call + ", found " + std::to_string(arguments.size()) +
+              (arguments.size() == 1 ? " argument" : " arguments"));
   return f.apply(values, arguments);
 }
 

@@ -92,7 +92,11 @@ class Lexer {
     const char c = peek();
     if (std::string_view("+-*/^()=<>!?:,.").find(c) == std::string_view::npos) {
       std::string what = "unexpected character";
-      if (c > ' ' && c < 127) what += std::string(" '") + c + "'";
+      std::size_t end = at_ + 1;
+      while (end < text_.size() && (text_[end] & 0xC0) == 0x80) ++end;
+      if ((c > ' ' && c < 127) || end > at_ + 1)
+        what += " '" + std::string(text_.substr(at_, end - at_)) + "'";
+      if (end > at_ + 1) what += ": formulas are written in ASCII";
       if (c == '#') what += ": a formula has no directives and includes nothing";
       if (std::string_view("{}[]").find(c) != std::string_view::npos && c)
         what += ": a formula has only round brackets";

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -29,16 +31,6 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-/// The library's message without its tag and position: "[json.exception...] parse error at line 1, column 2:
-/// what".
-std::string bare_message(std::string message) {
-  if (const auto tag = message.find("] "); message.starts_with('[') && tag != std::string::npos)
-    message.erase(0, tag + 2);
-  if (message.starts_with("parse error"))
-    if (const auto place = message.find(": "); place != std::string::npos) message.erase(0, place + 2);
-  return message;
-}
-
 /// Length of a well-formed UTF-8 sequence at `at`; 0 if ill-formed (RFC 3629: no surrogates, no overlong
 /// forms).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
@@ -58,6 +50,51 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   return overlong || beyond ? 0 : length;
 }
 
+/// Phrases of the JSON library and the words that replace them.
+constexpr std::pair<std::string_view, std::string_view> plain_words[] = {
+    {"; expected '}'", "; expected ',' or '}'"},
+    {"; expected ']'", "; expected ',' or ']'"},
+    {"; expected string literal", "; expected a key in double quotes"},
+    {"key - unexpected number literal", "key - unexpected number literal (1.5 is written with a point)"},
+    {"invalid literal \"#\"", "invalid literal \"#\": a comment begins with //"},
+    {"control character U+000A (LF) must be escaped to \\u000A or \\n",
+     "wanted a closing quote in this line"},
+    {"control character U+000D (CR) must be escaped to \\u000D or \\r",
+     "wanted a closing quote in this line"},
+    {"forbidden character after backslash", "wanted \\\\ for a backslash, or / between folders"},
+    {"'\\u' must be", "wanted \\\\ for a backslash, or / between folders; '\\u' must be"}};
+
+/// The word or the sign whose reading ended at `end`.
+std::string_view word_at(std::string_view text, std::size_t end) {
+  const auto in_word = [&](std::size_t i) { return std::isalnum(static_cast<unsigned char>(text[i])) != 0; };
+  end = std::clamp<std::size_t>(end, 1, text.size());
+  std::size_t begin = end - 1;
+  if (!in_word(begin)) return text.substr(begin, utf8_length(text, begin));
+  while (begin > 0 && in_word(begin - 1)) --begin;
+  while (end < text.size() && in_word(end)) ++end;
+  return text.substr(begin, std::min<std::size_t>(end - begin, 20));
+}
+
+/// The library's message, "[json.exception...] parse error at line 1, column 2: what; last read: '...'", as
+/// `what` only: the last read may be the whole file and may end within a letter.
+std::string plain_message(std::string message, std::string_view found) {
+  if (message.starts_with('[')) message.erase(0, message.find("] ") + 2);
+  if (message.starts_with("parse error")) message.erase(0, message.find(": ") + 2);
+  if (const auto read = message.find("; last read: '"); read != std::string::npos) {
+    const auto rest = message.rfind("'; expected ");
+    message.erase(read, rest == std::string::npos ? rest : rest + 1 - read);
+    if (message.ends_with("value - invalid literal"))
+      message += "; expected '{', '[', a number such as 0.5, true, false or a text in double quotes";
+    if (const std::string_view literal = "invalid literal"; message.find(literal) != std::string::npos)
+      message.insert(message.find(literal) + literal.size(),
+                     " " + json(found).dump(-1, ' ', true, json::error_handler_t::replace));
+  }
+  for (const auto& [phrase, plain] : plain_words)
+    if (const auto at = message.find(phrase); at != std::string::npos)
+      message.replace(at, phrase.size(), plain);
+  return message;
+}
+
 void check_bytes(std::string_view text, const fs::path& file) {
   const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
   if (std::all_of(text.begin(), text.end(), is_space))
@@ -67,9 +104,9 @@ void check_bytes(std::string_view text, const fs::path& file) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = utf8_length(text, at);
     if (length == 0 || text[at] == '\0')
-      throw SceneError(
-          file.string(), line_and_column(text, at + 1),
-          fmt::format("wanted UTF-8 text, found the byte 0x{:02X}", static_cast<unsigned char>(text[at])));
+      throw SceneError(file.string(), line_and_column(text, at + 1),
+                       fmt::format("wanted UTF-8 text, found the byte 0x{:02X}: save it as UTF-8",
+                                   static_cast<unsigned char>(text[at])));
     at += length;
   }
 }
@@ -105,9 +142,9 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
                    const nlohmann::detail::exception& error) override {
     if (dynamic_cast<const json::out_of_range*>(&error))
       throw SceneError(file_.string(), pointer(), fmt::format("wanted a finite number, found {}", token));
-    throw SceneError(
-        file_.string(), line_and_column(text_, position),
-        bare_message(error.what()) + (after_comma(position) ? ": take the last comma away" : ""));
+    std::string message = plain_message(error.what(), word_at(text_, position));
+    if (after_comma(position)) message += ": take the last comma away";
+    throw SceneError(file_.string(), line_and_column(text_, begin_of(message, position)), message);
   }
 
  private:
@@ -126,6 +163,16 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
       return false;
     const std::size_t before = text_.find_last_not_of(" \t\r\n", position - 2);
     return position > 1 && before != std::string_view::npos && text_[before] == ',';
+  }
+
+  /// The position of a fault whose reading ended at `end`: a comment without an end is at its beginning, and
+  /// the end of a line belongs to the line.
+  std::size_t begin_of(std::string_view message, std::size_t end) const {
+    if (message.find("missing closing '*/'") != message.npos) {
+      const std::size_t last = text_.rfind("*/");
+      return text_.find("/*", last == text_.npos ? 0 : last + 2) + 1;
+    }
+    return end > 0 && end <= text_.size() && text_[end - 1] == '\n' ? end - 1 : end;
   }
 
   json* place(json&& value) {

@@ -216,6 +216,8 @@ json texture_section(const json& named, const json& materials, double unit, cons
 
 json preset_sections(const json& document, const JsonContext& context) {
   if (!document.is_object()) return json::object();
+  for (const char* key : {"materials", "media", "textures"})  // what else they are is refused as it stands
+    if (document.contains(key) && !document[key].is_object()) return json::object();
   const json &named = section(document, "materials"), &textures = section(document, "textures");
   const double unit = unit_of(document);
   json materials = named, media = section(document, "media");

@@ -293,7 +293,7 @@ std::optional<glm::dvec2> crossing_of(const Profile& profile) {
 
 void check_crossings(const Profile& profile) {
   if (const auto place = crossing_of(profile))
-    throw GenerateError(fmt::format("the curve crosses itself near {}", shown(*place)));
+    throw GenerateError(fmt::format("the curve crosses itself after {}", shown(*place)));
 }
 
 }  // namespace sundog::procedural

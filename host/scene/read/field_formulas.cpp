@@ -28,6 +28,7 @@ std::string read_text(JsonObject& object, std::string_view key) {
   const auto value = object.find(key);
   if (!value) return "";
   if (value->json().is_string()) return value->text();
+  if (!value->json().is_array()) value->wanted("a text or an array of its lines");
   std::string text;
   for (const JsonValue& line : value->items("lines")) text += line.text() + "\n";
   return text;

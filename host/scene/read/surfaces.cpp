@@ -106,7 +106,10 @@ SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find_own, S
   if (const auto media = find("media"))
     for (const auto& [name, value] : media->members("media")) {
       names.media.emplace(name, static_cast<int>(scene.media.size()));
-      scene.media.push_back(read_medium(value, name));
+      const bool own = root.json().contains("media") && root.json()["media"].contains(name);
+      // The inside of a preset stands in its material.
+      const std::string place = own ? value.pointer() : join_pointer("/materials", name);
+      scene.media.push_back(read_medium(JsonValue(value.json(), value.context(), place), name));
     }
   if (const auto world = find("world")) read_world(*world, names.media, scene);
   if (const auto named = find("textures")) {

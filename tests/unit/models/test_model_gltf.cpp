@@ -272,6 +272,7 @@ TEST_CASE("a bad glTF is refused with its JSON pointer", "[models]") {
              ContainsSubstring("/extensionsRequired/0") && ContainsSubstring("KHR_draco_mesh_compression"));
   CHECK_THAT(load_error("a.gltf", R"({"asset":{"version":"1.0"}})"), ContainsSubstring("/asset/version"));
   CHECK_THAT(load_error("a.gltf", R"({"asset":{)"), ContainsSubstring("byte 11: not valid JSON"));
+  CHECK_THAT(load_error("a.gltf", "{\u201casset\u201d:1}"), !ContainsSubstring("last read"));
   CHECK_THAT(load_error("a.glb", "glTF"), ContainsSubstring("byte 4"));
 }
 

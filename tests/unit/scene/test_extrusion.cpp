@@ -28,7 +28,7 @@ TEST_CASE("an extrusion is closed and has its outline's area times its height, w
     std::ranges::reverse(extrusion.outline);
   }
   extrusion.outline = {{{0, 0}}, {{1, 1}}, {{1, 0}}, {{0, 1}}};
-  CHECK_THROWS_WITH(make_extrusion(extrusion), ContainsSubstring("crosses itself near ["));
+  CHECK_THROWS_WITH(make_extrusion(extrusion), ContainsSubstring("crosses itself after ["));
 }
 
 TEST_CASE("a terrain has its size and height, faces up, and is another one for another seed") {

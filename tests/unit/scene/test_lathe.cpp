@@ -193,7 +193,7 @@ TEST_CASE("profiles that make no solid are refused with their place") {
   CHECK_THAT(refusal(lines({{{0, 0}}, {{-1, 1}}, {{0, 2}}})),
              ContainsSubstring("crosses the axis near a height of"));
   CHECK_THAT(refusal(lines({{{0, 0}}, {{2, 0}}, {{2, 2}}, {{1, -1}}, {{0, 3}}})),
-             ContainsSubstring("crosses itself near ["));
+             ContainsSubstring("crosses itself after ["));
   CHECK_THAT(refusal(lines({{{0, 0}}, {{1, 0}, 0.7}, {{1, 1}, 0.7}, {{0, 1}}})),
              ContainsSubstring("roundings at both ends of the line from [1, 0] to [1, 1] take 1.4 of its 1"));
   CHECK_THAT(refusal(spline({{{0, 0}}, {{1, 0}, 0.1}, {{0, 1}}})),

@@ -85,7 +85,20 @@ TEST_CASE("a wrong preset is refused where it stands") {
              ContainsSubstring("/materials/a/preset"));
   CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "gold", "roughness": 1}},)")),
              ContainsSubstring("/materials/a"));
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "ice", "ior": "wat"}},)")),
+             ContainsSubstring("/materials/a/ior: wanted a number") && ContainsSubstring("\"water\""));
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "ice", "abbe": 60}},)")),
+             ContainsSubstring("/materials/a/abbe: the \"ior\" is a substance's"));
+  CHECK_THAT(refusal(with_ball("a", R"("materials": {"a": {"preset": "ice", "ior": 90, "abbe": 1}},)")),
+             ContainsSubstring("/materials/a/abbe: the index of refraction at 380 nm"));
   CHECK_THAT(refusal(with_ball("sliver")), ContainsSubstring("did you mean \"silver\"?"));
+}
+
+TEST_CASE("sections of another type are refused beside presets") {
+  for (const char* key : {"materials", "media", "textures"})
+    for (const char* value : {"[]", "[{}]", "\"ice\"", "null"})
+      CHECK_THAT(refusal(with_ball("oak_floor", fmt::format(R"("{}": {},)", key, value))),
+                 ContainsSubstring(fmt::format("/{0}: wanted an object of {0}", key)));
 }
 
 TEST_CASE("textures are presets, too, with sizes in metres, and bring what they are made of") {

@@ -1,5 +1,6 @@
 // Files that are no scenes: broken JSON, absurd nesting, missing files, folders.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ TEST_CASE("bad JSON is refused with its place") {
       {"{\"objects\": []", "line 1, column 14", "unexpected end of input"},
       {"{\"objects\": []} []", "line 1, column 17", "expected end of input"},
       {"{\"objects\": [NaN]}", "line 1, column 14", "invalid literal"},
-      {"{\"objects\": [] /* open", "line 1, column 22", "comment"},
+      {"{\"objects\": [] /* open", "line 1, column 16", "comment"},
+      {"{ /* an \"/*\" */ \"a\": 1, /* open\n\n}", "line 1, column 25", "missing closing '*/'"},
       {"{\"objects\": [\"tab\there\"]}", "line 1, column 18", "control character"},
       {"{\"objects\": [[0, 1], 1e999]}", "/objects/1", "wanted a finite number, found 1e999"},
       {"{\"camera\": {\"fov\": -1e999}}", "/camera/fov", "wanted a finite number, found -1e999"},
@@ -35,7 +37,21 @@ TEST_CASE("bad JSON is refused with its place") {
       {"{\"objects\": [\"\xE9\"]}", "line 1, column 15", "wanted UTF-8 text, found the byte 0xE9"},
       {"// caf\xE9\n{\"objects\": []}", "line 1, column 7", "found the byte 0xE9"},
       {"{\"objects\": [\"\xED\xA0\x80\"]}", "line 1, column 15", "found the byte 0xED"},
-      {nul, "line 1, column 16", "found the byte 0x00"},
+      {nul, "line 1, column 16", "found the byte 0x00: save it as UTF-8"},
+      {"{\"unit\": 1\n\"objects\": []}", "line 2, column 9", "expected ',' or '}'"},
+      {"{\"objects\": [1 2]}", "line 1, column 16", "expected ',' or ']'"},
+      {"{objects: []}", "line 1, column 2", "invalid literal \"objects\"; expected a key in double quotes"},
+      {"{\"a\": True}", "line 1, column 7",
+       "invalid literal \"True\"; expected '{', '[', a number such as 0.5"},
+      {"{\"a\": 'b'}", "line 1, column 7", "invalid literal \"'\"; expected '{', '[', a number such as 0.5"},
+      {"{\"a\": \u201cb\u201d}", "line 1, column 7", "invalid literal \"\\u201c\"; expected"},
+      {"{\"a\": 1,5}", "line 1, column 9", "(1.5 is written with a point)"},
+      {"# a scene\n{}", "line 1, column 1", "a comment begins with //"},
+      {"{\"a\": \"b,\n}", "line 1, column 9", "wanted a closing quote in this line"},
+      {"{\"a\": \"b,\r\n}", "line 1, column 10", "wanted a closing quote in this line"},
+      {"{\"a\": \"C:\\models\"}", "line 1, column 11", "wanted \\\\ for a backslash, or / between folders"},
+      {"{\"a\": \"C:\\users\"}", "line 1, column 12", "wanted \\\\ for a backslash, or / between folders"},
+      {"{} x" + std::string(1000, 'x'), "line 1, column 4", "invalid literal \"xxxxxxxxxxxxxxxxxxxx\";"},
   };
   for (const auto& [text, place, words] : table) {
     const SceneError error = error_of(text);
@@ -43,6 +59,8 @@ TEST_CASE("bad JSON is refused with its place") {
     CHECK(error.place == place);
     CHECK(error.reason.find(words) != std::string::npos);
     CHECK(error.reason.find('\n') == std::string::npos);
+    CHECK(error.reason.find("last read") == std::string::npos);
+    CHECK_NOTHROW(nlohmann::json(error.reason).dump());  // of whole letters
   }
 }
 

@@ -151,7 +151,8 @@ TEST_CASE("a hostile formula gives its error and nothing else") {
   check_failure("z = z + 1e31", 1, 9, "between -1e30 and 1e30");
   check_failure("z = z + c / (1e-30 * 1e-30)", 1, 11, "division by zero");  // in a device's floats
   check_failure("z = z * (1e30 * 1e30)", 1, 15, "not a finite number of at most 3.4e38");
-  check_failure("z = z + \xc3\xa9", 1, 9, "unexpected character");
+  check_failure("z = z + \xc3\xa9", 1, 9, "unexpected character '\xc3\xa9': formulas are written in ASCII");
+  check_failure("z = z \u2212 c", 1, 7, "unexpected character '\u2212': formulas are written in ASCII");
   check_failure(std::string("z = z\0+ c", 9), 1, 6, "unexpected character");
   std::string doubling = "t = z.x\n";  // 2^190 terms, if sharing were lost
   for (int i = 0; i < 190; ++i) doubling += "t = t*t + t\n";

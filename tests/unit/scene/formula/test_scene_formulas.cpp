@@ -87,6 +87,11 @@ TEST_CASE("a scene's formula carries no code, whatever it is called") {
                   "");
 }
 
+TEST_CASE("a scene's formula that is no text is refused") {
+  check_refused({{"map", 3}}, "/map", "wanted a text or an array of its lines, found 3");
+  check_map_refused("z = z + max(z.x)", "is called as max(a, b), found 1 argument");
+}
+
 TEST_CASE("a scene's formula too deep or too long is refused") {
   check_map_refused("z = " + repeated("(", 1000) + "z" + repeated(")", 1000), "nested deeper than 64");
   check_map_refused("z = z" + repeated(" + c", 5000), "8192 characters");
