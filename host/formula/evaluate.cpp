@@ -1,3 +1,4 @@
+// Runs the lowered graphs in the kernels' order: start, a map a turn until the orbit escapes, finish.
 #include "formula/evaluate.h"
 
 #include <algorithm>

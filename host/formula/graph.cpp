@@ -1,3 +1,4 @@
+// Nodes are simplified as they are added; a GraphProgram keeps those that its outputs need.
 #include "formula/graph.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The end of a line ends a statement, except within parentheses.
 #include "formula/lexer.h"
 
 #include <array>

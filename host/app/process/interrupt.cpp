@@ -1,3 +1,4 @@
+// Signals are blocked, and one thread waits for them as long as the process lives.
 #include "app/process/interrupt.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// JSON for --stats, text for --verbose; losses() says what a picture lacks.
 #include "app/render/stats.h"
 
 #include <fmt/format.h>

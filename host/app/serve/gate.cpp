@@ -1,3 +1,4 @@
+// The token is compared in constant time; a file that keeps it must be the user's alone.
 #include "app/serve/gate.h"
 
 #include <fcntl.h>

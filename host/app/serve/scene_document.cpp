@@ -1,3 +1,4 @@
+// A step of undo is the whole document as CBOR; at most 200 steps and 64 MiB are kept.
 #include "app/serve/scene_document.h"
 
 #include <fmt/format.h>

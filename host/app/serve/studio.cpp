@@ -1,3 +1,4 @@
+// Each "do" of a message has a function. A change draws a new generation, and all pages are told.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// A file's transforms have v down: coordinates are flipped before and after.
 #include "models/gltf/gltf_textures.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// In order: the integrator's kernel, those of first surfaces and photons, the scene's tables, the media
+// around the camera.
 #include "render/device/frame_kernels.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Each launch's time decides the size of the next one, towards 50 ms; failures lower samples, work-groups or
+// sizes for good.
 #include "render/device/launch_sizer.h"
 
 #include <fmt/format.h>

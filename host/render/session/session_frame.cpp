@@ -1,3 +1,4 @@
+// A scene that is not made in passes doubles its samples from pass to pass, so that the picture grows.
 #include "render/session/session_frame.h"
 
 #include <algorithm>
