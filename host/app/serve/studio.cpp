@@ -12,6 +12,7 @@
 #include "app/serve/messages.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "models/model.h"
 #include "render/device/tuning.h"
 #include "scene/json/parse.h"
 #include "scene/light_groups.h"

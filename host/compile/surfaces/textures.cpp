@@ -203,7 +203,8 @@ class TextureCompiler {
     for (int row = 0; row < 3; ++row)
       node.rows[row] = pack4({texture.placement[0][row], texture.placement[1][row], texture.placement[2][row],
                               texture.placement[3][row]});
-    for (int i = 0; i < 6; ++i) node.parameter[i] = static_cast<float>(texture.parameter[i]);
+    for (std::size_t i = 0; i < texture.parameter.size(); ++i)
+      node.parameter[i] = static_cast<float>(texture.parameter[i]);
     node.scale = static_cast<float>(scale_of(texture));
     if (texture.kind == TEXTURE_IMAGE) set_image(texture, node);
     if (texture.kind == TEXTURE_RAMP) set_stops(texture, node);

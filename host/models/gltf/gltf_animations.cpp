@@ -56,8 +56,8 @@ GltfAnimations::GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std
     animation.name = name.empty() ? std::to_string(animations_.size() - 1) : name;
     const std::vector<JsonAt> samplers = at.list("samplers");
     for (const JsonAt& channel : at.list("channels"))
-      if (auto read = read_channel(channel, samplers, accessors, nodes))
-        animation.channels.push_back(std::move(*read));
+      if (const auto read = read_channel(channel, samplers, accessors, nodes))
+        animation.channels.push_back(*read);
   }
 }
 

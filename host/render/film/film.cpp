@@ -98,11 +98,11 @@ struct AovPlace {
   std::size_t first, count;
   AovKind kind = AovKind::surface;
 };
-constexpr std::size_t matte_floats = 2 * MATTE_RANKS;
+constexpr std::size_t matte_floats = std::size_t{2} * MATTE_RANKS;
 
 #define NUMBER_OF_PART(name) part_##name,
 enum : std::size_t { LIGHT_PARTS(NUMBER_OF_PART) all_parts };
-static_assert(all_parts == LIGHT_PART_COUNT && 3 * all_parts <= 4 * LIGHT_VECTORS);
+static_assert(all_parts == LIGHT_PART_COUNT && 3 * all_parts <= std::size_t{4} * LIGHT_VECTORS);
 #define PLACE_OF_PART(name) {#name, 3 * part_##name, 3, AovKind::light},
 
 constexpr AovPlace places[] = {LIGHT_PARTS(PLACE_OF_PART){"depth", 3, 1},

@@ -125,7 +125,7 @@ PlacedShape read_shape(TorusShape torus, JsonObject& object) {
   return {torus, read_point(object, "center") * read_axis(object, "axis")};
 }
 
-PlacedShape read_shape(LatheShape, JsonObject& object, const JsonValue* meshes) {
+PlacedShape read_shape(const LatheShape&, JsonObject& object, const JsonValue* meshes) {
   const ExactLathe lathe = read_exact_lathe(object, meshes);
   return {lathe.shape, glm::translate(dmat4(1), dvec3(0, lathe.middle, 0))};
 }
