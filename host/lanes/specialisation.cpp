@@ -120,12 +120,11 @@ void Specialisation::inside(const Statement& s, const Frame& frame, Frames& fram
 }
 
 void Specialisation::statement(const Statement& s, Frames& frames) {
-  using Kind = Statement::Kind;
   switch (s.kind) {
-    case Kind::block:
+    case Statement::Kind::block:
       for (const StatementPtr& inner : s.body) statement(*inner, frames);
       return;
-    case Kind::declare:
+    case Statement::Kind::declare:
       for (std::size_t i = 0; i < s.variables.size(); ++i) {
         const Variable* v = s.variables[i];
         declare(v, frames);
@@ -133,22 +132,22 @@ void Specialisation::statement(const Statement& s, Frames& frames) {
           make_vary(v, v->place, "its first value varies");
       }
       return;
-    case Kind::branch: {
+    case Statement::Kind::branch: {
       const bool divergent = s.feature.empty() && varies(*s.expressions[0], frames);
       for (const StatementPtr& part : s.body) inside(*part, {Frame::Kind::branch, &s, divergent}, frames);
       return;
     }
-    case Kind::loop:
+    case Statement::Kind::loop:
       return loop(s, frames);
-    case Kind::each_alike:
+    case Statement::Kind::each_alike:
       return inside(*s.body[0], {Frame::Kind::alike, &s, varies(*s.expressions[0], frames)}, frames);
-    case Kind::leave_loop:
-    case Kind::next_round: {
+    case Statement::Kind::leave_loop:
+    case Statement::Kind::next_round: {
       const auto [left, divergent] = left_loop(s, frames);
-      if (divergent) (s.is(Kind::leave_loop) ? divergent_break : divergent_continue).insert(left);
+      if (divergent) (s.is(Statement::Kind::leave_loop) ? divergent_break : divergent_continue).insert(left);
       return;
     }
-    case Kind::give: {
+    case Statement::Kind::give: {
       const bool divergent = is_parted(frames);
       divergent_return |= divergent;
       masked |= divergent;
@@ -157,7 +156,7 @@ void Specialisation::statement(const Statement& s, Frames& frames) {
       result_varies |= value_varies || divergent || function.result.is_by_hand();
       return;
     }
-    case Kind::compute:
+    case Statement::Kind::compute:
       varies(*s.expressions[0], frames);
   }
 }
