@@ -216,7 +216,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
     out.features.absorption = out.features.scattering = out.features.dispersion = false;
   if (media)
     work_.touching += memo(touching, touching_inputs(scene, origin, instances.known()), compile_touching);
-  out.features.touching = media && touching.value.any;
+  out.features.touching = media && (touching.value.any || out.features.near_fields);
   out.instances = media ? touching.value.instances : instances.value.instances;
   work_.fields +=
       memo(fields,

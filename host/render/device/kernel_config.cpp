@@ -185,7 +185,8 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
   KernelConfig config = deep_config(scene, device, tuning, general_depth);
   const bool fields = config.generated.contains(fields_file);
   for (auto& [name, number] : config.numbers) {
-    const bool of_fields = name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" || name == "SDF_TWO_SIDED";
+    const bool of_fields = name == "HAS_SIDES" || name == "HAS_OCCLUSION" || name == "HAS_SOFT_SHADOWS" ||
+                           name == "SDF_TWO_SIDED";
     if (is_harmless(name, config.numbers) && (fields || !of_fields)) number = 1;
   }
   widen(config, "BVH_STACK", general_bvh_stack);

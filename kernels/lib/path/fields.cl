@@ -27,6 +27,7 @@ typedef struct FieldSearch {
   REAL3 o, d;  // world
   REAL t_min, t_best, footprint;
   MASK from;  // SceneRays.from
+  HAVING(HAS_SIDES, MASK sides;)
   MASK active;
   // The nearest hit among the fields:
   MASK winner;       // its instance, or -1
@@ -59,6 +60,7 @@ static inline FieldSearch start_search(const SceneRays* rays, REAL t_best, MASK 
   search.t_best = t_best;
   search.footprint = rays->footprint;
   search.from = rays->from;
+  HAVING(HAS_SIDES, search.sides = rays->sides;)
   search.active = active;
   search.winner = ALL_LANES;
   search.inside = NO_LANES;
@@ -86,9 +88,17 @@ static inline void start_on_side(const Scene* scene, u32 index, const FieldSearc
   if (!any_lane(ask)) return;
   const REAL3 start = along3(rays->origin, rays->t_min, rays->direction);
   const REAL d = sdf_signed(place, start, ask, scene->sdf_parameters);
+  const REAL threshold = march_threshold(field, rays, rays->t_min, length3(rays->direction));
+  const int bit =
+      HAS_SIDES && scene->instances[index].touch > 0.0f ? side_of_one(scene->info, (int)index) : 0;
+  if (bit != 0) {
+    // Walls of an estimate are a threshold thick: there the ray remembers its side.
+    HAVING(HAS_SIDES, rays->inside |= ask & MASK_OF((search->sides & bit) != 0);)
+    rays->leaving |= ask & MASK_OF(fabs(d) < 2.0f * threshold);
+    return;
+  }
   rays->inside |= ask & MASK_OF(d < 0.0f);
   // A ray that starts on another surface within a threshold of a closed form has not arrived there yet.
-  const REAL threshold = march_threshold(field, rays, rays->t_min, length3(rays->direction));
   if (field->flags & SDF_FLAGS & SDF_SMOOTH) rays->leaving |= ask & MASK_OF(fabs(d) < threshold);
 }
 
@@ -110,6 +120,11 @@ static inline MarchRays march_from(const Scene* scene, u32 index, bool two_sided
   rays.active = search->active;
   rays.leaving = MASK_OF((search->from | 1) == (int)(index * 2u + 1u));
   rays.inside = NO_LANES;
+  // To where the exit of a wall at the nearest hit is clear (clear_exit).
+  if (HAS_SIDES && instance->touch > 0.0f) {
+    const REAL speed = length3(rays.direction), far = real_min(rays.t_max, (REAL)(1e30f));
+    rays.t_max += 4.0f * march_threshold(scene->sdf_fields + instance->root, &rays, far, speed) / speed;
+  }
   if (SDF_TWO_SIDED && two_sided) start_on_side(scene, index, search, &rays);
   return rays;
 }
@@ -182,22 +197,59 @@ static inline void shade_lanes(const Scene* scene, u32 index, const FieldSearch*
   hits->prim = select(hits->prim, NO_LANES, mine);
 }
 
-// Replaces `hits`, the nearest so far, by nearer hits on fields, for the lanes of `active`. Adds to the rays'
-// glow.
-NEVER_INLINE void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
-                               u32* counts) {
+#if HAS_SIDES
+// Sets the sides of new rays: they start inside fields that are negative there.
+static inline void find_sides(const Scene* scene, SceneRays* rays, MASK active) {
+  const MASK unknown = active & MASK_OF(rays->sides < 0);
+  if (!any_lane(unknown)) return;
+  FieldSearch search = start_search(rays, rays->t_max, unknown);
+  rays->sides = select(rays->sides, NO_LANES, unknown);
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
+    if (scene->instances[index].touch <= 0.0f) continue;
+    const u32 place = scene->instances[index].root;
+    const MarchRays start = march_from(scene, index, false, &search);
+    const MASK within = unknown & starts_within(scene->sdf_fields + place, &start);
+    if (!any_lane(within)) continue;
+    const REAL d =
+        sdf_signed(place, along3(start.origin, start.t_min, start.direction), within, scene->sdf_parameters);
+    rays->sides |= within & MASK_OF(d < 0.0f) & side_of_one(scene->info, (int)index);
+  }
+}
+
+// How far from the surface of field `index` a ray at t has arrived, in the world.
+static inline float arrival_distance(const Scene* scene, u32 index, const SceneRays* rays, float t,
+                                     u32 lane) {
+  const FieldSearch search = start_search(rays, (REAL)(t), ALL_LANES);
+  const MarchRays start = march_from(scene, index, false, &search);
+  const REAL speed = length3(start.direction);
+  const REAL threshold =
+      march_threshold(scene->sdf_fields + scene->instances[index].root, &start, (REAL)(t), speed);
+  return REAL_LANE(threshold, lane) / REAL_LANE(speed, lane);
+}
+#endif
+
+// Replaces `hits`, the nearest so far, by nearer hits on the fields of [first, end), for the lanes of
+// `active`. Adds to the rays' glow.
+NEVER_INLINE void march_range(const Scene* scene, SceneRays* rays, u32 first, u32 end, MASK active,
+                              u32 purpose, Hits* hits, u32* counts) {
+  HAVING(HAS_SIDES, find_sides(scene, rays, active);)
   const bool to_light = purpose != MARCH_TO_SEE;
   FieldSearch search = start_search(rays, hits->t, active);
-  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
+  for (u32 index = first; index < end; ++index)
     if (!(to_light && scene->sdf_fields[scene->instances[index].root].shadow_hardness > 0.0f))
       march_field(scene, index, &search, counts);
   if (purpose == MARCH_TO_BLOCK) {
     hits->instance = select(hits->instance, search.winner, MASK_OF(search.winner >= 0));
     return;
   }
-  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index)
-    shade_lanes(scene, index, &search, hits);
+  for (u32 index = first; index < end; ++index) shade_lanes(scene, index, &search, hits);
   HAVING(HAS_GLOW, if (!to_light) rays->glow = select3(rays->glow, add3(rays->glow, search.glow), active);)
+}
+
+static inline void march_fields(const Scene* scene, SceneRays* rays, MASK active, u32 purpose, Hits* hits,
+                                u32* counts) {
+  march_range(scene, rays, scene->info->instance_count, scene->info->field_end, active, purpose, hits,
+              counts);
 }
 #endif
 

@@ -10,11 +10,14 @@ static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* hol
 
 #if HAS_TOUCHING
 // Processes the line at coincident faces. Returns the distance of the last one.
-static inline float cross_faces(const Scene* scene, const SceneRays* rays, const Hits* hits,
-                                MediaStack* entered, MediaStack* holding) {
+static inline float cross_faces(const Scene* scene, SceneRays* rays, const Hits* hits, MediaStack* entered,
+                                MediaStack* holding, u32* counts) {
   const Hit first = get_hit(hits, 0);
   Touching touching;
-  find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
+  if (HAS_SIDES && first.instance >= scene->info->instance_count) {
+    HAVING(HAS_SIDES, rays->sides ^= find_touching_fields(scene, rays, 0, &first, &touching, counts);)
+  } else
+    find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
   const Stretch* met = &touching.met;
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
@@ -48,7 +51,7 @@ NEVER_INLINE MediaStack media_around(const Scene* scene, float3 p) {
     const Faces faces = hit_faces(scene, rays.d, &hits, lane);
     const MASK touching = may_touch_others(scene->instances, &hits, lane);
     HAVING(HAS_TOUCHING, if (any_lane(touching)) REAL_LANE(hits.t, 0) =
-                             cross_faces(scene, &rays, &hits, &entered, &holding);)
+                             cross_faces(scene, &rays, &hits, &entered, &holding, counts);)
     continue_behind(scene->info, &rays, &hits, faces.entering, lane);
     if (any_lane(touching)) continue;
     __global const Material* material = scene->materials + MASK_LANE(faces.material, 0);

@@ -21,6 +21,7 @@
   STACKED_PIXEL(REALS, MASKS) HAVING(HAS_CROSSINGS, MASKS(rays->crossings))                                 \
   HAVING(HAS_MEDIA, MASKS(rays->media.low) MASKS(rays->media.high) REALS(rays->since))                      \
   HAVING(HAS_SDF, MASKS(rays->from) REALS(rays->footprint))                                                 \
+  HAVING(HAS_SIDES, MASKS(rays->sides))                                                                     \
   HAVING(HAS_RANDOM, MASKS(paths->branch))                                                                   \
   HAVING(HAS_CONES, REALS(rays->cone_width) REALS(rays->cone_spread))                                       \
   HAVING(HAS_OBJECT_MOTION, REALS(rays->time))

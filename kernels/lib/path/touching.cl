@@ -5,6 +5,7 @@
 #pragma once
 #include "lib/core/motion.cl"
 #include "lib/core/transform.cl"
+#include "lib/path/fields.cl"
 #include "lib/path/scene_ray.cl"
 #include "plain/path/face.cl"
 #if HAS_TOUCHING
@@ -85,6 +86,35 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
     if (met->hits[i].t <= touching->end) met->hits[kept++] = met->hits[i];
   met->count = kept;
 }
+
+#if HAS_SIDES
+// Likewise if `first` is on a field: it touches others that the ray meets up to a threshold behind. Returns
+// the bits of those in SceneRays.sides.
+static inline int find_touching_fields(const Scene* scene, const SceneRays* rays, u32 lane, const Hit* first,
+                                       Touching* touching, u32* counts) {
+  Stretch* met = &touching->met;
+  const MASK only = lanes_of(1u << lane);
+  SceneRays again = *rays;
+  int crossed = 0;
+  met->d = get3(&rays->d, lane);
+  met->hits[0] = *first;
+  met->count = 1;
+  touching->end = first->t;
+  touching->apart = 0.0f;
+  const float slope = fabs(dot(unit_normal(outward_of(scene, first, time_of_stretch(met))), met->d));
+  const float reach = arrival_distance(scene, first->instance, rays, first->t, lane) / fmax(slope, 0.05f);
+  for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
+    if (index == first->instance || scene->instances[index].touch <= 0.0f) continue;
+    Hits hits = no_hits((REAL)(first->t + reach));
+    march_range(scene, &again, index, index + 1u, only, MARCH_TO_SEE, &hits, counts);
+    if (MASK_LANE(hits.instance, lane) != (int)index || met->count >= MOST_TOUCHING) continue;
+    met->hits[met->count++] = get_hit(&hits, lane);
+    touching->end = fmax(touching->end, REAL_LANE(hits.t, lane));
+    crossed |= side_of_one(scene->info, (int)index);
+  }
+  return crossed;
+}
+#endif
 
 static inline u32 material_of(const Scene* scene, const Hit* hit) {
   const u32 material = scene->instances[hit->instance].material;
@@ -260,20 +290,24 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
 typedef struct Passages {
   MediaStacks behind;
   REAL end, apart;
-  MASK overflows, strays;
+  MASK overflows, strays, crossed;
 } Passages;
 
 // Resolves the lanes of `lanes`, which have hit instances that may touch others: hit and face become those of
 // the face seen, but the hit's distance remains that of the first. `mask`: as above.
 static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
-                                      Faces* faces, Passages* passages) {
+                                      Faces* faces, Passages* passages, u32* counts) {
   Touching touching;
   Seen seen CLEARED_ON_GPUS;
   const Hit first = get_hit(hits, i);
   const REAL time = time_of_rays(rays);
   const MediaStack before = {MASK_LANE(rays->media.low, i), MASK_LANE(rays->media.high, i)};
   HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
-  find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
+  HAVING(HAS_SIDES, int crossed = 0;)
+  if (HAS_SIDES && first.instance >= scene->info->instance_count) {
+    HAVING(HAS_SIDES, crossed = find_touching_fields(scene, rays, i, &first, &touching, counts);)
+  } else
+    find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
   join_faces(scene, &touching, mask, before, &seen);
   seen.hit.t = first.t;
   set_hit(hits, i, &seen.hit);
@@ -292,11 +326,14 @@ static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays,
   REAL_LANE(passages->apart, i) = touching.apart;
   MASK_LANE(passages->overflows, i) = (int)seen.overflows;
   MASK_LANE(passages->strays, i) = (int)seen.strays;
+  HAVING(HAS_SIDES, crossed |= side_of_one(scene->info, (int)first.instance);)
+  HAVING(HAS_SIDES,
+         MASK_LANE(passages->crossed, i) = crossed & ~side_of_one(scene->info, (int)seen.hit.instance);)
 }
 NEVER_INLINE Passages meet_touching(const Scene* scene, const SceneRays* rays, u32 mask, Hits* hits,
-                                    Faces* faces, MASK lanes) {
+                                    Faces* faces, MASK lanes, u32* counts) {
   Passages passages = {0};
-  EACH_LANE(i, lanes) meet_touching_lane(scene, rays, i, mask, hits, faces, &passages);
+  EACH_LANE(i, lanes) meet_touching_lane(scene, rays, i, mask, hits, faces, &passages, counts);
   return passages;
 }
 #endif

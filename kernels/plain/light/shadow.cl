@@ -77,7 +77,8 @@ static inline float3 filtered(UNIFORM const Scene* scene, const SceneRay* ray, c
 }
 
 // The shadow ray at its next hit. Whether it continues to the light, with the rest of it in `light`.
-static inline bool pass_filter(UNIFORM const Scene* scene, SceneRay* ray, SurfaceHit* hit, float3* light) {
+static inline bool pass_filter(UNIFORM const Scene* scene, SceneRay* ray, SurfaceHit* hit, float3* light,
+                               UNIFORM u32* counts) {
   int here = 0;
   if (HAS_MEDIA) here = current_media(scene->media, ray);
   int there = here;
@@ -86,7 +87,7 @@ static inline bool pass_filter(UNIFORM const Scene* scene, SceneRay* ray, Surfac
     return false;
   }
   Face face = hit_faces(scene, ray->d, hit);
-  if (HAS_MEDIA) pass_interface(scene, ray, hit, &face);
+  if (HAS_MEDIA) pass_interface(scene, ray, hit, &face, counts);
   const int kind = (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
   if ((face.flags & kind) != (int)MATERIAL_TRANSMITS) {
     *light = (float3)(0.0f);
@@ -132,7 +133,7 @@ static inline float3 light_arriving(UNIFORM const Scene* scene, SceneRay* ray, f
   for (;;) {
     SurfaceHit hit;
     nearest_to_light(scene, ray, false, &hit, counts);
-    if (!pass_filter(scene, ray, &hit, &light)) return light;
+    if (!pass_filter(scene, ray, &hit, &light, counts)) return light;
     if (passed_most(ray, counts)) return (float3)(0.0f);
   }
 }

@@ -8,6 +8,8 @@ typedef struct LANES(Hits, join_hits) {
 } SurfaceHit;
 
 #define FROM_NOWHERE (-1)
+#define UNKNOWN_SIDES (-1)
+#define MOST_SIDES 31  // remembered
 
 // Up to eight media in order of entry, the last in the lowest byte of `low`; a byte holds the medium's index
 // plus one, 0 is empty: small, as waiting rays keep it. The host rejects scenes with more than MAX_MEDIA
@@ -24,6 +26,7 @@ typedef struct SceneRay {
   HAVING(HAS_MEDIA) float since;         // distance from which on it is in its medium
   HAVING(HAS_CROSSINGS) int crossings;   // unseen interfaces or filters behind it
   HAVING(HAS_SDF) int from;              // the field that it starts on: instance * 2, plus 1 inside of it
+  HAVING(HAS_SIDES) int sides;           // bit i: inside the field i of those that it remembers
   HAVING(HAS_SDF) float footprint;       // of the pixel at o, in world units
   HAVING(HAS_CONES) float cone_width;    // of the cone at o, in world units
   HAVING(HAS_CONES) float cone_spread;   // its growth on a unit of the way
@@ -44,6 +47,7 @@ ENTRY static inline SceneRay begun_ray(const CameraRay* camera, UNIFORM const Me
     ray.from = FROM_NOWHERE;
     ray.footprint = 0.0f;
   }
+  if (HAS_SIDES) ray.sides = UNKNOWN_SIDES;
   if (HAS_CONES) {
     ray.cone_width = 0.0f;
     ray.cone_spread = camera->spread;
@@ -72,12 +76,27 @@ static inline void cross_further(const SceneRay* before, SceneRay* ray) {
   if (HAS_CROSSINGS) ray->crossings = before->crossings + 1;
 }
 
+// The bit of an instance in SceneRay.sides; 0 if it is no field, or one not remembered.
+static inline int side_bit(UNIFORM __global const SceneInfo* info, int instance) {
+  const int number = instance - (int)info->instance_count;
+  return number >= 0 && number < MOST_SIDES ? 1 << (number & 31) : 0;
+}
+
+// side_bit() for hand-written code about one ray.
+ENTRY static inline UNIFORM int side_of_one(UNIFORM __global const SceneInfo* info, UNIFORM int instance) {
+  return side_bit(info, instance);
+}
+
 // The ray restarts from what it has hit: notes which field, and which side of it.
 static inline void start_on_hits(UNIFORM __global const SceneInfo* info, SceneRay* ray, const SurfaceHit* hit,
                                  bool inside) {
   if (HAS_SDF) {
     const bool on_field = hit->instance >= (int)info->instance_count;
     ray->from = on_field ? hit->instance * 2 + (int)inside : FROM_NOWHERE;
+    if (HAS_SIDES) {
+      const int bit = side_bit(info, hit->instance);
+      ray->sides = (ray->sides & ~bit) | (inside ? bit : 0);
+    }
   }
 }
 

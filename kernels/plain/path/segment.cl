@@ -13,6 +13,7 @@ typedef struct Encounter {
   float3 absorbed;  // factor on the ray's light from its start to the hit
   HAVING(HAS_TOUCHING) MediaStack behind;
   HAVING(HAS_TOUCHING) float apart;  // how far apart the touching faces may be
+  HAVING(HAS_SIDES) int crossed;     // bits of other fields that touch the one that is hit
   HAVING(HAS_PARALLAX) float below;  // depth of the hit below a surface in whose relief it lies, or 0
   HAVING(HAS_PARALLAX) float3 top;   // that surface's normal
 } Encounter;
@@ -20,14 +21,14 @@ typedef struct Encounter {
 typedef struct LANES(Passages) {
   MediaStack behind;
   float end, apart;
-  int overflows, strays;
+  int overflows, strays, crossed;
 } Passage;
 void note_lost_media(int overflows, int strays, HERE, UNIFORM u32* counts);
 
 // Hit and face become those of the face that is seen, but for the distance. `mask`: see join_faces().
 HAVING(HAS_TOUCHING)
 Passage meet_touching(UNIFORM const Scene* scene, const SceneRay* ray, UNIFORM u32 mask, SurfaceHit* hit,
-                      Face* face, HERE);
+                      Face* face, HERE, UNIFORM u32* counts);
 
 // Whether the hit is on an instance that may touch others.
 ENTRY static inline bool may_touch_others(UNIFORM __global const Instance* instances, const SurfaceHit* hit) {
@@ -59,11 +60,12 @@ static inline bool cross_interface(UNIFORM const Scene* scene, SceneRay* ray, En
   if (HAS_TOUCHING) {
     touching = may_touch_others(scene->instances, &met->hit);
     if (touching) {
-      const Passage passage = meet_touching(scene, ray, MATERIAL_TRANSMITS, &met->hit, &met->face);
+      const Passage passage = meet_touching(scene, ray, MATERIAL_TRANSMITS, &met->hit, &met->face, counts);
       behind = passage.behind;
       end = passage.end;
       met->behind = behind;
       met->apart = passage.apart;
+      if (HAS_SIDES) met->crossed = passage.crossed;
       note_lost_media(passage.overflows, passage.strays, counts);
     }
   }
@@ -77,6 +79,7 @@ static inline bool cross_interface(UNIFORM const Scene* scene, SceneRay* ray, En
         ray->crossings < MAX_CROSSINGS && is_unseen(scene->media, met->face.flags, met->before, met->after);
     if (unseen) {
       ray->media = behind;
+      if (HAS_SIDES) ray->sides ^= met->crossed;
       met->hit.t = end;
     }
   }
@@ -95,6 +98,7 @@ static inline bool leave_medium_before(UNIFORM const Scene* scene, SceneRay* ray
     met->behind = ray->media;
     met->apart = 0.0f;
   }
+  if (HAS_SIDES) met->crossed = 0;
   if ((met->face.flags & (int)MATERIAL_TRANSMITS) != 0) unseen = cross_interface(scene, ray, met, counts);
   if (!unseen || met->after != here) met->absorbed *= absorb(scene->media, here, met->hit.t - ray->since);
   if (unseen) {
@@ -154,6 +158,7 @@ static inline float offset_beyond(const Encounter* met, float offset) {
 
 // A child, a copy of `ray`, enters the media behind the hit; thin surfaces change none.
 static inline void enter_behind(const Encounter* met, SceneRay* child) {
+  if (HAS_MEDIA && HAS_SIDES) child->sides ^= met->crossed;
   if (HAS_TOUCHING)
     child->media = met->behind;
   else if (HAS_MEDIA && (met->face.flags & (int)MATERIAL_THIN) == 0)
@@ -162,15 +167,17 @@ static inline void enter_behind(const Encounter* met, SceneRay* child) {
 
 // A shadow ray goes behind an interface that lets light pass, into its media. Of touching ones, hit and face
 // become those that are seen.
-static inline void pass_interface(UNIFORM const Scene* scene, SceneRay* ray, SurfaceHit* hit, Face* face) {
+static inline void pass_interface(UNIFORM const Scene* scene, SceneRay* ray, SurfaceHit* hit, Face* face,
+                                  UNIFORM u32* counts) {
   const u32 opaque = MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE;
   if ((face->flags & (int)opaque) != (int)MATERIAL_TRANSMITS) return;
   bool touching = false;
   if (HAS_TOUCHING) {
     touching = may_touch_others(scene->instances, hit);
     if (touching) {
-      const Passage passage = meet_touching(scene, ray, opaque, hit, face);
+      const Passage passage = meet_touching(scene, ray, opaque, hit, face, counts);
       ray->media = passage.behind;
+      if (HAS_SIDES) ray->sides ^= passage.crossed;
       hit->t = passage.end;
     }
   }

@@ -78,7 +78,7 @@ ENTRY static inline void cast_shadow(UNIFORM const Scene* scene, UNIFORM u32 ind
 ENTRY static inline bool reach_filter(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile,
                                       SceneRay* ray, WaitingRay* path, SurfaceHit* hit, UNIFORM u32* counts) {
   if (HAS_SHADOW_FILTERS) {
-    if (pass_filter(scene, ray, hit, &path->throughput)) return !passed_most(ray, counts);
+    if (pass_filter(scene, ray, hit, &path->throughput, counts)) return !passed_most(ray, counts);
     add_light(tile, path->pixel, path->throughput);
   } else if (!hit_anything(hit)) {
     add_light(tile, path->pixel, unblocked(scene, ray, path->throughput));

@@ -64,6 +64,34 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("glass and liquid in one place, or closer than a ray arrives, are one glass, in any order") {
+  const std::string julia = R"("type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]})";
+  const std::string smaller = julia + R"(, "transform": [{"scale": 0.999}])", nothing = ball(0.1, 9);
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const char* integrator : {"whitted", "path"}) {
+      CAPTURE(integrator);
+      const auto picture = [&](SceneDescription scene, bool swapped) {
+        scene.render.integrator = integrator;
+        if (swapped) std::swap(scene.objects[0], scene.objects[1]);
+        const RenderResult result = scenes::render_on(device, scene);
+        check_counts(result);
+        return result.image;
+      };
+      const auto look_alike = [&](const std::string& one, const std::string& two, const auto& glass) {
+        for (const bool swapped : {false, true}) {
+          CAPTURE(one, two, swapped);
+          const ImageDifference d = compare_images(picture(in_glass(one, two), swapped), glass, 0.02);
+          CHECK(d.over_tolerance <= d.pixels / 100);
+        }
+      };
+      look_alike(julia, julia, picture(in_glass(julia, nothing), false));
+      look_alike(julia, smaller, picture(in_glass(julia, nothing), false));
+      const std::string closed = formula("length(p) - 0.7");
+      look_alike(closed, closed, picture(in_glass(ball(0.7, 0), ball(0.7, 0)), false));
+    }
+  });
+}
+
 TEST_CASE("a hollow field of glass holds a field of liquid that reaches into its wall") {
   const std::string vessel = formula("max(length(p) - 1, 0.9 - length(p))");
   on_picture_devices([&](const DeviceInfo& device) {

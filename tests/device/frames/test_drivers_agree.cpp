@@ -33,7 +33,7 @@ const std::set<std::string> tried_elsewhere = {
     "maps",          "fuzz_maps",     "surface_coordinates", "relief",        "parallax",
     "metal_rough",   "layer_maps",    "coat_maps",           "specular_maps", "texture_mappings",
     "texture_kinds", "texture_stack", "map_slots",           "texel_formats", "texel_pages",
-    "extra_uvs",     "touching",      "two_sided_fields",    "caustics"};
+    "extra_uvs",     "touching",      "two_sided_fields",    "near_fields",   "caustics"};
 
 }  // namespace
 
