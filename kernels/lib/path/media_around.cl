@@ -14,6 +14,7 @@ static inline float cross_faces(const Scene* scene, SceneRays* rays, const Hits*
                                 MediaStack* holding, u32* counts) {
   const Hit first = get_hit(hits, 0);
   Touching touching;
+  HAVING(HAS_OBJECT_MOTION, touching.met.time = 0.0f;)
   if (HAS_SIDES && first.instance >= scene->info->instance_count) {
     HAVING(HAS_SIDES, rays->sides ^= find_touching_fields(scene, rays, 0, &first, &touching, counts);)
   } else
