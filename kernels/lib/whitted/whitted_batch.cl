@@ -55,8 +55,8 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
 
 // What rays have met, shaded.
 typedef struct SeenSurfaces {
-  Encounters met;
-  SurfaceShadings at;
+  const Encounters* met;
+  const SurfaceShadings* at;
 } SeenSurfaces;
 
 // Adds the lights that the surfaces of `lanes` see. `coherent`: the rays run close together, and so do those
@@ -72,10 +72,10 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
     bool together = false;
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
-        const MASK casting = sends_ray(scene, tile, rays, paths, lanes, &seen->at, &light, counts);
-        if (!any_lane(casting)) continue;
+        const MASK casting = sends_ray(scene, tile, rays, paths, lanes, seen->at, &light, counts);
+        if (HAS_SHAFTS && !any_lane(casting)) continue;
         const u32 before = stack->count;
-        cast_shadow(scene, light++, tile, rays, paths, &seen->met, &seen->at, counts, casting);
+        cast_shadow(scene, light++, tile, rays, paths, seen->met, seen->at, counts, casting);
         most = stack->count - before;
         together = coherent && most;
         if (!together) continue;
@@ -91,16 +91,17 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
 // of it on the stacks.
 NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, SceneRays* rays,
                                WaitingRays* paths, MASK lanes, bool coherent, u32* counts) {
-  SeenSurfaces seen;
-  Encounters* met = &seen.met;
+  Encounters met;
+  SurfaceShadings at;
+  const SeenSurfaces seen = {&met, &at};
   MASK unseen =
-      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, met, counts, lanes)
-                                         : meet_listed(scene, rays, lanes, met, counts));
+      lanes & (coherent || !LISTS_UNSEEN ? meet_interfaces(scene, rays, coherent, &met, counts, lanes)
+                                         : meet_listed(scene, rays, lanes, &met, counts));
   const MASK straight = lanes & ~unseen & is_from_camera(paths, lanes);
-  unseen |= straight & pass_hidden(scene, rays, met, straight);
+  unseen |= straight & pass_hidden(scene, rays, &met, straight);
   if (HAS_MEDIA) note_lost_pixels(paths->pixel, counts);
-  const REAL3 radiance = see_met(scene, tile, rays, paths, unseen, met, &seen.at, counts, lanes);
-  const MASK hit = lanes & ~unseen & hit_anything(&met->hit);
+  const REAL3 radiance = see_met(scene, tile, rays, paths, unseen, &met, &at, counts, lanes);
+  const MASK hit = lanes & ~unseen & hit_anything(&met.hit);
   add_lights(scene, tile, rays, paths, hit, coherent, &seen, counts);
   add_to_pixels(radiance, paths->pixel, lanes, tile->radiance);
 }
