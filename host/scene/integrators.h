@@ -13,10 +13,10 @@ struct Integrator {
   unsigned most_run;        // pixels per work-item at most, so that idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
   int least_samples;        // of a pixel, before its noise is judged
-  // What it does, of which scenes are compiled, kernels built and options refused.
-  bool branches;       // rays that come of a ray wait on a stack, and each light is sent a ray
+  // What it does: scenes are compiled, kernels built and options refused by it.
+  bool branches;       // child rays wait on a stack, and each light is sent a ray
   bool scatters;       // in media and fog
-  bool own_materials;  // takes materials' variants for it: MaterialDescription::by_paths
+  bool own_materials;  // MaterialDescription::by_paths, spectra, shadow catchers; no soft shadows of fields
   bool photons;        // caustics and guides
   bool light_parts;    // AOVs of light by lobes and by groups of lights
 };
@@ -24,33 +24,33 @@ struct Integrator {
 /// Paths end by roulette alone in scenes without max_depth, up to this cap.
 inline constexpr int depth_cap = 1024;
 
-inline constexpr std::array integrators{Integrator{.name = "whitted",
-                                                   .entry = "entry/render_whitted.cl",
-                                                   .kernel = "render_whitted",
-                                                   .needs_camera_media = true,
-                                                   .most_run = 1,
-                                                   .depth = 8,
-                                                   .most_depth = 64,
-                                                   .least_samples = 1,
-                                                   .branches = true,
-                                                   .scatters = false,
-                                                   .own_materials = false,
-                                                   .photons = false,
-                                                   .light_parts = false},
-                                        // One or two paths often find no light even if there is some.
-                                        Integrator{.name = "path",
-                                                   .entry = "entry/render_path.cl",
-                                                   .kernel = "render_path",
-                                                   .needs_camera_media = true,
-                                                   .most_run = 16,
-                                                   .depth = depth_cap,
-                                                   .most_depth = 65536,
-                                                   .least_samples = 4,
-                                                   .branches = false,
-                                                   .scatters = true,
-                                                   .own_materials = true,
-                                                   .photons = true,
-                                                   .light_parts = true}};
+inline constexpr std::array integrators{
+    Integrator{.name = "whitted",
+               .entry = "entry/render_whitted.cl",
+               .kernel = "render_whitted",
+               .needs_camera_media = true,
+               .most_run = 1,
+               .depth = 8,
+               .most_depth = 64,
+               .least_samples = 1,
+               .branches = true,
+               .scatters = false,
+               .own_materials = false,
+               .photons = false,
+               .light_parts = false},
+    Integrator{.name = "path",
+               .entry = "entry/render_path.cl",
+               .kernel = "render_path",
+               .needs_camera_media = true,
+               .most_run = 16,
+               .depth = depth_cap,
+               .most_depth = 65536,
+               .least_samples = 4,  // one or two often find no light even if there is some
+               .branches = false,
+               .scatters = true,
+               .own_materials = true,
+               .photons = true,
+               .light_parts = true}};
 
 /// Names in table order.
 inline constexpr auto integrator_names = [] {

@@ -85,14 +85,15 @@ SUNDOG_SHARED_SIZE(Vertex, 32)
 typedef struct Instance {
   float4 object_from_world[3];  // rows of the affine matrix
   float4 parameters;
-  u32 shape;       // SHAPE_*
-  u32 root;        // SHAPE_MESH: root node of its mesh BVH
-  u32 material;    // of a solid; mesh triangles have their own unless material != NO_MATERIAL
-  u32 flags;       // INSTANCE_*
-  u32 object;      // index of its scene object, for AOVs and messages
-  float touch;     // above 0 if its surfaces may touch others or each other: the gap that rounding may open
-  u32 light;       // index of the light that it shows, or NO_LIGHT
-  u32 first_prim;  // of a mesh: the index of its first triangle
+  u32 shape;     // SHAPE_*
+  u32 root;      // SHAPE_MESH: root node of its mesh BVH
+  u32 material;  // of a solid; mesh triangles have their own unless material != NO_MATERIAL
+  u32 flags;     // INSTANCE_*
+  u32 object;    // index of its scene object, for AOVs and messages
+  float touch;   // above 0 if its surfaces may touch others or each other: the gap that rounding may open (1
+                 // for fields)
+  u32 light;     // index of the light that it shows, or NO_LIGHT
+  u32 first_prim;        // of a mesh: the index of its first triangle
   float4 world_center;   // centre of the bounds; w = half the diagonal (0 if unbounded)
   float4 pattern_scale;  // xyz: from object space to the scene file's, in which patterns are measured; w:
                          // geometric mean of the scale from world to there

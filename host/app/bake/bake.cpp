@@ -1,5 +1,5 @@
 // In batches: a ray for each texel, from the cage inwards; then its hit's normal, height or, by more rays,
-// occlusion. At last gaps and margins are filled.
+// occlusion. Last, gaps and margins are filled.
 #include "app/bake/bake.h"
 
 #include <algorithm>

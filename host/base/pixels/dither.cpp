@@ -24,12 +24,13 @@ double dither_threshold(std::size_t x, std::size_t y, std::size_t channel) {
 void dither_to_8_bits(Image& image) {
   const auto channels = static_cast<std::size_t>(image.channels),
              width = static_cast<std::size_t>(image.width);
+  const auto& bytes = linear_bytes();
   in_parallel(image.data.size() / channels, [&](std::size_t pixel) {
     for (std::size_t channel = 0; channel < std::min<std::size_t>(channels, 3); ++channel) {
       float& value = image.data[pixel * channels + channel];
       if (!(value > 0 && value < 1)) continue;
       const double up = dither_threshold(pixel % width, pixel / width, channel);
-      value = linear_bytes()[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
+      value = bytes[static_cast<std::size_t>(255 * double(srgb_from_linear(value)) + up)];
     }
   });
 }

@@ -1,5 +1,5 @@
-// Fast PNG encoding for previews: pixels as in encode_png(), in somewhat larger files. libspng
-// takes 2.2 times as long with the same filter at its fastest level.
+// Fast PNG encoding for previews: pixels as in encode_png(), in somewhat larger files. libspng takes 2.2
+// times as long with the same filter at its fastest level.
 #pragma once
 #include <cstdint>
 #include <string>

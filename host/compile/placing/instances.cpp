@@ -14,7 +14,7 @@
 #include "compile/placing/motion.h"
 #include "compile/shapes.h"
 #include "compile/surfaces/textures.h"
-#include "compile/touching/box_tree.h"
+#include "compile/touching/near_fields.h"
 #include "compile/view/local_origin.h"
 
 namespace sundog {
@@ -321,20 +321,6 @@ std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds
   return taken;
 }
 
-/// Marks fields that may touch others: those whose boxes overlap that of one whose walls both show.
-void mark_near_fields(std::span<const Bounds> boxes, const InstanceInputs& in, std::span<Instance> fields,
-                      SceneFeatures& features) {
-  const auto shows_both = [&](const Instance& field) {
-    return (in.surfaces[field.material].flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER)) != 0;
-  };
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if ((shows_both(fields[i]) || shows_both(fields[k])) && overlap(boxes[i], boxes[k], 0)) {
-        fields[i].touch = fields[k].touch = 1;
-        features.near_fields = features.media = true;  // rays cross what touches by their media
-      }
-}
-
 }  // namespace
 
 dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const dvec3& origin) {
@@ -394,7 +380,8 @@ Instances compile_instances(const InstanceInputs& in) {
   append(fields);
   out.field_end = static_cast<u32>(instances.size());
   const auto boxes = std::span(out.boxes).subspan(out.instance_count);
-  mark_near_fields(boxes, in, std::span(instances).subspan(out.instance_count), out.features);
+  if (mark_near_fields(boxes, in.surfaces, std::span(instances).subspan(out.instance_count)))
+    out.features.near_fields = out.features.media = true;  // rays cross what touches by their media
   out.instances = std::move(instances);
   if (out.features.object_motion) out.moves = std::move(moves);
   out.features.unbounded = !unbounded.empty();

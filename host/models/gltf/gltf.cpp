@@ -329,9 +329,12 @@ nlohmann::json parse(const Source& source, std::string_view text) {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& error) {
     const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
-    std::string_view what = error.what();
-    what = what.substr(0, what.find("; last read: "));  // which may end within a letter
-    const std::size_t name_end = what.find("] ");       // "[json.exception.parse_error.101] ..."
+    std::string what = error.what();
+    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may end within a letter
+      const std::size_t rest = what.rfind("; expected ");
+      what.erase(read, rest == what.npos || rest < read ? what.npos : rest - read);
+    }
+    const std::size_t name_end = what.find("] ");  // "[json.exception.parse_error.101] ..."
     const auto offset = static_cast<std::size_t>(text.data() - source.bytes.data());
     fail(source, syntax ? fmt::format("byte {}", offset + syntax->byte) : "",
          fmt::format("not valid JSON: {}", what.substr(name_end == what.npos ? 0 : name_end + 2)));

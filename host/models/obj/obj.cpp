@@ -293,7 +293,7 @@ class ObjReader {
 
 }  // namespace
 
-// Readers are declared so: NOLINTNEXTLINE(performance-unnecessary-value-param)
+// All readers have this signature: NOLINTNEXTLINE(performance-unnecessary-value-param)
 Model load_obj(Source source, const ModelOptions& options) {
   Model model;
   ObjReader reader(source, model);

@@ -299,7 +299,7 @@ void warn_of_no_numbers(std::size_t count, const char* what, const char* mend, M
 
 }  // namespace
 
-// Readers are declared so: NOLINTNEXTLINE(performance-unnecessary-value-param)
+// All readers have this signature: NOLINTNEXTLINE(performance-unnecessary-value-param)
 Model load_ply(Source source, const ModelOptions& options) {
   const PlyHeader header = read_ply_header(source);
   Content content = read_content(source, header);

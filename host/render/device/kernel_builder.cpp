@@ -1,4 +1,4 @@
-// One thread takes the newest wish first, then what may come later; another serves a caller that waits.
+// One thread takes the newest request first, then what may come later; another serves a caller that waits.
 #include "render/device/kernel_builder.h"
 
 #include <algorithm>

@@ -75,6 +75,23 @@ std::string_view word_at(std::string_view text, std::size_t end) {
   return text.substr(begin, std::min<std::size_t>(end - begin, 20));
 }
 
+/// Where the comment begins that has no end.
+std::size_t open_comment(std::string_view text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '"') {
+      while (++at < text.size() && text[at] != '"') at += text[at] == '\\';
+    } else if (text.substr(at, 2) == "//") {
+      at = text.find('\n', at);
+    } else if (text.substr(at, 2) == "/*") {
+      const std::size_t end = text.find("*/", at + 2);
+      if (end == text.npos) return at;
+      at = end + 1;
+    }
+    if (at == text.npos) break;
+  }
+  return 0;
+}
+
 /// The library's message, "[json.exception...] parse error at line 1, column 2: what; last read: '...'", as
 /// `what` only: the last read may be the whole file and may end within a letter.
 std::string plain_message(std::string message, std::string_view found) {
@@ -169,8 +186,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   /// the end of a line belongs to the line.
   std::size_t begin_of(std::string_view message, std::size_t end) const {
     if (message.find("missing closing '*/'") != message.npos) {
-      const std::size_t last = text_.rfind("*/");
-      return text_.find("/*", last == text_.npos ? 0 : last + 2) + 1;
+      return open_comment(text_) + 1;
     }
     return end > 0 && end <= text_.size() && text_[end - 1] == '\n' ? end - 1 : end;
   }

@@ -95,7 +95,8 @@ class Schema {
       }
   }
 
-  /// The rules of keys together: "not" any of pairs, "dependentRequired", and "oneOf" some lists of keys.
+  /// The rules of keys together: "not" any of pairs (and no "required" beside), "dependentRequired", and
+  /// "oneOf" some lists of keys.
   static void compile_together(const json& node, SchemaRule& rule) {
     static const json none;
     const auto part = [](const json& of, const char* keyword) -> const json& {

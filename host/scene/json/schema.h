@@ -50,7 +50,7 @@ struct SchemaRule {
   using KeyPair = std::pair<std::string_view, std::string_view>;
   std::vector<KeyPair> clashes;          // keys that an object does not have both
   std::vector<KeyPair> needs;            // the first key needs the second
-  std::vector<std::string_view> one_of;  // keys of which an object has just one
+  std::vector<std::string_view> one_of;  // keys of which an object has just one, if each way is one key
 
   /// This rule or its first option for values of that type; nullptr: none.
   const SchemaRule* as(Type wanted) const;

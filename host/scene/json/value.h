@@ -213,7 +213,7 @@ class JsonObject {
   double number(std::string_view key, double fallback, const Range& range);
   int integer(std::string_view key, int fallback, int low, int high);
 
-  /// Returns which of the keys is present of which the schema wants just one.
+  /// Returns the one key present of those that the schema's "oneOf" names.
   std::string one_of();
 
  private:

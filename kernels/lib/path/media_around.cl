@@ -16,7 +16,8 @@ static inline float cross_faces(const Scene* scene, SceneRays* rays, const Hits*
   Touching touching;
   HAVING(HAS_OBJECT_MOTION, touching.met.time = 0.0f;)
   if (HAS_SIDES && first.instance >= scene->info->instance_count) {
-    HAVING(HAS_SIDES, rays->sides ^= find_touching_fields(scene, rays, 0, &first, &touching, counts);)
+    HAVING(HAS_SIDES,
+           rays->sides ^= find_touching_fields(scene, rays, 0, MARCH_TO_SEE, &first, &touching, counts);)
   } else
     find_touching(scene, get3(&rays->o, 0), get3(&rays->d, 0), REAL_LANE(rays->t_min, 0), &first, &touching);
   const Stretch* met = &touching.met;

@@ -44,7 +44,8 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }
-  numbers->first = depth_of(paths, lanes) * (int)DIMENSIONS_A_BOUNCE + paths->branch + (int)(dimension & ~3u);
+  numbers->first = (depth_of(paths, lanes) - 1) * (int)DIMENSIONS_A_BOUNCE + paths->branch +
+                   (int)(DIMENSION_BOUNCE + (dimension & ~3u));
   numbers->later = dimension & 2u;
 }
 

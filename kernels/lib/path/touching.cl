@@ -88,10 +88,10 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
 }
 
 #if HAS_SIDES
-// Likewise if `first` is on a field: it touches others that the ray meets up to a threshold behind. Returns
-// the bits of those in SceneRays.sides.
-static inline int find_touching_fields(const Scene* scene, const SceneRays* rays, u32 lane, const Hit* first,
-                                       Touching* touching, u32* counts) {
+// Likewise if `first` is on a field: it touches others that the ray, marched for `purpose`, meets up to a
+// threshold behind. Returns the bits of those in SceneRays.sides; others are not looked at.
+static inline int find_touching_fields(const Scene* scene, const SceneRays* rays, u32 lane, u32 purpose,
+                                       const Hit* first, Touching* touching, u32* counts) {
   Stretch* met = &touching->met;
   const MASK only = lanes_of(1u << lane);
   SceneRays again = *rays;
@@ -104,13 +104,14 @@ static inline int find_touching_fields(const Scene* scene, const SceneRays* rays
   const float slope = fabs(dot(unit_normal(outward_of(scene, first, time_of_stretch(met))), met->d));
   const float reach = arrival_distance(scene, first->instance, rays, first->t, lane) / fmax(slope, 0.05f);
   for (u32 index = scene->info->instance_count; index < scene->info->field_end; ++index) {
-    if (index == first->instance || scene->instances[index].touch <= 0.0f) continue;
+    const int side = side_of_one(scene->info, (int)index);
+    if (index == first->instance || scene->instances[index].touch <= 0.0f || side == 0) continue;
     Hits hits = no_hits((REAL)(first->t + reach));
-    march_range(scene, &again, index, index + 1u, only, MARCH_TO_SEE, &hits, counts);
+    march_range(scene, &again, index, index + 1u, only, purpose, &hits, counts);
     if (MASK_LANE(hits.instance, lane) != (int)index || met->count >= MOST_TOUCHING) continue;
     met->hits[met->count++] = get_hit(&hits, lane);
     touching->end = fmax(touching->end, REAL_LANE(hits.t, lane));
-    crossed |= side_of_one(scene->info, (int)index);
+    crossed |= side;
   }
   return crossed;
 }
@@ -305,7 +306,8 @@ static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays,
   HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
   HAVING(HAS_SIDES, int crossed = 0;)
   if (HAS_SIDES && first.instance >= scene->info->instance_count) {
-    HAVING(HAS_SIDES, crossed = find_touching_fields(scene, rays, i, &first, &touching, counts);)
+    HAVING(HAS_SIDES, const u32 purpose = mask & MATERIAL_SHADOW_OPAQUE ? MARCH_TO_LIGHT : MARCH_TO_SEE;
+           crossed = find_touching_fields(scene, rays, i, purpose, &first, &touching, counts);)
   } else
     find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
   join_faces(scene, &touching, mask, before, &seen);

@@ -20,7 +20,7 @@ typedef struct HitList {
   u32 place[MOST_LISTED], instance[MOST_LISTED];
 } HitList;
 
-// Rays by lane; hits->t is their end.
+// Rays by lane; in walks hits->t is their end.
 typedef struct TraceRays {
   const REAL3 *o, *d;
   const REAL* t_min;

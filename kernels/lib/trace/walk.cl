@@ -260,7 +260,7 @@ static inline MASK crossing_child(__global const BvhNode* node, u32 slot, const 
 }
 
 // The lanes of `bits` that cross a child of the node `word`, if it has few; else all.
-static inline u32 crossing_few(const Scene* scene, u32 word, const TraceRays* walkers,
+static inline u32 crossing_few(const Scene* scene, u32 word, const TraceRays* traced,
                                const PreparedRays* rays, u32 bits) {
   if (word & BVH_LEAF) return bits;
   __global const BvhNode* node = node_at(scene->nodes, word);
@@ -268,7 +268,7 @@ static inline u32 crossing_few(const Scene* scene, u32 word, const TraceRays* wa
   if (count > FEW_CHILDREN) return bits;
   MASK crossing = NO_LANES;
   for (u32 slot = 0; slot < count; ++slot)
-    crossing |= crossing_child(node, slot, rays, walkers->t_min, &walkers->hits->t);
+    crossing |= crossing_child(node, slot, rays, traced->t_min, &traced->hits->t);
   return bits & lane_bits(crossing);
 }
 

@@ -53,7 +53,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
 }
 #endif
 
-// What rays have met, shaded.
+// The surfaces that a batch has hit, and their shading.
 typedef struct SeenSurfaces {
   const Encounters* met;
   const SurfaceShadings* at;
@@ -66,13 +66,16 @@ static inline void add_lights(const Scene* scene, const TileSamples* tile, const
                               u32* counts) {
   u32 light = any_lane(lanes) ? 0u : scene->info->light_count;
   const bool last = tile->stack->count == 0u;
+  MASK casting = lanes;
   ShadowStack* stack = tile->shadows;
   for (;;) {
     u32 most = BATCH;
     bool together = false;
     if (stack->count < BATCH) {
       if (light < scene->info->light_count) {
-        const MASK casting = sends_ray(scene, tile, rays, paths, lanes, seen->at, &light, counts);
+        // The first ray to a light decides for all of them.
+        const MASK asked = HAS_SHAFTS && scene->light_rays[light].ray ? casting : lanes;
+        casting = sends_ray(scene, tile, rays, paths, asked, seen->at, &light, counts);
         if (HAS_SHAFTS && !any_lane(casting)) continue;
         const u32 before = stack->count;
         cast_shadow(scene, light++, tile, rays, paths, seen->met, seen->at, counts, casting);

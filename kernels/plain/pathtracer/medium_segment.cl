@@ -7,11 +7,13 @@ typedef struct BegunRay {
   HAVING(HAS_SCATTERING) float since;
   HAVING(HAS_SCATTERING) MediaStack media;
   HAVING(HAS_SCATTERING) int crossings;
+  HAVING(HAS_SIDES) int sides;
 } BegunRay;
 
 static inline BegunRay begun_ray_of(const SceneRay* ray) {
   BegunRay begun;
   begun.t_min = ray->t_min;
+  if (HAS_SIDES) begun.sides = ray->sides;
   if (HAS_SCATTERING) {
     begun.since = ray->since;
     begun.media = ray->media;

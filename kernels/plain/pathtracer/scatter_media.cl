@@ -30,6 +30,7 @@ static inline SceneRay ray_from_segment(UNIFORM const Scene* scene, const BegunR
   made.t_min = 0.0f;
   made.t_max = t_max;
   made.media = begun->media;
+  if (HAS_SIDES) made.sides = begun->sides;
   return made;
 }
 

@@ -146,7 +146,7 @@ TEST_CASE("bench rays fails where a kernel tells wrong distances") {
   std::filesystem::copy(SUNDOG_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
   const std::filesystem::path file = kernels / "entry" / "trace_rays.cl";
   std::string text = sundog::read_file(file);
-  const std::string call = "&found);";
+  const std::string call = "coherent != 0u);";
   REQUIRE(text.find(call) != std::string::npos);
   text.replace(text.find(call), call.size(), call + "\n  found.t *= 1.01f;");
   sundog::write_file(file, text);

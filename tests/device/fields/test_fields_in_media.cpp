@@ -64,6 +64,27 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("paths that scatter in glass before the wall of liquid within it are outside of the liquid") {
+  const auto mean_of = [](const DeviceInfo& device, SceneDescription scene) {
+    scene.render.integrator = "path";
+    scene.render.samples = 64;
+    scene.media.at(1).scattering = dvec3(2);
+    const RenderResult result = scenes::render_on(device, scene);
+    CHECK(result.counts[COUNT_STRAY_EXIT] < 10);  // of 400,000 paths: some scatter on a wall
+    dvec3 sum(0);
+    const auto channels = static_cast<std::size_t>(result.image.channels);
+    for (std::size_t i = 0; i < result.image.data.size(); i += channels)
+      sum += dvec3(result.image.data[i], result.image.data[i + 1], result.image.data[i + 2]);
+    return sum * (double(channels) / double(result.image.data.size()));
+  };
+  on_picture_devices([&](const DeviceInfo& device) {
+    const std::string closed = "length(p) - 0.7";
+    const dvec3 fields = mean_of(device, in_glass(formula(closed, -0.3), formula(closed, 0.3)));
+    const dvec3 exact = mean_of(device, in_glass(ball(0.7, -0.3), ball(0.7, 0.3)));
+    for (int c = 0; c < 3; ++c) CHECK(fields[c] == Approx(exact[c]).epsilon(0.01));
+  });
+}
+
 TEST_CASE("glass and liquid in one place, or closer than a ray arrives, are one glass, in any order") {
   const std::string julia = R"("type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]})";
   const std::string smaller = julia + R"(, "transform": [{"scale": 0.999}])", nothing = ball(0.1, 9);

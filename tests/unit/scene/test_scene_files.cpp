@@ -28,6 +28,8 @@ TEST_CASE("bad JSON is refused with its place") {
       {"{\"objects\": [NaN]}", "line 1, column 14", "invalid literal"},
       {"{\"objects\": [] /* open", "line 1, column 16", "comment"},
       {"{ /* an \"/*\" */ \"a\": 1, /* open\n\n}", "line 1, column 25", "missing closing '*/'"},
+      {"{} /*/", "line 1, column 4", "missing closing '*/'"},
+      {"{\"a\": \"\\\"/*\", // /*\n /* open", "line 2, column 2", "missing closing '*/'"},
       {"{\"objects\": [\"tab\there\"]}", "line 1, column 18", "control character"},
       {"{\"objects\": [[0, 1], 1e999]}", "/objects/1", "wanted a finite number, found 1e999"},
       {"{\"camera\": {\"fov\": -1e999}}", "/camera/fov", "wanted a finite number, found -1e999"},

@@ -1,0 +1,40 @@
+#include "compile/touching/near_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compile/touching/box_tree.h"
+
+namespace sundog {
+
+namespace {
+
+/// How far apart boxes may be, as a part of the larger one: rays arrive before a surface.
+constexpr double near = 1e-3;
+
+double extent(const Bounds& box) {
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    most = std::max(most, double(box.upper[axis]) - double(box.lower[axis]));
+  return std::isfinite(most) ? most : 0;
+}
+
+}  // namespace
+
+bool mark_near_fields(std::span<const Bounds> boxes, std::span<const SurfaceFacts> materials,
+                      std::span<Instance> fields) {
+  const auto shows_both = [&](const Instance& field) {
+    return (materials[field.material].flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER)) != 0;
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const double slack = near * std::max(extent(boxes[i]), extent(boxes[k]));
+      if (!(shows_both(fields[i]) || shows_both(fields[k])) || !overlap(boxes[i], boxes[k], slack)) continue;
+      fields[i].touch = fields[k].touch = 1;
+      any = true;
+    }
+  return any;
+}
+
+}  // namespace sundog
