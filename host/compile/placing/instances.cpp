@@ -306,19 +306,19 @@ void add_scene_bvh(std::vector<Placed>& bounded, Instances& out, u32 mesh_stack)
 /// would cost each ray more than it saves.
 std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds& scene) {
   constexpr float share = 0.05f;
-  constexpr std::ptrdiff_t few = 16;
+  constexpr std::size_t few = 16;
   const auto is_mesh = [](const Placed& placed) { return placed.instance.shape == SHAPE_MESH; };
   if (std::none_of(bounded.begin(), bounded.end(), is_mesh)) return {};
   const Lanes edges = scene.upper - scene.lower;
   const float scale = 1 / std::max({edges[0], edges[1], edges[2], 1e-30f});
   const float least = share * half_area(scene, scale);
-  const auto large = std::stable_partition(bounded.begin(), bounded.end(), [&](const Placed& placed) {
-    return is_mesh(placed) || half_area(placed.box, scale) < least;
-  });
-  if (bounded.end() - large > few) return {};
-  std::vector<Placed> taken(large, bounded.end());
-  bounded.erase(large, bounded.end());
-  return taken;
+  std::vector<Placed> left, large;
+  for (const Placed& placed : bounded)
+    (is_mesh(placed) || half_area(placed.box, scale) < least ? left : large).push_back(placed);
+  bounded = std::move(left);
+  if (large.size() <= few) return large;
+  bounded.insert(bounded.end(), large.begin(), large.end());
+  return {};
 }
 
 }  // namespace

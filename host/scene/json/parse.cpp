@@ -79,7 +79,8 @@ std::string_view word_at(std::string_view text, std::size_t end) {
 std::size_t open_comment(std::string_view text) {
   for (std::size_t at = 0; at < text.size(); ++at) {
     if (text[at] == '"') {
-      while (++at < text.size() && text[at] != '"') at += text[at] == '\\';
+      for (++at; at < text.size() && text[at] != '"'; ++at)
+        if (text[at] == '\\') ++at;
     } else if (text.substr(at, 2) == "//") {
       at = text.find('\n', at);
     } else if (text.substr(at, 2) == "/*") {
