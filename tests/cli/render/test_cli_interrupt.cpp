@@ -223,7 +223,7 @@ TEST_CASE("an interrupted render continues from its checkpoint to the same image
 TEST_CASE("the progress bar shows rate and time left, fits the terminal, and is gone at the end") {
   const CliFolder folder;
   const CommandResult result = run_sundog({"render", folder.scene, "-o", folder.file("a.png"), "--size",
-                                           "200x150", "--samples", "100", "--tile", "16"},
+                                           "200x150", "--samples", "1000", "--tile", "16"},
                                           on_terminal());
   REQUIRE(result.status == 0);
   CHECK(result.err.find("Mpixel/s") != std::string::npos);
