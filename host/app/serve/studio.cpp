@@ -1,4 +1,4 @@
-// Each "do" of a message has a function. A change draws a new generation, and all pages are told.
+// Each "do" of a message has a function. A change draws a new generation and notifies all pages.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>
