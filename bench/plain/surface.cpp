@@ -143,6 +143,9 @@ Surface make_surface(const CompiledScene& scene, const Ray& ray, const Hit& hit)
   return s;
 }
 
+bool knows_lobe(std::string_view name) {
+  return name == "mirror" || name == "refraction" || name == "diffuse" || name == "highlight";
+}
 bool knows_light(u32 kind) { return kind == LIGHT_DIRECTIONAL || kind == LIGHT_POINT || kind == LIGHT_SPOT; }
 
 LightSample sample_light(const Light& light, const vec3& p) {

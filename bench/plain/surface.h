@@ -1,5 +1,7 @@
 // Surfaces and light in plain scalar C++: what a hit looks like, and what a light does to it.
 #pragma once
+#include <string_view>
+
 #include "bench/plain/tracer.h"
 
 namespace sundog::plain {
@@ -34,7 +36,8 @@ struct LightSample {
   glm::vec3 radiance{0};  // before shadowing
 };
 
-/// Whether sample_light() has that kind of light.
+/// Whether it has that lobe of shared/lobes.h; that kind of light.
+bool knows_lobe(std::string_view name);
 bool knows_light(u32 kind);
 
 LightSample sample_light(const Light& light, const glm::vec3& p);

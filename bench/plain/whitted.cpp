@@ -10,6 +10,7 @@
 #include "base/image_compare.h"
 #include "bench/plain/random.h"
 #include "bench/plain/surface.h"
+#include "compile/surfaces/lobes.h"
 
 namespace sundog {
 namespace plain {
@@ -261,10 +262,11 @@ std::string plain_refusal(const CompiledScene& scene) {
   if (scene.features.fog || scene.features.glow) return "the plain C++ program knows no fog and no glow";
   if (scene.features.sampler != SAMPLER_AUTO || scene.features.filter)
     return "the plain C++ program knows the default sampler and filter alone";
-  if (scene.features.rough) return "the plain C++ program knows no roughness";
+  for (const LobeRow& lobe : lobe_rows)
+    if (lobe.feature && scene.features.*lobe.feature && !plain::knows_lobe(lobe.name))
+      return fmt::format("the plain C++ program knows no {} lobe", lobe.name);
   if (scene.features.thin_walls) return "the plain C++ program knows no thin walls";
   if (scene.features.object_motion) return "the plain C++ program knows no motion";
-  if (scene.features.layers) return "the plain C++ program knows no layered materials";
   if (scene.features.sky) return "the plain C++ program knows no sky";
   if (!std::ranges::all_of(scene.lights, [](const Light& light) { return plain::knows_light(light.kind); }))
     return "the plain C++ program knows no such light";

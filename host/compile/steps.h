@@ -77,8 +77,8 @@ struct SurfaceInputs {
   std::span<const MediumDescription> media{};
   std::span<const ImageDescription> images{};
   std::span<const TextureDescription> textures{};
-  std::span<const MaterialDescription> materials{};
-  const FogDescription* fog = nullptr;  // that scatters
+  std::vector<const MaterialDescription*> materials{};  // as the integrator sees them
+  const FogDescription* fog = nullptr;                  // that scatters
 };
 struct Surfaces {
   SharedTable<Medium> media;
@@ -155,7 +155,7 @@ MappingInputs mapping_inputs(const SceneDescription& scene, const Known<Meshes>&
 /// A material's facts that instances depend on.
 struct SurfaceFacts {
   u32 flags, kind;
-  bool rough, shines;
+  bool shines;
 };
 struct FieldInterval {
   dvec3 lower, upper;

@@ -82,8 +82,8 @@ static inline MASK see_middles(const Scene* scene, SceneRays* rays, MASK lanes, 
     HAVING(HAS_RELIEF, add_relief(scene, rays->d, s, hit);)
     *bsdf = make_bsdfs(scene, s, met->before, met->after, hit);
     if (!HAS_SHADOW_FILTERS) return hit;
-    const SpecularSplits split = bsdf_specular(scene, bsdf, negate3(rays->d), hit);
-    const MASK passing = cut_away(bsdf, &split, hit) & may_cross(rays, hit);
+    const Interfaces interface = make_interface(scene, bsdf, negate3(rays->d), hit);
+    const MASK passing = cut_away(bsdf, &interface, hit) & may_cross(rays, hit);
     if (!any_lane(passing)) return hit;
     continue_behind(scene->info, rays, &met->hit, met->face.entering, passing);
     see_behind(scene, rays, ALL_LANES, met, counts, passing);

@@ -1,6 +1,6 @@
 // The lobes of surfaces, in the order in which a sample's number chooses among them. A lobe is a row here and
 // a file of plain/shade/lobes/.
-//   LOBE(feature of scenes that have it, name)
+//   LOBE(feature of scenes that have it, name, flags of a Material: one that has the lobe has one of them)
 // It defines, for light from wi to wo:
 //   share_NAME(scene, bsdf, wo, &lobes)      about the most that it returns: its share of samples
 //   sample_NAME(..., lobes, wo, u, &below)   a direction; below: behind the surface
@@ -24,24 +24,24 @@
   FEATURE(bool, HAS_HIGHLIGHTS, highlights, same)       /* some material has a highlight */
 // clang-format on
 
-#define PERFECT_LOBES(LOBE)   \
-  LOBE(HAS_SECONDARY, mirror) \
-  LOBE(HAS_SECONDARY, refraction)
+#define PERFECT_LOBES(LOBE)                      \
+  LOBE(HAS_SECONDARY, mirror, MATERIAL_REFLECTS) \
+  LOBE(HAS_SECONDARY, refraction, MATERIAL_TRANSMITS)
 
-#define SCATTERING_LOBES(LOBE) \
-  LOBE(HAS_ROUGH, ggx)         \
+#define SCATTERING_LOBES(LOBE)         \
+  LOBE(HAS_ROUGH, ggx, MATERIAL_ROUGH) \
   LOCAL_LOBES(LOBE)
 
 // Those that Whitted's integrator has lamps light.
 #define LOCAL_LOBES(LOBE) \
   MATTE_LOBES(LOBE)       \
-  LOBE(HAS_HIGHLIGHTS, highlight)
+  LOBE(HAS_HIGHLIGHTS, highlight, MATERIAL_SHINES | MATERIAL_METAL_ROUGH)
 
 // Those that scatter evenly, at least in part: their albedo is the colour of a surface in AOVs, guides aim
 // their paths, and their light is the diffuse part.
-#define MATTE_LOBES(LOBE)   \
-  LOBE(HAS_LAYERS, layered) \
-  LOBE(HAS_SURFACES, diffuse)
+#define MATTE_LOBES(LOBE)                     \
+  LOBE(HAS_LAYERS, layered, MATERIAL_LAYERED) \
+  LOBE(HAS_SURFACES, diffuse, ~0u)
 
 // Keys of materials in scene files that lobes read: members of the host's MaterialDescription, with defaults,
 // and a component of Material with a value by them.

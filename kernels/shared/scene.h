@@ -15,7 +15,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_THIN 32u          // no interior: transmits straight through and does not change the medium
 #define MATERIAL_VERTEX_COLOR 64u  // ambient and diffuse are multiplied by the vertex colour
 #define MATERIAL_CLEAR 128u        // no local terms or tint: invisible between equal indices
-#define MATERIAL_METAL_ROUGH 256u  // terms follow from metalness and roughness (shared/metal_rough.h)
+#define MATERIAL_METAL_ROUGH 256u  // terms follow from metalness and roughness (plain/shade/lowering.h)
 #define MATERIAL_ONE_SIDED 512u    // invisible from behind
 #define MATERIAL_LAYERED 1024u     // has layers (shared/layers.h)
 #define MATERIAL_SCATTERS_ONCE 2048u  // no multiple scattering between its facets
@@ -25,7 +25,7 @@ SUNDOG_SHARED_BEGIN
 #define MATERIAL_WALL 32768u          // thin, with an index: transmission.w
 #define MATERIAL_OFF_CAMERA 65536u    // a lamp invisible to camera rays
 #define MATERIAL_CATCHER 131072u      // path: the camera sees its shadows alone
-#define MATERIAL_ROUGH 262144u        // mirrors by facets
+#define MATERIAL_ROUGH 262144u        // reflects or transmits by facets
 #define MATERIAL_GROUP_SHIFT 20u      // above: the group of lights that its emission belongs to
 
 // Facets with a smaller alpha are treated as smooth by paths.

@@ -9,19 +9,11 @@
 #include "compile/layers/base.h"
 #include "compile/layers/film.h"
 #include "compile/layers/round_facets.h"
-#include "scene/materials/by_integrator.h"
+#include "models/values/lowering.h"
 #include "scene/pack.h"
 
 namespace sundog {
 namespace {
-
-/// The index whose normal reflectance is `weight` times that of `index`.
-double weighted_index(double index, double weight) {
-  const double root = (index - 1) / (index + 1);
-  const double wanted = std::min(weight * root * root, 0.999);
-  const double signed_root = std::copysign(std::sqrt(wanted), root);
-  return (1 + signed_root) / (1 - signed_root);
-}
 
 /// The index above the base, under a coat of this weight.
 double index_above(const OpenPbr& v, double coat_weight) {
@@ -30,17 +22,11 @@ double index_above(const OpenPbr& v, double coat_weight) {
 
 /// The base's index relative to that, or its inverse if below 1.
 double base_eta(const OpenPbr& v, double coat_weight) {
-  const double index = weighted_index(v.specular_ior / index_above(v, coat_weight), v.specular_weight);
-  return index < 1 ? 1 / index : index;
+  return lowering::base_index(v.specular_ior, std::sqrt(v.specular_weight), index_above(v, coat_weight));
 }
 
-/// A coat's facets blur the view of the base, which appears as rough as both together.
-double roughened(const OpenPbr& v, double coat_weight) {
-  if (!v.coat_bends) return v.specular_roughness;
-  const double both =
-      std::pow(std::min(1.0, std::pow(v.specular_roughness, 4) + 2 * std::pow(v.coat_roughness, 4)), 0.25);
-  return std::lerp(v.specular_roughness, both, coat_weight);
-}
+/// Of the coat: lowering::seen_roughness().
+double haze(const OpenPbr& v) { return v.coat_bends ? 2 * std::pow(v.coat_roughness, 4) : 0; }
 
 /// Internal reflectance of a coat for light from a base (OpenPBR 1.1, "Coat", "Darkening"): at normal
 /// incidence for a smooth base, diffuse for a rough one.
@@ -65,9 +51,9 @@ struct FilmColors {
 FilmColors film_colors(const OpenPbr& v, double coat_weight) {
   FilmColors colors;
   if (v.thin_film_weight == 0) return colors;
-  const double above = index_above(v, coat_weight),
-               index = weighted_index(v.specular_ior / above, v.specular_weight);
-  const ThinFilm film{above, v.thin_film_ior, above * index, v.thin_film_thickness * 1000};
+  const double above = index_above(v, coat_weight), eta = base_eta(v, coat_weight);
+  const double below = v.specular_ior < above ? above / eta : above * eta;
+  const ThinFilm film{above, v.thin_film_ior, below, v.thin_film_thickness * 1000};
   for (std::size_t i = 0; i < LAYER_STEPS; ++i) {
     const double cosine = std::max(double(i) / (LAYER_STEPS - 1), 1e-3);
     colors.glass[i] = film_color(film, cosine, dvec3(0));
@@ -129,7 +115,8 @@ BaseSurroundings surroundings(const OpenPbr& v, double coat_weight, const Above&
 }
 
 FacetWidths base_widths(const OpenPbr& v, double coat_weight) {
-  return wide_enough(facet_widths(roughened(v, coat_weight), v.specular_roughness_anisotropy));
+  const double roughness = lowering::seen_roughness(v.specular_roughness, haze(v), coat_weight);
+  return wide_enough(facet_widths(roughness, v.specular_roughness_anisotropy));
 }
 
 void set_numbers(const OpenPbr& v, Layers& to) {
@@ -151,7 +138,7 @@ void set_numbers(const OpenPbr& v, Layers& to) {
   to.inner_smooth = float(inner_reflectance(v.coat_ior, 0));
   to.inner_matte = float(inner_reflectance(v.coat_ior, 1));
   to.roughness = float(v.specular_roughness);
-  to.haze = v.coat_bends ? float(2 * std::pow(v.coat_roughness, 4)) : 0;
+  to.haze = float(haze(v));
   to.coat_bends = v.coat_bends ? float(v.coat_ior - 1) : 0;
   to.stretch = float(2 * stretched.x);
   to.narrowed = float(1 - v.specular_roughness_anisotropy);
@@ -190,10 +177,9 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
   const BaseSurroundings around = surroundings(v, v.coat_weight, above, film);
   const Facets facets({to.alpha_x, to.alpha_y});
   const BaseInterface base = base_interface(facets.albedo(around.interface), around);
-  const double of_glass = std::lerp(1.0, v.specular_roughness, base.straight);
   to.straight = float(base.straight);
-  to.inner =
-      float(inner_reflectance(v.coat_ior, std::lerp(of_glass, v.specular_roughness, v.base_metalness)));
+  to.inner = float(inner_reflectance(
+      v.coat_ior, lowering::base_diffuseness(base.straight, v.base_metalness, v.specular_roughness)));
   to.shine_scale = float(base.shine_scale);
   to.matte_scale = float(base.matte_scale);
   to.matte_scale_bare = float(base.matte_scale_bare);
@@ -221,18 +207,15 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
 }
 
 void add_layers(const SurfaceInputs& in, Surfaces& out) {
-  if (std::ranges::none_of(in.materials, [&](const MaterialDescription& m) {
-        return surface_for(in.paths, m).layers.has_value();
-      }))
+  if (std::ranges::none_of(in.materials, [](const MaterialDescription* m) { return m->layers.has_value(); }))
     return;
   LayerRows rows;
   std::vector<Layers> layers;
-  for (const MaterialDescription& any : in.materials) {
-    const MaterialDescription& material = surface_for(in.paths, any);
+  for (const MaterialDescription* described : in.materials) {
+    const MaterialDescription& material = *described;
     const MaterialTextures& textures = material.textures;
     layers.push_back(material.layers ? make_layers(*material.layers, textures, rows) : Layers{});
     if (!material.layers) continue;
-    out.features.layers = true;
     const bool coat = maps_coat(*material.layers, textures);
     out.features.coat_maps |= coat;
     out.features.specular_maps |= textures.specular >= 0;

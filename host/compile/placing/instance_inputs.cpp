@@ -1,16 +1,17 @@
 // Gathers what instances are made of.
 #include "compile/placing/instances.h"
 #include "compile/steps.h"
+#include "compile/surfaces/lobes.h"
 
 namespace sundog {
 namespace {
 
 SurfaceFacts facts_of(const Material& material) {
-  constexpr u32 known = MATERIAL_TRANSMITS | MATERIAL_REFLECTS | MATERIAL_SHADOW_OPAQUE | MATERIAL_THIN |
-                        MATERIAL_WALL | MATERIAL_FROSTED | MATERIAL_CATCHER;
+  u32 known = MATERIAL_SHADOW_OPAQUE | MATERIAL_THIN | MATERIAL_WALL | MATERIAL_FROSTED | MATERIAL_CATCHER;
+  for (const LobeRow& lobe : lobe_rows)
+    if (lobe.feature) known |= lobe.flags;
   const float4& shines = material.emission;
-  return {material.flags & known, material.kind, material.reflection.w > 0,
-          shines.x != 0 || shines.y != 0 || shines.z != 0};
+  return {material.flags & known, material.kind, shines.x != 0 || shines.y != 0 || shines.z != 0};
 }
 
 }  // namespace

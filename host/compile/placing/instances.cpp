@@ -13,6 +13,7 @@
 #include "compile/placing/instance_bounds.h"
 #include "compile/placing/motion.h"
 #include "compile/shapes.h"
+#include "compile/surfaces/lobes.h"
 #include "compile/surfaces/textures.h"
 #include "compile/touching/near_fields.h"
 #include "compile/view/local_origin.h"
@@ -183,11 +184,11 @@ class Placer {
     const SurfaceFacts& material = in_.surfaces.at(index);
     const u32 flags = surface_flags(material);
     instance.flags |= flags;
-    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS)) out_.features.secondary_rays = true;
-    if (material.flags & (MATERIAL_TRANSMITS | MATERIAL_REFLECTS) && material.rough)
-      out_.features.rough = true;
-    if (material.kind == MATERIAL_DIELECTRIC && material.flags & MATERIAL_TRANSMITS && material.rough &&
-        !(material.flags & MATERIAL_THIN))
+    for (const LobeRow& lobe : lobe_rows)
+      if (lobe.feature && material.flags & lobe.flags) out_.features.*lobe.feature = true;
+    constexpr u32 rough_glass = MATERIAL_TRANSMITS | MATERIAL_ROUGH;
+    if (material.kind == MATERIAL_DIELECTRIC &&
+        (material.flags & (rough_glass | MATERIAL_THIN)) == rough_glass)
       out_.features.rough_glass = true;
     if (material.flags & (MATERIAL_WALL | MATERIAL_FROSTED)) out_.features.thin_walls = true;
     if (material.shines) out_.features.emission = true;

@@ -11,7 +11,6 @@
 #include "compile/surfaces/textures.h"
 #include "models/values/refraction.h"
 #include "scene/integrators.h"
-#include "scene/materials/by_integrator.h"
 #include "scene/pack.h"
 #include "scene/spectra/upsample.h"
 #include "shared/spectra.h"
@@ -201,7 +200,8 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
 #undef SUNDOG_PACK_KEY
   packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
   packed.flags = material_flags(material);
-  if (packed.flags & MATERIAL_REFLECTS && packed.reflection.w > 0) packed.flags |= MATERIAL_ROUGH;
+  if (packed.flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS) && packed.reflection.w > 0)
+    packed.flags |= MATERIAL_ROUGH;
   packed.medium = material.medium < 0 ? 0 : media.at(static_cast<std::size_t>(material.medium));
   return packed;
 }
@@ -224,8 +224,8 @@ bool lacks_materials(const SceneDescription& scene) {
 u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
   const std::vector<u32> media = add_media(in, out);
   const bool bends = bends_light(out.media);
-  for (const MaterialDescription& any : in.materials) {
-    const MaterialDescription& material = surface_for(in.paths, any);
+  for (const MaterialDescription* described : in.materials) {
+    const MaterialDescription& material = *described;
     Material packed = make_material(material, media);
     if (is_frosted(in, material)) packed.flags |= MATERIAL_FROSTED;
     const bool of_world = !differs_in_index(out.media.rows()[packed.medium], out.media.rows()[0]);

@@ -7,6 +7,7 @@
 #include "compile/surfaces/materials.h"
 #include "compile/surfaces/textures.h"
 #include "scene/integrators.h"
+#include "scene/materials/by_integrator.h"
 
 namespace sundog {
 namespace {
@@ -21,8 +22,6 @@ bool scatters(const Medium& medium) {
   return s.x != 0 || s.y != 0 || s.z != 0;
 }
 
-bool has_highlight(const Material& material) { return (material.flags & MATERIAL_SHINES) != 0; }
-
 /// By the test of highlight() in kernels/plain/shade/lobes/highlight.cl.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
@@ -36,15 +35,17 @@ bool fog_scatters(const SceneDescription& scene) {
 }
 
 SurfaceInputs surface_inputs(const SceneDescription& scene) {
-  return {.file = file_of(scene),
-          .paths = integrator_of(scene.render.integrator).own_materials,
-          .caustics = scene.render.caustics,
-          .lacks_materials = lacks_materials(scene),
-          .media = scene.media,
-          .images = scene.images,
-          .textures = scene.textures,
-          .materials = scene.materials,
-          .fog = fog_scatters(scene) ? &scene.fog : nullptr};
+  SurfaceInputs in{.file = file_of(scene),
+                   .paths = integrator_of(scene.render.integrator).own_materials,
+                   .caustics = scene.render.caustics,
+                   .lacks_materials = lacks_materials(scene),
+                   .media = scene.media,
+                   .images = scene.images,
+                   .textures = scene.textures,
+                   .fog = fog_scatters(scene) ? &scene.fog : nullptr};
+  for (const MaterialDescription& material : scene.materials)
+    in.materials.push_back(&surface_for(in.paths, material));
+  return in;
 }
 
 Surfaces compile_surfaces(const SurfaceInputs& in) {
@@ -56,7 +57,6 @@ Surfaces compile_surfaces(const SurfaceInputs& in) {
   features.media = absorbs(surfaces.media[0]);
   features.absorption = std::ranges::any_of(surfaces.media, absorbs);
   features.scattering = in.paths && std::ranges::any_of(surfaces.media, scatters);
-  features.highlights = features.metal_rough || std::ranges::any_of(surfaces.materials, has_highlight);
   features.fractional_exponents = std::ranges::any_of(surfaces.materials, has_fractional_exponent);
   return surfaces;
 }

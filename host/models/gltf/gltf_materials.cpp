@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "models/gltf/gltf_layers.h"
-#include "shared/metal_rough.h"
+#include "models/values/lowering.h"
 #include "shared/scene.h"
 
 namespace sundog::models {
@@ -61,7 +61,7 @@ Dispersion read_dispersion(const JsonAt& at, double ior) {
 
 /// Subtracts the energy of a rough highlight from the transmission. Clear glass is unchanged.
 void take_highlight_from_transmission(MaterialDescription& material) {
-  const dvec3 returned = material.specular * highlight_energy(material.exponent);
+  const dvec3 returned = material.specular * lowering::highlight_energy(material.exponent);
   if (!material.layers && std::max({returned.x, returned.y, returned.z}) > 1e-3)
     material.transmission *= 1.0 - returned;
 }
@@ -123,10 +123,11 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) 
     metallic = pbr->number("metallicFactor", 1, unit_range);
     roughness = pbr->number("roughnessFactor", 1, unit_range);
   }
-  const double ior = read_ior(at), mirror = metal_mirror(metallic, roughness);
+  const double ior = read_ior(at), mirror = lowering::metal_mirror(metallic, roughness);
   const dvec3 plain = read_specular(at, reflectance(ior));
-  m.exponent = rough_exponent(roughness);
-  const double energy = highlight_energy(m.exponent), lobe = metal_highlight(energy, mirror);
+  m.exponent = lowering::rough_exponent(roughness);
+  const double energy = lowering::highlight_energy(m.exponent),
+               lobe = lowering::metal_highlight(energy, mirror);
   m.diffuse = base * glm::max(1 - mirror - lobe * glm::mix(plain, dvec3(1), metallic), dvec3(0));
   m.ambient = 0.1 * m.diffuse;
   m.specular = glm::mix(plain, base, metallic) * (lobe / energy);

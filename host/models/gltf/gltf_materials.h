@@ -17,7 +17,7 @@ enum class VertexColors { none, opaque, with_alpha };
 
 /// Validates all materials of a document, and adds those that triangles use to a model.
 ///
-/// base, metallic, roughness: by shared/metal_rough.h, with a reflectance of 0.04 or from KHR_materials_ior
+/// base, metallic, roughness: by plain/shade/lowering.h, with a reflectance of 0.04 or from KHR_materials_ior
 /// and _specular. KHR_materials_clearcoat adds a mirror, _unlit turns everything into emission.
 /// KHR_materials_transmission transmits that share of the base: with a volume (thickness above 0), through a
 /// dielectric with a medium that absorbs -ln(attenuationColor) / attenuationDistance; without one, through a

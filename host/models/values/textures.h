@@ -70,7 +70,7 @@ struct MaterialTextures {
 #undef SUNDOG_MAP_MEMBER
 };
 
-/// Metalness and roughness (shared/metal_rough.h), for materials with textures that change them.
+/// Metalness and roughness (plain/shade/lowering.h), for materials with textures that change them.
 struct MetalRough {
   glm::dvec3 base{1};
   double metalness = 1, roughness = 1, reflectance = 0.04;

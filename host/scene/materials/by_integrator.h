@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "models/values/lowering.h"
 #include "models/values/material.h"
-#include "shared/metal_rough.h"
 
 namespace sundog {
 
@@ -17,7 +17,7 @@ inline const MaterialDescription& surface_for(bool paths, const MaterialDescript
 /// with a texture of exponents an estimate.
 inline double highlight_albedo(const MaterialDescription& m) {
   if (m.textures.exponent >= 0) return 1;
-  return m.blinn ? highlight_energy(m.exponent) : 2 / (m.exponent + 1);
+  return m.blinn ? lowering::highlight_energy(m.exponent) : 2 / (m.exponent + 1);
 }
 
 /// Gives a Phong material that returns more light than it gets, as many files say, a dimmer one for paths:

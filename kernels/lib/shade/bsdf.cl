@@ -3,7 +3,6 @@
 #include "lib/path/segment.cl"
 #include "lib/shade/texels.cl"
 #include "shared/lobe_energy.h"
-#include "shared/metal_rough.h"
 #if HAS_CONES
 #include "generated/patterns.cl"
 #endif

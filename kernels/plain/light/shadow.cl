@@ -12,12 +12,15 @@ bool any_hits(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool cohe
 void nearest_to_light(UNIFORM const Scene* scene, SceneRay* ray, HERE, UNIFORM bool coherent, SurfaceHit* hit,
                       UNIFORM u32* counts);
 
-// A dielectric's part of light that straight shadow rays let through. The straight ray stands for one that
-// bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and nothing
-// to a total reflection that the bent ray would not meet.
-static inline float straight_transmittance(UNIFORM const Scene* scene, int here, int there, float cosine) {
+// A dielectric interface's transmittance for straight light between two media. The straight ray stands for
+// one that bends, whose slant is this one in the rarer medium: a pane at any angle then loses (1 - F)^2, and
+// nothing to a total reflection that the bent ray would not meet.
+static inline float transmittance_interface(UNIFORM const Scene* scene, const Face* face, int here, int there,
+                                            float cosine) {
   const float ratio = relative_index(scene->media, here, there), eta = real_max(ratio, 1.0f / ratio);
-  return 1.0f - fresnel_reflectance(cosine, refracted_cosine(cosine, eta), eta);
+  const float left = 1.0f - fresnel_reflectance(cosine, refracted_cosine(cosine, eta), eta);
+  if (!HAS_THIN_WALLS) return left;
+  return 1.0f - reflected_by_walls(scene, face->material, face->flags, cosine, 1.0f - left);
 }
 
 // The transmittance of a surface with its textures; `plain`: without.
@@ -42,8 +45,8 @@ static float3 textured_filter(UNIFORM const Scene* scene, const SceneRay* ray, c
 // The transmittance of a surface for straight light with its fuzz and coats; `through`: without. For paths
 // only: Whitted's layers take nothing from transmitted light.
 HAVING(HAS_LAYERED_FILTERS)
-static float3 layered_filter(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit,
-                             const Face* face, float3 through) {
+static float3 transmittance_layers(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit,
+                                   const Face* face, float3 through) {
   SurfaceInteraction s;
   interact(scene, ray->o, ray->d, hit, face, &s);
   set_footprints(scene, ray, hit->t, &s);
@@ -67,13 +70,10 @@ static inline float3 filtered(UNIFORM const Scene* scene, const SceneRay* ray, c
     if (mapped) passed = textured_filter(scene, ray, hit, face, passed);
   }
   if (HAS_LAYERED_FILTERS && (face->flags & (int)MATERIAL_LAYERED) != 0)
-    passed = layered_filter(scene, ray, hit, face, passed);
+    passed = transmittance_layers(scene, ray, hit, face, passed);
   if (!dielectric) return light * passed;
   const float cosine = real_min(fabs(dot(safe_unit3(face->outward), ray->d)), 1.0f);
-  float kept = straight_transmittance(scene, here, there, cosine);
-  if (HAS_THIN_WALLS)
-    kept = 1.0f - reflected_by_walls(scene, face->material, face->flags, cosine, 1.0f - kept);
-  return light * passed * kept;
+  return light * passed * transmittance_interface(scene, face, here, there, cosine);
 }
 
 // The shadow ray at its next hit. Whether it continues to the light, with the rest of it in `light`.

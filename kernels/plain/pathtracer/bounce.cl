@@ -44,10 +44,10 @@ static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
     possible *= relief_visibility(scene, &at->s, light.wi);
     possible *= walls_visibility(scene, ray, &at->s, light.wi, counts);
   }
-  if (HAS_MEDIA && below) possible *= 1.0f / (lobes->split.eta * lobes->split.eta);
+  if (HAS_MEDIA && below) possible *= 1.0f / (lobes->interface.eta * lobes->interface.eta);
   possible *= path->throughput;
   lamp->some = spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f;
-  lamp->light = kept_hero(scene, at, &lobes->split, path, possible);
+  lamp->light = kept_hero(scene, at, &lobes->interface, path, possible);
   lamp->ray = ray_to_light(scene, ray, met, at, &light, below);
   if (HAS_LIGHT_GROUPS) lamp->chosen = chosen;
   if (HAS_LIGHT_PARTS) {
@@ -92,10 +92,10 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
   const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.side, sample.wi) < 0.0f;
   path->throughput *= spectrum_of(&path->wavelengths, sample.weight);
-  if (HAS_DISPERSION && some) part_wavelengths(scene, at, &lobes->split, path, sample.specular && !below);
+  if (HAS_DISPERSION && some) part_wavelengths(scene, at, &lobes->interface, path, sample.specular && !below);
   if (HAS_RELIEF && !below && !sample.specular) path->throughput *= terminator(&at->s, sample.wi);
   if (HAS_MEDIA && below) {  // the radiance is spread, or comes together again
-    const float square = lobes->split.eta * lobes->split.eta;
+    const float square = lobes->interface.eta * lobes->interface.eta;
     path->throughput *= 1.0f / square;
     path->spread *= square;
   }
@@ -109,12 +109,12 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }
   if (HAS_LIGHT_PARTS) {
-    const bool straight = lobes->split.eta == 1.0f,
+    const bool straight = lobes->interface.eta == 1.0f,
                filtered = (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0;
     if (!(passes && (straight || (filtered && path->scatterings > 0))))
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
-  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || lobes->split.eta == 1.0f);
+  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || lobes->interface.eta == 1.0f);
   bool going = cut_out;
   if (some && !cut_out) going = survives(scene, path, dimension);
   if (!cut_out) ++path->depth;
@@ -145,7 +145,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
         path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met->hit, &at)));
   const bool deep = path->depth > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
-  const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.split);
+  const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.interface);
   const bool cut_out = nothing && may_cross(ray);
   if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
   if (deep && !cut_out && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {

@@ -55,7 +55,7 @@ static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* r
   }
   if (first) f->first = at.s.ns;
   f->tint = at_most_one(f->tint * sample.weight);
-  const bool cut_out = cut_away(&at.bsdf, &lobes.split) && may_cross(ray);
+  const bool cut_out = cut_away(&at.bsdf, &lobes.interface) && may_cross(ray);
   if (!cut_out) ++f->path.depth;
   leave_surface(scene, &met, &at, &sample, dot(at.s.side, sample.wi) < 0.0f, cut_out, ray);
   return true;

@@ -20,7 +20,7 @@ static inline void scatter_photon(UNIFORM const Scene* scene, const SurfaceInter
   const float cosine = dot(s->ng, wi), arriving = real_max(fabs(cosine), PHOTON_COSINE);
   float factor = 1.0f / (M_PI_F * arriving);
   if (HAS_RELIEF && !(cosine < 0.0f)) factor *= terminator(s, wi);
-  if (HAS_MEDIA && cosine < 0.0f) factor = factor / (lobes->split.eta * lobes->split.eta);
+  if (HAS_MEDIA && cosine < 0.0f) factor = factor / (lobes->interface.eta * lobes->interface.eta);
   sum->all += value * flux * factor;
   if (HAS_LIGHT_PARTS) {
     const bool below = cosine < 0.0f;
@@ -47,7 +47,7 @@ static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* pat
   while (next_photon(scene, &search, &wi, &flux))
     scatter_photon(scene, &at->s, &bsdf, &wide, -ray->d, wi, flux, &sum);
   const SampledSpectrum light =
-      kept_hero(scene, at, &lobes->split, path,
+      kept_hero(scene, at, &lobes->interface, path,
                 path->throughput * spectrum_of(&path->wavelengths, sum.all * (1.0f / search.area)));
   if (HAS_LIGHT_PARTS) {
     const SampledSpectrum all = spectrum_of(&path->wavelengths, sum.all);

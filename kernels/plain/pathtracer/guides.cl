@@ -9,7 +9,7 @@
 // Whether the surface sends paths to balls.
 static inline bool is_guided(const LobeSet* lobes) {
   bool matte = false;
-#define IS_MATTE(feature, name) \
+#define IS_MATTE(feature, name, flags) \
   if (feature) matte = matte || matte_##name(lobes) > 0.0f;
   MATTE_LOBES(IS_MATTE)
   return matte && perfect_share(lobes) <= 0.0f;

@@ -8,39 +8,39 @@ static inline void follow_hero(const SampledWavelengths* w, Bsdf* bsdf) {
 
 HAVING(HAS_DISPERSION)
 static inline bool parts_wavelengths(UNIFORM const Scene* scene, const SurfaceShading* at,
-                                     const SpecularSplit* split) {
-  return split->transmits && (at->bsdf.flags & (int)MATERIAL_THIN) == 0 &&
+                                     const Interface* interface) {
+  return interface->transmits && (at->bsdf.flags & (int)MATERIAL_THIN) == 0 &&
          disperses(scene, at->bsdf.before, at->bsdf.after);
 }
 
 // The reflectance of wavelength i over the hero's.
 HAVING(HAS_DISPERSION)
 static inline float reflectance_of(UNIFORM const Scene* scene, const SurfaceShading* at,
-                                   const SpecularSplit* split, float hero, UNIFORM u32 i) {
+                                   const Interface* interface, float hero, UNIFORM u32 i) {
   const float eta = relative_index_at(scene, at->bsdf.before, at->bsdf.after, wavelength_row(hero, i));
-  return fresnel_reflectance(split->cos_i, refracted_cosine(split->cos_i, eta), eta);
+  return fresnel_reflectance(interface->cos_i, refracted_cosine(interface->cos_i, eta), eta);
 }
 
 HAVING(HAS_DISPERSION)
-static void part_wavelengths(UNIFORM const Scene* scene, const SurfaceShading* at, const SpecularSplit* split,
+static void part_wavelengths(UNIFORM const Scene* scene, const SurfaceShading* at, const Interface* interface,
                              PathState* path, bool mirror) {
-  if (!parts_wavelengths(scene, at, split)) return;
+  if (!parts_wavelengths(scene, at, interface)) return;
   const float hero = path->wavelengths.hero;
-  if (!mirror || path->wavelengths.alone || !(split->f > 0.0f)) {
+  if (!mirror || path->wavelengths.alone || !(interface->f > 0.0f)) {
     terminate_secondary(&path->wavelengths, &path->throughput);
   } else {
-    path->throughput.y = path->throughput.y * reflectance_of(scene, at, split, hero, 1u) / split->f;
-    path->throughput.z = path->throughput.z * reflectance_of(scene, at, split, hero, 2u) / split->f;
-    path->throughput.w = path->throughput.w * reflectance_of(scene, at, split, hero, 3u) / split->f;
+    path->throughput.y = path->throughput.y * reflectance_of(scene, at, interface, hero, 1u) / interface->f;
+    path->throughput.z = path->throughput.z * reflectance_of(scene, at, interface, hero, 2u) / interface->f;
+    path->throughput.w = path->throughput.w * reflectance_of(scene, at, interface, hero, 3u) / interface->f;
   }
 }
 
 // Light that such a surface has from a lamp: the hero's alone.
 static inline SampledSpectrum kept_hero(UNIFORM const Scene* scene, const SurfaceShading* at,
-                                        const SpecularSplit* split, const PathState* path,
+                                        const Interface* interface, const PathState* path,
                                         SampledSpectrum light) {
   SampledSpectrum kept = light;
-  if (HAS_DISPERSION && parts_wavelengths(scene, at, split)) {
+  if (HAS_DISPERSION && parts_wavelengths(scene, at, interface)) {
     SampledWavelengths parted = path->wavelengths;
     terminate_secondary(&parted, &kept);
   }

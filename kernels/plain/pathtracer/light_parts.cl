@@ -16,7 +16,7 @@ static inline float3 glossy_scatter(UNIFORM const Scene* scene, const Bsdf* bsdf
   float unused;
   Bsdf glossy_bsdf = *bsdf;
   LobeSet glossy = *lobes;
-#define KEEP_GLOSSY(feature, name) \
+#define KEEP_GLOSSY(feature, name, flags) \
   if (feature) drop_matte_##name(&glossy_bsdf, &glossy);
   MATTE_LOBES(KEEP_GLOSSY)
   return bsdf_scatter(scene, &glossy_bsdf, &glossy, wo, wi, &unused);

@@ -77,8 +77,8 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
     photon->bent = true;
   }
   photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sample->weight * change);
-  if (HAS_DISPERSION) part_wavelengths(scene, at, &lobes->split, &photon->path, !below);
-  const bool cut_out = cut_away(&at->bsdf, &lobes->split) && may_cross(ray);
+  if (HAS_DISPERSION) part_wavelengths(scene, at, &lobes->interface, &photon->path, !below);
+  const bool cut_out = cut_away(&at->bsdf, &lobes->interface) && may_cross(ray);
   if (!cut_out) ++photon->path.depth;
   if (!cut_out && photon->path.depth > (int)scene->info->max_depth) return false;
   leave_surface(scene, met, at, sample, below, cut_out, ray);

@@ -6,7 +6,7 @@
 HAVING(HAS_CAUSTICS)
 static inline bool keep_wide_lobes(Bsdf* bsdf, LobeSet* lobes) {
   bool narrow = false;
-#define KEEP_WIDE(feature, name) \
+#define KEEP_WIDE(feature, name, flags) \
   if (feature) narrow = drop_narrow_##name(bsdf, lobes) || narrow;
   SCATTERING_LOBES(KEEP_WIDE)
   return narrow;

@@ -10,9 +10,9 @@ ENTRY static inline void spread_reflected(float curvature, SceneRay* child) {
 }
 
 // Snell's law for neighbouring rays perpendicular to the plane of incidence (Coddington's sagittal equation).
-ENTRY static inline void spread_transmitted(float curvature, const SpecularSplit* split, SceneRay* child) {
-  if (HAS_CONES && split->eta != 1.0f) {
-    const float inverse = 1.0f / split->eta, bend = split->cos_t - split->cos_i * inverse;
+ENTRY static inline void spread_transmitted(float curvature, const Interface* interface, SceneRay* child) {
+  if (HAS_CONES && interface->eta != 1.0f) {
+    const float inverse = 1.0f / interface->eta, bend = interface->cos_t - interface->cos_i * inverse;
     child->cone_spread = fma(-curvature * bend, child->cone_width, child->cone_spread * inverse);
   }
 }

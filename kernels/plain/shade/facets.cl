@@ -79,10 +79,10 @@ static inline float3 reflected_by(const MetFacet* facet, float3 wo) {
   if (HAS_ROUGH && facet->rough) return reflect_direction(-wo, facet->bsdf.ns);
   return reflected_direction(&facet->bsdf, wo);
 }
-static inline float3 transmitted_by(const MetFacet* facet, const SpecularSplit* split, float3 wo) {
-  if (HAS_ROUGH && facet->rough && split->eta != 1.0f)
-    return refract_direction(-wo, facet->bsdf.ns, split->cos_i, split->cos_t, split->eta);
-  return transmitted_direction(&facet->bsdf, split, wo);
+static inline float3 transmitted_by(const MetFacet* facet, const Interface* interface, float3 wo) {
+  if (HAS_ROUGH && facet->rough && interface->eta != 1.0f)
+    return refract_direction(-wo, facet->bsdf.ns, interface->cos_i, interface->cos_t, interface->eta);
+  return transmitted_direction(&facet->bsdf, interface, wo);
 }
 
 // The weight of light from a lobe of the given colour: its unmasked fraction on the way out, scaled for

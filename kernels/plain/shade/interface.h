@@ -8,6 +8,8 @@
 #include "shared/lobe_energy.h"
 #include "shared/lobes.h"
 #include "shared/textures.h"
+#define LOWERED float
+#include "plain/shade/lowering.h"
 
 // Objects: between their own space and the world, and moved in time.
 float3 object_points(UNIFORM __global const Instance* instance, float3 p);
@@ -31,12 +33,6 @@ float3 still_origins(const SurfaceHit* hit, UNIFORM u32 index, float3 o);
 float3 still_directions(const SurfaceHit* hit, UNIFORM u32 index, float3 d);
 float3 field_points(UNIFORM __global const Instance* instance, float3 p);
 float3 sdf_color(UNIFORM const Scene* scene, UNIFORM u32 index, float3 p);
-
-// Metal-rough materials.
-float metal_mirror(float metalness, float roughness);
-float rough_exponent(float roughness);
-float highlight_energy(float e);
-float metal_highlight(float energy, float mirror);
 
 typedef struct Parametrization {
   float u, v;

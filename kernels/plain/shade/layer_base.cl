@@ -181,13 +181,9 @@ static inline float grid_gain(UNIFORM const Scene* scene, UNIFORM __global const
   return fma(y - (float)row, far - near, near);
 }
 
-// The relative index of a dielectric base over what lies above it, which has the coat's index in proportion
-// to the coat's weight; inverted if below 1 (OpenPBR 1.1, "Coat", "Index of refraction").
+// The relative index of a dielectric base, above which the coat's index counts by its weight.
 static inline float base_eta(UNIFORM __global const Layers* m, float weight) {
-  const float above = fma(weight, m->coat_bends, 1.0f);
-  const float root = m->index_scale * fabs(m->index - above) / (m->index + above);
-  const float bounded = real_min(root, 0.99949987f);
-  return (1.0f + bounded) / (1.0f - bounded);
+  return base_index(m->index, m->index_scale, fma(weight, m->coat_bends, 1.0f));
 }
 // Sets the coat's weight for the texture value `coat`, and dependent members.
 HAVING(HAS_COAT_MAPS)
@@ -210,9 +206,7 @@ static inline void weigh_coat(UNIFORM __global const Layers* m, float coat, Laye
 // Sets the base's facet widths for `roughness`, as seen through the coat's.
 HAVING(HAS_LAYER_MAPS)
 static inline void widen_base(UNIFORM __global const Layers* m, float roughness, LayerBase* base) {
-  const float square = roughness * roughness;
-  const float both = real_sqrt(real_sqrt(real_min(1.0f, fma(square, square, m->haze))));
-  const float root = real_clamp(fma(coat_weight(m, base), both - roughness, roughness), 0.0f, 1.0f);
+  const float root = seen_roughness(roughness, m->haze, coat_weight(m, base));
   const float width = real_min(root * root * m->stretch, 1.0f);
   base->alpha_x = real_max(width, LEAST_LAYER_ALPHA);
   base->alpha_y = real_max(width * m->narrowed, LEAST_LAYER_ALPHA);
@@ -238,8 +232,7 @@ static inline void map_base(UNIFORM const Scene* scene, UNIFORM __global const L
     base->matte_scale = grid_number(scene, m, base, LAYER_GRID_MATTE_SCALE);
     base->matte_scale_bare = grid_number(scene, m, base, LAYER_GRID_MATTE_SCALE_BARE);
   }
-  const float of_glass = fma(base->straight, roughness - 1.0f, 1.0f);
-  const float matte = fma(metalness, roughness - of_glass, of_glass);
+  const float matte = base_diffuseness(base->straight, metalness, roughness);
   base->inner = fma(matte, m->inner_matte - m->inner_smooth, m->inner_smooth);
 }
 

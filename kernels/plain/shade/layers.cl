@@ -188,7 +188,7 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
 // The shares of samples for the viewer in wo, proportional to the lobes' maximum reflectance; and the layers'
 // attenuation of perfect reflection and transmission.
 static inline LayerShare make_shares(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
-                                     SpecularSplit* split) {
+                                     Interface* interface) {
   const float c = dot(bsdf->ns, wo);
   LayerShare shares = no_shares();
   if (is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material) {
@@ -203,8 +203,9 @@ static inline LayerShare make_shares(UNIFORM const Scene* scene, const Bsdf* bsd
       shares.coat = bsdf->there * (by_fuzz - by_both);
       shares.shine = bsdf->there * (by_both * fma(opaque, 1.0f - by_shine, of_metal));
       shares.matte = bsdf->there * (by_both * by_shine * opaque * greatest(bsdf->base));
-      split->kr = split->kr * left_by_layers(scene, m, bsdf, c, c);
-      split->kt = left_where_there(bsdf, split->kt, left_by_layers(scene, m, bsdf, c, -split->cos_t));
+      interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
+      interface->kt =
+          left_where_there(bsdf, interface->kt, left_by_layers(scene, m, bsdf, c, -interface->cos_t));
     }
   return shares;
 }

@@ -2,12 +2,12 @@
 #include "plain/shade/layers.cl"
 #include "plain/shade/microfacet.h"
 
-#define LOBE_SHARE(feature, name) HAVING(feature) float name;
+#define LOBE_SHARE(feature, name, flags) HAVING(feature) float name;
 
 // A surface's lobes for a viewer: the share of each, and what several of them read.
 typedef struct LobeSet {
   float all;                                                                   // the sum of the shares
-  PERFECT_LOBES(LOBE_SHARE) SCATTERING_LOBES(LOBE_SHARE) SpecularSplit split;  // as the layers leave it
+  PERFECT_LOBES(LOBE_SHARE) SCATTERING_LOBES(LOBE_SHARE) Interface interface;  // as the layers leave it
   HAVING(HAS_HIGHLIGHTS) float exponent;                                       // of the highlight
   HAVING(HAS_HIGHLIGHTS) bool blinn;
   HAVING(HAS_ROUGH) Microfacet rough;

@@ -4,11 +4,11 @@
 // Lobes of the surface that is seen from wo.
 ENTRY static inline LobeSet make_lobes(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo) {
   LobeSet lobes;
-  lobes.split = bsdf_specular(scene, bsdf, wo);
-  if (HAS_LAYERS) lobes.layers = make_shares(scene, bsdf, wo, &lobes.split);
-  if (HAS_ROUGH) lobes.rough = make_microfacets(scene, bsdf, &lobes.split, wo);
+  lobes.interface = make_interface(scene, bsdf, wo);
+  if (HAS_LAYERS) lobes.layers = make_shares(scene, bsdf, wo, &lobes.interface);
+  if (HAS_ROUGH) lobes.rough = make_microfacets(scene, bsdf, &lobes.interface, wo);
   lobes.all = 0.0f;
-#define ADD_LOBE(feature, name)                         \
+#define ADD_LOBE(feature, name, flags)                  \
   if (feature) {                                        \
     lobes.name = share_##name(scene, bsdf, wo, &lobes); \
     lobes.all += lobes.name;                            \
@@ -16,7 +16,7 @@ ENTRY static inline LobeSet make_lobes(UNIFORM const Scene* scene, const Bsdf* b
   PERFECT_LOBES(ADD_LOBE) SCATTERING_LOBES(ADD_LOBE) return lobes;
 }
 
-#define ADD_SHARE(feature, name) \
+#define ADD_SHARE(feature, name, flags) \
   if (feature) sum += lobes->name;
 static inline float perfect_share(const LobeSet* lobes) {
   float sum = 0.0f;
@@ -29,7 +29,7 @@ static inline float scattered_share(const LobeSet* lobes) {
   return sum;
 }
 
-#define ADD_ALBEDO(feature, name) \
+#define ADD_ALBEDO(feature, name, flags) \
   if (feature) sum += albedo_##name(scene, bsdf, lobes, wo);
 // About what the scattering lobes return of white surroundings.
 ENTRY static inline float3 scattered_albedo(UNIFORM const Scene* scene, const Bsdf* bsdf,
@@ -52,7 +52,7 @@ ENTRY static inline float3 surface_color(UNIFORM const Scene* scene, const Bsdf*
 ENTRY static inline float3 bsdf_scatter(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                         float3 wo, float3 wi, float* pdf) {
   LobeSum sum = {(float3)(0.0f), 0.0f};
-#define SCATTER(feature, name) \
+#define SCATTER(feature, name, flags) \
   if (feature) scatter_##name(scene, bsdf, lobes, wo, wi, &sum);
   SCATTERING_LOBES(SCATTER)
   *pdf = sum.pdf / (lobes->all > 0.0f ? lobes->all : 1.0f);
@@ -64,7 +64,7 @@ static inline BsdfSample sample_perfect(const Bsdf* bsdf, const LobeSet* lobes, 
   BsdfSample sample = {(float3)(0.0f), (float3)(0.0f), 0.0f, false};
   if (HAS_SECONDARY) {
     float end = 0.0f;
-#define SEND(feature, name)                            \
+#define SEND(feature, name, flags)                     \
   if (feature) {                                       \
     end += lobes->name;                                \
     if (at < end && !sample.specular) {                \
@@ -86,7 +86,7 @@ static inline BsdfSample sample_scattering(UNIFORM const Scene* scene, const Bsd
   BsdfSample sample = {bsdf->ns, (float3)(0.0f), 0.0f, false};
   bool chosen = false, below = false;
   float end = perfect_share(lobes);
-#define SAMPLE(feature, name)                                        \
+#define SAMPLE(feature, name, flags)                                 \
   if (feature) {                                                     \
     const LobeNumbers u = {at - end, u_x, u_y};                      \
     end += lobes->name;                                              \

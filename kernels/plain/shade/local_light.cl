@@ -8,7 +8,7 @@
 static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, float3 wi,
                                  bool met) {
   float3 light = (float3)(0.0f);
-#define ADD_LOCAL(feature, name) \
+#define ADD_LOCAL(feature, name, flags) \
   if (feature) local_##name(scene, bsdf, wo, wi, met, &light);
   LOCAL_LOBES(ADD_LOCAL)
   return light;
@@ -16,8 +16,8 @@ static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* bsdf, f
 
 // Adds the layers' share that a reflected ray stands for.
 static inline void mirror_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
-                                 SpecularSplit* split) {
+                                 Interface* interface) {
   if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material)
-  split->kr = along(split->kr, bsdf->there,
-                    mirrored_by_layers(scene, scene->layers + index, bsdf, dot(bsdf->ns, wo)));
+  interface->kr = along(interface->kr, bsdf->there,
+                        mirrored_by_layers(scene, scene->layers + index, bsdf, dot(bsdf->ns, wo)));
 }

@@ -96,7 +96,7 @@ static inline void map_term(UNIFORM __global const MaterialMaps* maps, const Slo
   if (has_slot(maps, slot)) *term *= values->of[place_of_slot(slot)].xyz;
 }
 
-// The terms of a metal-rough material (shared/metal_rough.h).
+// The terms of a metal-rough material (plain/shade/lowering.h).
 HAVING(HAS_METAL_ROUGH)
 ENTRY static inline void metal_rough_terms(UNIFORM __global const MaterialMaps* maps,
                                            const SlotValues* values, float3 tint, Bsdf* bsdf) {

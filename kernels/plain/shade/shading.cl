@@ -7,10 +7,11 @@
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:
 // reflected_direction().
 static inline void bend_normal(float3 d, SurfaceInteraction* s) {
-  const int glossy = (int)(MATERIAL_LAYERED | MATERIAL_ROUGH);
+  const int mirrors = (int)(MATERIAL_ROUGH | MATERIAL_REFLECTS);
+  const bool glossy = (s->flags & mirrors) == mirrors || (s->flags & (int)MATERIAL_LAYERED) != 0;
   const float3 mirrored = reflect_direction(d, s->ns);
   const float height = dot(s->side, mirrored), least = real_min(-0.9f * dot(s->side, d), 0.01f);
-  if ((s->flags & glossy) == 0 || !(height < least)) return;
+  if (!glossy || !(height < least)) return;
   const float3 flat = safe_unit3(along(mirrored, -height, s->side));
   const float3 lifted = along(flat * real_sqrt(1.0f - least * least), least, s->side);
   s->ns = safe_unit3(lifted - d);

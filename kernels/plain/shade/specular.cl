@@ -1,13 +1,13 @@
 // Perfect reflection and transmission (Whitted 1980). wo points to the viewer.
 #include "plain/shade/bsdf.h"
 
-// How a surface divides light between the two.
-typedef struct SpecularSplit {
+// A surface's interface: how it divides light between the two.
+typedef struct Interface {
   float3 kr, kt;
   bool branches, transmits;  // has either; transmits
   float eta, cos_i, cos_t;   // index behind over index before; cosines to ns, 1 if nothing bends
   float f;                   // Fresnel reflectance of a dielectric, else 0
-} SpecularSplit;
+} Interface;
 
 static inline float3 reflection_of(const Bsdf* bsdf, UNIFORM __global const Material* material) {
   if (HAS_MAPS) return bsdf->reflection;
@@ -47,33 +47,33 @@ static inline float reflected_by_walls(UNIFORM const Scene* scene, int material,
   return reflected;
 }
 
-ENTRY static inline SpecularSplit bsdf_specular(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo) {
-  SpecularSplit split = {(float3)(0.0f), (float3)(0.0f), false, false, 1.0f, 1.0f, 1.0f, 0.0f};
+ENTRY static inline Interface make_interface(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo) {
+  Interface interface = {(float3)(0.0f), (float3)(0.0f), false, false, 1.0f, 1.0f, 1.0f, 0.0f};
   bool dielectric = false;
-  split.branches = (bsdf->flags & (int)(MATERIAL_REFLECTS | MATERIAL_TRANSMITS)) != 0;
-  split.transmits = split.branches && (bsdf->flags & (int)MATERIAL_TRANSMITS) != 0;
-  if (split.branches) EACH_ALIKE(int, index, bsdf->material) {
+  interface.branches = (bsdf->flags & (int)(MATERIAL_REFLECTS | MATERIAL_TRANSMITS)) != 0;
+  interface.transmits = interface.branches && (bsdf->flags & (int)MATERIAL_TRANSMITS) != 0;
+  if (interface.branches) EACH_ALIKE(int, index, bsdf->material) {
       __global const Material* material = scene->materials + index;
-      split.kr = reflection_of(bsdf, material);
-      split.kt = transmission_of(bsdf, material);
+      interface.kr = reflection_of(bsdf, material);
+      interface.kt = transmission_of(bsdf, material);
       dielectric = material->kind == MATERIAL_DIELECTRIC;
     }
-  if (!(split.transmits || dielectric)) return split;
-  const bool bends = split.transmits && (bsdf->flags & (int)MATERIAL_THIN) == 0;
-  split.cos_i = real_clamp(dot(bsdf->ns, wo), 0.0f, 1.0f);
-  if (bends) split.eta = index_across(scene, bsdf);
-  split.cos_t = refracted_cosine(split.cos_i, split.eta);
-  const float bent = bends ? fresnel_reflectance(split.cos_i, split.cos_t, split.eta) : 0.0f;
-  const float f = reflected_by_walls(scene, bsdf->material, bsdf->flags, split.cos_i, bent);
+  if (!(interface.transmits || dielectric)) return interface;
+  const bool bends = interface.transmits && (bsdf->flags & (int)MATERIAL_THIN) == 0;
+  interface.cos_i = real_clamp(dot(bsdf->ns, wo), 0.0f, 1.0f);
+  if (bends) interface.eta = index_across(scene, bsdf);
+  interface.cos_t = refracted_cosine(interface.cos_i, interface.eta);
+  const float bent = bends ? fresnel_reflectance(interface.cos_i, interface.cos_t, interface.eta) : 0.0f;
+  const float f = reflected_by_walls(scene, bsdf->material, bsdf->flags, interface.cos_i, bent);
   if (dielectric) {
-    split.f = f;
-    split.kr = split.kr * f;
-    split.kt = split.kt * (1.0f - f);
-  } else if (split.transmits && split.cos_t <= 0.0f) {  // total internal reflection reflects everything
-    split.kr = split.kr + split.kt;
-    split.kt = (float3)(0.0f);
+    interface.f = f;
+    interface.kr = interface.kr * f;
+    interface.kt = interface.kt * (1.0f - f);
+  } else if (interface.transmits && interface.cos_t <= 0.0f) {  // all is reflected
+    interface.kr = interface.kr + interface.kt;
+    interface.kt = (float3)(0.0f);
   }
-  return split;
+  return interface;
 }
 
 static inline bool has_highlight(const Bsdf* bsdf) {
@@ -84,11 +84,11 @@ static inline bool has_highlight(const Bsdf* bsdf) {
 
 // Whether the surface is absent, because its material is cut away or seen from its missing side: light goes
 // straight on. Rays pass as many of them as unseen interfaces.
-ENTRY static inline bool cut_away(const Bsdf* bsdf, const SpecularSplit* split) {
+ENTRY static inline bool cut_away(const Bsdf* bsdf, const Interface* interface) {
   if (HAS_SHADOW_FILTERS) {
-    const float3 rest = split->kr + bsdf->diffuse;
-    return split->transmits && (bsdf->flags & (int)MATERIAL_THIN) != 0 && split->kt.x == 1.0f &&
-           split->kt.y == 1.0f && split->kt.z == 1.0f && rest.x + rest.y + rest.z == 0.0f &&
+    const float3 rest = interface->kr + bsdf->diffuse;
+    return interface->transmits && (bsdf->flags & (int)MATERIAL_THIN) != 0 && interface->kt.x == 1.0f &&
+           interface->kt.y == 1.0f && interface->kt.z == 1.0f && rest.x + rest.y + rest.z == 0.0f &&
            !has_highlight(bsdf);
   }
   return false;
@@ -101,12 +101,13 @@ static inline float3 reflected_direction(const Bsdf* bsdf, float3 wo) {
 }
 
 // Direction of transmission; a shading normal must not send it outside again.
-ENTRY static inline float3 transmitted_direction(const Bsdf* bsdf, const SpecularSplit* split, float3 wo) {
+ENTRY static inline float3 transmitted_direction(const Bsdf* bsdf, const Interface* interface, float3 wo) {
   const float3 d = -wo;
-  const float3 by_shading = refract_direction(d, bsdf->ns, split->cos_i, split->cos_t, split->eta);
+  const float3 by_shading =
+      refract_direction(d, bsdf->ns, interface->cos_i, interface->cos_t, interface->eta);
   const float cos_g = real_clamp(dot(bsdf->side, wo), 0.0f, 1.0f);
   const float3 by_face =
-      refract_direction(d, bsdf->side, cos_g, refracted_cosine(cos_g, split->eta), split->eta);
+      refract_direction(d, bsdf->side, cos_g, refracted_cosine(cos_g, interface->eta), interface->eta);
   const float3 bent = dot(by_shading, bsdf->side) < 0.0f ? by_shading : by_face;
-  return split->eta == 1.0f ? d : bent;
+  return interface->eta == 1.0f ? d : bent;
 }

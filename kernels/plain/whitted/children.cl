@@ -25,10 +25,10 @@ static bool spawn(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, c
 }
 
 // Whether a surface that bends light covers what is behind it.
-static inline bool covers_behind(const MetFacet* facet, const SpecularSplit* split) {
-  bool covers = split->eta != 1.0f;
+static inline bool covers_behind(const MetFacet* facet, const Interface* interface) {
+  bool covers = interface->eta != 1.0f;
   if (HAS_CLEAR_GLASS) covers = false;
-  if (HAS_CLEAR_GLASS && HAS_ROUGH) covers = split->eta != 1.0f && facet->rough;
+  if (HAS_CLEAR_GLASS && HAS_ROUGH) covers = interface->eta != 1.0f && facet->rough;
   return covers;
 }
 
@@ -40,9 +40,9 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   float u_x = 0.0f, u_y = 0.0f, way;
   if (HAS_ROUGH) bounce_numbers(tile, path, BOUNCE_DIRECTION, 0u, 1u, &u_x, &u_y);
   const MetFacet facet = meet_facet(scene, &at->bsdf, wo, u_x, u_y);
-  SpecularSplit split = bsdf_specular(scene, &facet.bsdf, wo);
-  if (!split.branches) return false;
-  mirror_layers(scene, &at->bsdf, wo, &split);
+  Interface interface = make_interface(scene, &facet.bsdf, wo);
+  if (!interface.branches) return false;
+  mirror_layers(scene, &at->bsdf, wo, &interface);
   float curvature = 0.0f;
   if (HAS_CONES) curvature = curvature_at(scene, &at->s);
   WaitingRay next = *path;
@@ -50,23 +50,23 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   SceneRay child = leaving_ray(scene, ray, met, at, reflected_by(&facet, wo), false, &way);
   child.t_max = INFINITY;
   spread_reflected(curvature, &child);
-  const bool simple = !split.transmits || split.kt.x + split.kt.y + split.kt.z == 0.0f;
-  next.throughput = path->throughput * split.kr;
-  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, 1.0f, split.kr, split.f, simple);
+  const bool simple = !interface.transmits || interface.kt.x + interface.kt.y + interface.kt.z == 0.0f;
+  next.throughput = path->throughput * interface.kr;
+  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, 1.0f, interface.kr, interface.f, simple);
   if (HAS_RANDOM) next.branch = child_branch(path->branch, 0u);
   spawn(scene, tile, &child, &next, COUNT_REFLECTION, counts);
 
-  if (!split.transmits) return false;
-  child = leaving_ray(scene, ray, met, at, transmitted_by(&facet, &split, wo), true, &way);
+  if (!interface.transmits) return false;
+  child = leaving_ray(scene, ray, met, at, transmitted_by(&facet, &interface, wo), true, &way);
   child.t_max = INFINITY;
-  spread_transmitted(curvature, &split, &child);
-  next.throughput = path->throughput * split.kt;
-  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, -1.0f, split.kt, 1.0f - split.f, false);
+  spread_transmitted(curvature, &interface, &child);
+  next.throughput = path->throughput * interface.kt;
+  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, -1.0f, interface.kt, 1.0f - interface.f, false);
   if (HAS_RANDOM) next.branch = child_branch(path->branch, 1u);
-  const bool nothing = cut_away(&facet.bsdf, &split), free = nothing && may_cross(ray);
+  const bool nothing = cut_away(&facet.bsdf, &interface), free = nothing && may_cross(ray);
   if (free) cross_further(ray, &child);
   next.depth = path->depth + (free ? 0 : 1);
-  if (covers_behind(&facet, &split)) next.depth = (path->depth + 1) | TURNED;
+  if (covers_behind(&facet, &interface)) next.depth = (path->depth + 1) | TURNED;
   if (spawn(scene, tile, &child, &next, COUNT_REFRACTION, counts)) {
     if (HAS_MATTES && is_straight(&next))
       cover_by(scene, tile, path->pixel, &at->s, -mean_of(next.throughput));

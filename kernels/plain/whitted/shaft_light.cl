@@ -123,7 +123,7 @@ static bool shaft_light(UNIFORM const Scene* scene, UNIFORM __global const Light
     if (cosine_of_rectangle(light, &seen, s->ns, &integral)) {
       *sum = light->color.xyz * (at->bsdf.diffuse * (integral * (1.0f / M_PI_F)));
 // Lobes that are neither: layers have no shafts, new ones may.
-#define COUNT_LOBE(feature, name) +(feature)
+#define COUNT_LOBE(feature, name, flags) +(feature)
       const bool others = 0 LOCAL_LOBES(COUNT_LOBE) > HAS_SURFACES + HAS_HIGHLIGHTS;
       if (!others && !has_highlight(&at->bsdf)) return false;
       left.bsdf.diffuse = (float3)(0.0f);

@@ -95,15 +95,15 @@ __kernel void run(__global const Material* materials, __global const Medium* med
   const REAL3 n = real3(-1.0f, 0.0f, 0.0f);  // of the first face; the second's is 120 degrees on
   const REAL3 d = real3(cos(in[i].x), -sin(in[i].x), 0.0f);
   Bsdfs bsdf = {n, n, n, n, 0, (int)materials[0].flags, 0, 1, in[i].y};
-  SpecularSplits split = bsdf_specular(&scene, &bsdf, negate3(d), ALL_LANES);
-  const REAL3 inside = transmitted_direction(&bsdf, &split, negate3(d), ALL_LANES);
+  Interfaces interface = make_interface(&scene, &bsdf, negate3(d), ALL_LANES);
+  const REAL3 inside = transmitted_direction(&bsdf, &interface, negate3(d), ALL_LANES);
   bsdf.side = real3(-0.5f, 0.8660254f, 0.0f);
   bsdf.ns = bsdf.side;
   bsdf.before = 1;
   bsdf.after = 0;
-  split = bsdf_specular(&scene, &bsdf, negate3(inside), ALL_LANES);
-  const REAL3 behind = transmitted_direction(&bsdf, &split, negate3(inside), ALL_LANES);
-  out[i] = split.cos_t > 0.0f ? acos(clamp(dot3(d, behind), -1.0f, 1.0f)) * (180.0f / M_PI_F) : 0.0f;
+  interface = make_interface(&scene, &bsdf, negate3(inside), ALL_LANES);
+  const REAL3 behind = transmitted_direction(&bsdf, &interface, negate3(inside), ALL_LANES);
+  out[i] = interface.cos_t > 0.0f ? acos(clamp(dot3(d, behind), -1.0f, 1.0f)) * (180.0f / M_PI_F) : 0.0f;
 }
 )";
 

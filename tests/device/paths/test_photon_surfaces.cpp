@@ -58,7 +58,7 @@ constexpr BallOnFloor with_layered{
     .floor = R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "specular_roughness": 0.42})"};
 constexpr BallOnFloor with_highlight{
     .floor = R"({"color": [0, 0, 0], "specular": {"color": [0.6, 0.6, 0.6], "exponent": 6}})"};
-#define WITH_LOBE(feature, name) with_##name,
+#define WITH_LOBE(feature, name, flags) with_##name,
 constexpr BallOnFloor with_every_lobe[] = {PERFECT_LOBES(WITH_LOBE) SCATTERING_LOBES(WITH_LOBE)};
 #undef WITH_LOBE
 

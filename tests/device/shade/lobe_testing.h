@@ -52,7 +52,7 @@ Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4
 #endif
   return bsdf;
 }
-#define SHARE_OF_LOBE(feature, name) +lobes.name
+#define SHARE_OF_LOBE(feature, name, flags) +lobes.name
 // Draws where `wi` has no length, else takes wi. Out: wi, density, weight or pi BSDF cos, whether it is specular,
 // and red of the lobes' albedo.
 __kernel void run(__global const Material* materials, __global const Medium* media, __global const float* energy,

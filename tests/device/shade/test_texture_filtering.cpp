@@ -209,12 +209,12 @@ __kernel void run(__global const ConeIn* in, __global float4* out, u32 count) {
   SceneRays child = rays;
   spread_reflected(curvature, &child, ALL_LANES);
   const float reflected = REAL_LANE(child.cone_spread, 0);
-  SpecularSplits split;
-  split.eta = (REAL)(in[i].eta);
-  split.cos_i = (REAL)(in[i].cos_i);
-  split.cos_t = (REAL)(in[i].cos_t);
+  Interfaces interface;
+  interface.eta = (REAL)(in[i].eta);
+  interface.cos_i = (REAL)(in[i].cos_i);
+  interface.cos_t = (REAL)(in[i].cos_t);
   child = rays;
-  spread_transmitted(curvature, &split, &child, ALL_LANES);
+  spread_transmitted(curvature, &interface, &child, ALL_LANES);
   out[i] = (float4)(reflected, REAL_LANE(child.cone_spread, 0), 0.0f, 0.0f);
 }
 )";

@@ -40,15 +40,15 @@ static inline bool is_frosted(const Microfacet* facets) {
 }
 
 static inline Microfacet make_microfacets(UNIFORM const Scene* scene, const Bsdf* bsdf,
-                                          const SpecularSplit* split, float3 wo) {
+                                          const Interface* interface, float3 wo) {
   Microfacet facets;
   facets.alpha = facet_width(scene, bsdf);
-  facets.rough = split->branches && facets.alpha >= LEAST_ALPHA;
-  facets.bends = facets.rough && split->transmits && split->eta != 1.0f;
+  facets.rough = interface->branches && facets.alpha >= LEAST_ALPHA;
+  facets.bends = facets.rough && interface->transmits && interface->eta != 1.0f;
   facets.transmits = facets.bends;
   if (HAS_THIN_WALLS) {
     const int kind = (int)(MATERIAL_THIN | MATERIAL_FROSTED);
-    facets.frosted = facets.rough && split->transmits && (bsdf->flags & kind) == kind;
+    facets.frosted = facets.rough && interface->transmits && (bsdf->flags & kind) == kind;
     facets.transmits = facets.bends || facets.frosted;
   }
   facets.mends = facets.rough && !facets.bends && gives_back(bsdf);
@@ -59,7 +59,7 @@ static inline Microfacet make_microfacets(UNIFORM const Scene* scene, const Bsdf
     facets.lambda_o = smith_lambda(cosine, facets.alpha);
     if (facets.mends) facets.gain = microfacet_gain(scene, cosine, facets.alpha);
     if (HAS_ROUGH_GLASS && facets.glass)
-      facets.further = find_further(scene, split->eta, cosine, facets.alpha);
+      facets.further = find_further(scene, interface->eta, cosine, facets.alpha);
   }
   return facets;
 }
@@ -78,9 +78,9 @@ static inline float3 facet_between(float3 n, float3 wo, float3 wi, float eta, bo
   return dot(n, h) < 0.0f ? -h : h;
 }
 
-// The probability that facets with this split reflect instead of transmitting.
-static inline float facet_reflects(const Microfacet* facets, const SpecularSplit* split) {
-  const float r = greatest(split->kr), t = greatest(split->kt);
+// The probability that facets of this interface reflect instead of transmitting.
+static inline float facet_reflects(const Microfacet* facets, const Interface* interface) {
+  const float r = greatest(interface->kr), t = greatest(interface->kt);
   const float part = r / real_max(r + t, 1e-30f);
   return facets->transmits ? part : 1.0f;
 }
@@ -112,19 +112,19 @@ static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   const float cos_i = dot(bsdf->ns, wi), wo_h = dot(wo, h), wi_h = dot(wi, h);
   Bsdf facet = *bsdf;
   facet.ns = h;
-  const SpecularSplit split = bsdf_specular(scene, &facet, wo);
-  const float chance = facet_reflects(facets, &split);
+  const Interface interface = make_interface(scene, &facet, wo);
+  const float chance = facet_reflects(facets, &interface);
   const float bent = fma(eta, wi_h, wo_h);
   const float jacobian =
       below ? eta * eta * fabs(wi_h) / real_max(bent * bent, 1e-20f) : 0.25f / real_max(wo_h, 1e-6f);
   const float cos_o = real_max(dot(bsdf->ns, wo), 1e-6f);
   const float seen = facet_pdf(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
   const float lambda_i = smith_lambda(fabs(cos_i), facets->alpha);
-  float3 color = below ? split.kt : split.kr;
+  float3 color = below ? interface.kt : interface.kr;
   if (facets->mends) {
     const float more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha), -1.0f);
     // Multiply scattered light of a frosted wall may leave on either side.
-    const float3 kept = is_frosted(facets) ? split.kr + split.kt : color;
+    const float3 kept = is_frosted(facets) ? interface.kr + interface.kt : color;
     color = (float3)(color.x * fma(kept.x, more, 1.0f), color.y * fma(kept.y, more, 1.0f),
                      color.z * fma(kept.z, more, 1.0f));
   }
@@ -134,15 +134,15 @@ static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, 
 }
 
 static inline float share_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, LobeSet* lobes) {
-  const float through = lobes->rough.transmits ? greatest(lobes->split.kt) : 0.0f;
-  return lobes->rough.rough ? greatest(lobes->split.kr) + through : 0.0f;
+  const float through = lobes->rough.transmits ? greatest(lobes->interface.kt) : 0.0f;
+  return lobes->rough.rough ? greatest(lobes->interface.kr) + through : 0.0f;
 }
 
 // Light that scatters between facets comes back: a rough interface returns about what a smooth one does.
 static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                 float3 wo) {
-  const float3 none = (float3)(0.0f), through = lobes->rough.transmits ? lobes->split.kt : none;
-  return lobes->rough.rough ? lobes->split.kr + through : none;
+  const float3 none = (float3)(0.0f), through = lobes->rough.transmits ? lobes->interface.kt : none;
+  return lobes->rough.rough ? lobes->interface.kr + through : none;
 }
 
 // Behind an interface the pdf is over directions there; the BSDF has no factor for radiance in media of
@@ -150,7 +150,7 @@ static inline float3 albedo_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, co
 static inline void scatter_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes, float3 wo,
                                float3 wi, LobeSum* sum) {
   const Microfacet* facets = &lobes->rough;
-  const float eta = lobes->split.eta, cos_i = dot(bsdf->ns, wi);
+  const float eta = lobes->interface.eta, cos_i = dot(bsdf->ns, wi);
   const bool above = facets->rough && is_above(bsdf, wi);
   const bool below = facets->transmits && cos_i < 0.0f && dot(bsdf->side, wi) < 0.0f;
   if (!(above || below)) return;
@@ -180,12 +180,12 @@ static inline float3 sample_ggx(UNIFORM const Scene* scene, const Bsdf* bsdf, co
   }
   Bsdf facet = *bsdf;
   facet.ns = visible_normal(bsdf->ns, wo, facets->alpha, u->x, u->y);
-  const SpecularSplit split = bsdf_specular(scene, &facet, wo);
+  const Interface interface = make_interface(scene, &facet, wo);
   const float3 reflected = reflect_direction(-wo, facet.ns);
-  *below = side >= facet_reflects(facets, &split);
+  *below = side >= facet_reflects(facets, &interface);
   if (!*below) return reflected;
   if (is_frosted(facets)) return reflect_direction(reflected, bsdf->ns);
-  return refract_direction(-wo, facet.ns, split.cos_i, split.cos_t, split.eta);
+  return refract_direction(-wo, facet.ns, interface.cos_i, interface.cos_t, interface.eta);
 }
 
 HAVING(HAS_CAUSTICS)

@@ -6,7 +6,7 @@ HAVING(HAS_SECONDARY);
 static inline float3 albedo_mirror(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                    float3 wo) {
   if (HAS_ROUGH && lobes->rough.rough) return (float3)(0.0f);
-  return lobes->split.kr;
+  return lobes->interface.kr;
 }
 
 static inline float share_mirror(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo, LobeSet* lobes) {
@@ -14,6 +14,6 @@ static inline float share_mirror(UNIFORM const Scene* scene, const Bsdf* bsdf, f
 }
 
 static inline float3 send_mirror(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float3* part) {
-  *part = lobes->split.kr;
+  *part = lobes->interface.kr;
   return reflected_direction(bsdf, wo);
 }

@@ -7,7 +7,7 @@ HAVING(HAS_SECONDARY);
 static inline float3 albedo_refraction(UNIFORM const Scene* scene, const Bsdf* bsdf, const LobeSet* lobes,
                                        float3 wo) {
   if (HAS_ROUGH && lobes->rough.transmits) return (float3)(0.0f);
-  return lobes->split.kt;
+  return lobes->interface.kt;
 }
 
 static inline float share_refraction(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
@@ -16,6 +16,6 @@ static inline float share_refraction(UNIFORM const Scene* scene, const Bsdf* bsd
 }
 
 static inline float3 send_refraction(const Bsdf* bsdf, const LobeSet* lobes, float3 wo, float3* part) {
-  *part = lobes->split.kt;
-  return transmitted_direction(bsdf, &lobes->split, wo);
+  *part = lobes->interface.kt;
+  return transmitted_direction(bsdf, &lobes->interface, wo);
 }
