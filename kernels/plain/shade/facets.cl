@@ -11,16 +11,19 @@ static inline float facet_width(UNIFORM const Scene* scene, const Bsdf* bsdf) {
   return width;
 }
 
-// Samples the normal of a facet seen by wo, by visible area (Dupuy and Benyoub 2023, "Sampling Visible GGX
-// Normals with Spherical Caps"). `alpha` is the width.
+// Samples the normal of a facet of width 1 by its area as seen from wo (Dupuy and Benyoub 2023, "Sampling
+// Visible GGX Normals with Spherical Caps"). Callers stretch wo before, the normal after.
+static inline float3 seen_area(float3 wo, float u_x, float u_y) {
+  const float z = fma(1.0f - u_y, 1.0f + wo.z, -wo.z), angle = 2.0f * M_PI_F * u_x;
+  const float side = real_sqrt(real_clamp(1.0f - z * z, 0.0f, 1.0f));
+  return (float3)(side * cos(angle), side * sin(angle), z) + wo;
+}
 static inline float3 visible_normal(float3 n, float3 wo, float alpha, float u_x, float u_y) {
   float3 s, t;
   tangent_frame(n, &s, &t);
   const float3 stretched =
       safe_unit3((float3)(alpha * dot(wo, s), alpha * dot(wo, t), real_max(dot(wo, n), 1e-6f)));
-  const float z = fma(1.0f - u_y, 1.0f + stretched.z, -stretched.z), angle = 2.0f * M_PI_F * u_x;
-  const float side = real_sqrt(real_clamp(1.0f - z * z, 0.0f, 1.0f));
-  const float3 h = (float3)(side * cos(angle), side * sin(angle), z) + stretched;
+  const float3 h = seen_area(stretched, u_x, u_y);
   return safe_unit3(n * real_max(h.z, 1e-6f) + (s * (alpha * h.x) + t * (alpha * h.y)));
 }
 
@@ -38,6 +41,24 @@ static inline bool is_rough_glass(UNIFORM const Scene* scene, const Bsdf* bsdf, 
     EACH_ALIKE(int, index, bsdf->material) glass = scene->materials[index].kind == MATERIAL_DIELECTRIC;
   return glass;
 }
+
+// The facets of a surface for a viewer, of which rays scatter by all (lobes/ggx.cl).
+typedef struct FurtherLight {
+  float lost;               // m(wo), also the share of the samples
+  float through;            // fraction transmitted
+  float mean, mean_behind;  // of m on the viewer's side and behind
+} FurtherLight;
+
+typedef struct Microfacet {
+  bool rough, bends;  // has facets; they also refract
+  bool transmits;     // they refract, or are those of a frosted wall
+  bool mends;         // the lobe is scaled by gains: microfacet_gain()
+  bool glass;         // refracting dielectrics with a separate multiple-scattering lobe
+  float alpha, lambda_o;
+  float gain;                           // of the viewer's side
+  HAVING(HAS_THIN_WALLS) bool frosted;  // thin walls with transmitting facets
+  HAVING(HAS_ROUGH_GLASS) FurtherLight further;
+} Microfacet;
 
 // The surface's facet, or the surface itself.
 typedef struct MetFacet {

@@ -2,7 +2,7 @@
 // microfacets (GGX; Heitz 2014, "Understanding the Masking-Shadowing Function"), fuzz (Estevez and Kulla
 // 2017, "Production Friendly Microfacet Sheen BRDF") and a rough matte ground (Portsmouth, Kutz and Hill
 // 2025, "EON: A Practical Energy-Preserving Rough Diffuse BRDF").
-#include "plain/shade/interface.h"
+#include "plain/shade/facets.cl"
 
 #define LEAST_COSINE 1e-6f
 
@@ -23,12 +23,10 @@ static inline float facets_at(float3 h, float alpha_x, float alpha_y) {
   return 1.0f / (M_PI_F * alpha_x * alpha_y * real_max(width * width, 1e-30f));
 }
 
-// Samples a facet seen by wo, by visible area (visible_normal() of facets.cl, anisotropic).
+// visible_normal() of anisotropic facets.
 static inline float3 seen_facet(float3 wo, float alpha_x, float alpha_y, float u_x, float u_y) {
-  const float3 stretched = safe_unit3((float3)(alpha_x * wo.x, alpha_y * wo.y, real_max(wo.z, LEAST_COSINE)));
-  const float z = fma(1.0f - u_y, 1.0f + stretched.z, -stretched.z), angle = 2.0f * M_PI_F * u_x;
-  const float side = real_sqrt(real_clamp(1.0f - z * z, 0.0f, 1.0f));
-  const float3 h = (float3)(side * cos(angle), side * sin(angle), z) + stretched;
+  const float3 h =
+      seen_area(safe_unit3((float3)(alpha_x * wo.x, alpha_y * wo.y, real_max(wo.z, LEAST_COSINE))), u_x, u_y);
   return safe_unit3((float3)(alpha_x * h.x, alpha_y * h.y, real_max(h.z, LEAST_COSINE)));
 }
 

@@ -1,6 +1,6 @@
 // Values that several lobes of shared/lobes.h read.
+#include "plain/shade/facets.cl"
 #include "plain/shade/layers.cl"
-#include "plain/shade/microfacet.h"
 
 #define LOBE_SHARE(feature, name, flags) HAVING(feature) float name;
 

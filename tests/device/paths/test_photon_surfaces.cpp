@@ -1,5 +1,5 @@
 // Photons on layered and glossy surfaces, of glass that moves, and where planes stand in their way: they
-// bring the light that paths find by chance, and no other.
+// bring the light that paths find by chance, and no other. Lamps' light on every local lobe.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,6 +60,7 @@ constexpr BallOnFloor with_highlight{
     .floor = R"({"color": [0, 0, 0], "specular": {"color": [0.6, 0.6, 0.6], "exponent": 6}})"};
 #define WITH_LOBE(feature, name, flags) with_##name,
 constexpr BallOnFloor with_every_lobe[] = {PERFECT_LOBES(WITH_LOBE) SCATTERING_LOBES(WITH_LOBE)};
+constexpr BallOnFloor with_every_local_lobe[] = {LOCAL_LOBES(WITH_LOBE)};
 #undef WITH_LOBE
 
 double greatest_over_mean(const Image& image) {
@@ -128,6 +129,23 @@ struct Motion {
 };
 
 }  // namespace
+
+TEST_CASE("Whitted's integrator gives every local lobe the light of a lamp that paths give it") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const BallOnFloor& with : with_every_local_lobe) {
+      SceneDescription scene = floor_behind_ball(small_spot, with.floor);
+      scene.objects.pop_back();
+      scene.render.caustics = false;
+      scene.render.max_depth = 1;
+      const Mean along_paths = mean_on(device, scene);
+      scene.render.integrator = "whitted";
+      const Mean classic = mean_on(device, scene);
+      CAPTURE(with.floor, classic.value.x, along_paths.value.x);
+      CHECK(classic.value.x > 0.01);
+      CHECK(classic.value.x == Approx(along_paths.value.x).epsilon(1e-3));
+    }
+  });
+}
 
 TEST_CASE("photons that every perfect lobe sends on bring to every scattering one what paths find") {
   on_picture_devices([&](const DeviceInfo& device) {

@@ -210,6 +210,13 @@ TEST_CASE("features follow the materials that are used") {
   scene.materials[1].metal_rough.emplace();
   CHECK(compile(scene).features.highlights);  // of its roughness
   scene.materials[1].metal_rough.reset();
+  MaterialDescription& unused = scene.materials[0];
+  unused.specular = dvec3(1);
+  unused.roughness = 0.5;
+  unused.layers.emplace();
+  flat = compile(scene);
+  CHECK_FALSE((flat.features.highlights || flat.features.rough || flat.features.layers));
+  unused = glass_sphere().materials[0];
 
   CHECK_FALSE(flat.features.fractional_exponents);
   for (const double exponent : {20.5, 65536.0}) {
