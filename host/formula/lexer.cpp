@@ -98,6 +98,7 @@ class Lexer {
       if ((c > ' ' && c < 127) || end > at_ + 1)
         what += " '" + std::string(text_.substr(at_, end - at_)) + "'";
       if (end > at_ + 1) what += ": formulas are written in ASCII";
+      if (c == '%') what += ": the rest of a division is mod(x, m)";
       if (c == '#') what += ": a formula has no directives and includes nothing";
       if (std::string_view("{}[]").find(c) != std::string_view::npos && c)
         what += ": a formula has only round brackets";

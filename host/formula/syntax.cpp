@@ -1,6 +1,8 @@
 // Recursive-descent parser of the formula language; FormulaLimits::nesting bounds its depth.
 #include "formula/syntax.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -8,6 +10,16 @@
 
 namespace sundog {
 namespace {
+
+/// What to write for a reserved word, which authors bring along from shading languages.
+std::string_view instead_of(std::string_view word, const Token& next) {
+  if (word == "for" || word == "while" || word == "do")
+    return ": a map is one iteration, and no text has loops";
+  if (word == "if" || word == "else") return ": a ? b : c chooses a value";
+  if (word == "return") return ": a text ends in its expression, without a word before it";
+  return next.kind == Token::Kind::name ? ": variables are named without their type"
+                                        : "; choose another name";
+}
 
 class Parser {
  public:
@@ -23,10 +35,10 @@ class Parser {
     FormulaBody result;
     while (skip_ends(), starts_statement())
       result.statements.push_back(next_statement(result.statements.size()));
+    if (tokens_[at_ + 1].kind == Token::Kind::name) refuse_reserved();
     result.result = expression();
     skip_ends();
-    if (here().kind != Token::Kind::end)
-      fail(here(), "expected the end after the expression, found " + quoted(here()));
+    if (here().kind != Token::Kind::end) fail(here(), "expected the end after the expression, " + found());
     return result;
   }
 
@@ -50,6 +62,20 @@ class Parser {
     if (token.kind == Token::Kind::end_of_statement) return "the statement's end";
     return "'" + token.text + "'";
   }
+  std::string found() const {
+    const bool power = is("*") && at_ > 0 && tokens_[at_ - 1].text == "*";
+    const bool both = here().text == "and", one = here().text == "or";
+    return "found " + quoted(here()) +
+           (power  ? ": powers are written a ^ n"
+            : both ? ": write &&"
+            : one  ? ": write ||"
+                   : "");
+  }
+  void refuse_reserved() const {
+    if (here().kind == Token::Kind::name && is_reserved_word(here().text))
+      fail(here(),
+           fmt::format("'{}' is a reserved word{}", here().text, instead_of(here().text, tokens_[at_ + 1])));
+  }
   const Token& here() const { return tokens_[at_]; }
   bool is(std::string_view sign) const { return here().kind == Token::Kind::sign && here().text == sign; }
   bool accept(std::string_view sign) {
@@ -58,7 +84,7 @@ class Parser {
     return true;
   }
   void expect(std::string_view sign) {
-    if (!accept(sign)) fail(here(), "expected '" + std::string(sign) + "', found " + quoted(here()));
+    if (!accept(sign)) fail(here(), "expected '" + std::string(sign) + "', " + found());
   }
   void skip_ends() {
     while (here().kind == Token::Kind::end_of_statement) ++at_;
@@ -85,15 +111,17 @@ class Parser {
   Statement statement() {
     Statement s;
     s.place = here().place;
-    if (here().kind == Token::Kind::name && is_reserved_word(here().text))
-      fail(here(), quoted(here()) + " is a reserved word; choose another name");
+    refuse_reserved();
     s.target = name();
     if (accept(".")) s.members = name();
     if (is("(")) fail(here(), "expected a statement \"name = expression\"");
+    for (const std::string_view sign : {"+", "-", "*", "/"})
+      if (is(sign) && tokens_[at_ + 1].text == "=")
+        fail(here(), fmt::format("expected '=', found '{1}=': write {0} = {0} {1} ...", s.target, sign));
     expect("=");
     s.value = expression();
     if (here().kind != Token::Kind::end_of_statement)
-      fail(here(), "expected an operator or the statement's end, found " + quoted(here()));
+      fail(here(), "expected an operator or the statement's end, " + found());
     return s;
   }
 
@@ -188,7 +216,7 @@ class Parser {
       expect(")");
       return value;
     }
-    if (token.kind != Token::Kind::name) fail(token, "expected a value, found " + quoted(token));
+    if (token.kind != Token::Kind::name) fail(token, "expected a value, " + found());
     ++at_;
     if (!accept("(")) return make(Expression::Kind::name, token.place, token.text, {});
     std::vector<Expression> operands;

@@ -158,7 +158,9 @@ FormulaDefinition read_listed(JsonObject& object) {
     for (const FormulaDefinition& d : formula_list()) names.push_back(d.name);
     if (const auto near = nearest_name(name.text(), names))
       name.fail(fmt::format("no surface \"{}\" in the list: did you mean \"{}\"?", name.text(), *near));
-    name.wanted("the name of a surface of the list (sundog formulas prints it)");
+    name.wanted(
+        "the name of a surface of the list (sundog formulas prints it; a text of your own is the \"map\" or "
+        "\"distance\" of an object of \"type\": \"formula\")");
   }
   FormulaDefinition d = *listed;
   read_arguments(object, d);

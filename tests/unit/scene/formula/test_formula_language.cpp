@@ -122,6 +122,13 @@ TEST_CASE("a place in the text is given by line and column") {
   check_failure("c = z", 1, 1, "'c' cannot be set");
   check_failure("z = abs", 1, 5, "is a function");
   check_failure("z z = 1", 1, 3, "expected '='");
+  check_failure("float d = length(z)", 1, 1, "variables are named without their type");
+  check_failure("for (i = 0; i < 3; i = i + 1) z = z * z", 1, 1, "no text has loops");
+  check_failure("if (z.x > 0) z = -z", 1, 1, "a ? b : c chooses a value");
+  check_failure("z += c", 1, 3, "found '+=': write z = z + ...");
+  check_failure("z = z ** 2 + c", 1, 8, "powers are written a ^ n");
+  check_failure("z = z.x > 0 and z.y > 0 ? z : c", 1, 13, "write &&");
+  check_failure("z = z * (i % 2)", 1, 12, "the rest of a division is mod(x, m)");
   check_failure("y.x = 1", 1, 1, "no value yet");
   check_failure("t = z + c", 1, 1, "must set z");
   check_failure("", 1, 1, "must set z");
@@ -138,7 +145,7 @@ TEST_CASE("a hostile formula gives its error and nothing else") {
   CHECK(failure_of_map("z = z + " + repeated("a", 100)).what.find("32 characters") != std::string::npos);
   check_failure("#include \"secret.h\"\nz = z", 1, 1, "includes nothing");
   check_failure("z = z\n#pragma OPENCL", 2, 1, "no directives");
-  check_failure("kernel = 1", 1, 1, "reserved word");
+  check_failure("kernel = 1", 1, 1, "'kernel' is a reserved word; choose another name");
   check_failure("__global = 1", 1, 1, "reserved word");
   check_failure("float16 = 1", 1, 1, "reserved word");
   check_failure("z = z + barrier(1)", 1, 9, "no function 'barrier'");
