@@ -166,6 +166,9 @@
 #define HAS_CONES 0
 #endif
 
+// Whether surfaces keep how far they are there: where textures may say so, and layers or facets ask.
+#define HAS_OPACITY ANY_OF(HAS_LAYERS, EITHER(HAS_MAPS, HAS_ROUGH, 0))
+
 // Whether a sample needs random numbers beyond the camera's.
 #define HAS_RANDOM ANY_OF(HAS_AREA_LIGHTS, HAS_ROUGH)
 

@@ -59,7 +59,7 @@ ENTRY static inline Bsdf make_bsdfs(UNIFORM const Scene* scene, const SurfaceInt
   bsdf.after = after;
   if (HAS_DISPERSION) bsdf.row = 0.0f;
   if (HAS_MAPS) bsdf.emission = (float3)(1.0f);
-  if (HAS_LAYERS) bsdf.there = 1.0f;
+  if (HAS_OPACITY) bsdf.there = 1.0f;
   if (HAS_COAT_MAPS) bsdf.coat = 1.0f;
   if (HAS_FUZZ_MAPS) bsdf.fuzz = (float3)(1.0f);
   if (HAS_SPECULAR_MAPS) bsdf.tint = (float3)(1.0f);

@@ -12,7 +12,7 @@ typedef struct Bsdf {
   HAVING(HAS_MAPS) float exponent;
   HAVING(HAS_LAYERS) float3 base;                // colour of layered materials, whose diffuse term is 0
   HAVING(HAS_LAYERS) float3 tangent, bitangent;  // unit, orthogonal to ns
-  HAVING(HAS_LAYERS) float there;                // opacity
+  HAVING(HAS_OPACITY) float there;               // opacity
   HAVING(HAS_LAYERS) bool coated;                // fuzz and coat are on the viewer's side
   HAVING(HAS_LAYERS) bool coated_behind;         // on the other side
   HAVING(HAS_LAYER_MAPS) float metalness, roughness, glass;  // of layered materials, with textures

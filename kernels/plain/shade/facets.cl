@@ -60,6 +60,12 @@ typedef struct Microfacet {
   HAVING(HAS_ROUGH_GLASS) FurtherLight further;
 } Microfacet;
 
+// The colour of facets where they are, of which opacity is a factor: that counts each time light meets them.
+static inline float3 own_color(const Bsdf* bsdf, float3 color) {
+  if (HAS_OPACITY) return color * (1.0f / real_max(bsdf->there, 1e-6f));
+  return color;
+}
+
 // The surface's facet, or the surface itself.
 typedef struct MetFacet {
   Bsdf bsdf;  // with the facet's normal if rough
@@ -118,7 +124,7 @@ static inline float3 facet_weight(const MetFacet* facet, const Bsdf* surface, fl
     const float seen = (1.0f + facet->lambda_o) / (1.0f + facet->lambda_o + smith_lambda(c, facet->alpha));
     const float kept = c > 0.0f && side * dot(surface->side, wi) > 0.0f ? seen : 0.0f;
     const float more = mends || facet->glass ? 1.0f / facet->energy - 1.0f : 0.0f;
-    const float3 own = facet->glass ? color * (1.0f / real_max(share, 1e-6f)) : color;
+    const float3 own = facet->glass ? color * (1.0f / real_max(share, 1e-6f)) : own_color(surface, color);
     weight =
         (float3)(kept * fma(own.x, more, 1.0f), kept * fma(own.y, more, 1.0f), kept * fma(own.z, more, 1.0f));
   }

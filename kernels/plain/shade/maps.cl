@@ -172,7 +172,7 @@ static inline void map_opacity(float opacity, Bsdf* bsdf) {
   bsdf->reflection *= opacity;
   bsdf->emission *= opacity;
   bsdf->transmission = with_open(bsdf->transmission, opacity);
-  if (HAS_LAYERS) bsdf->there = opacity;
+  if (HAS_OPACITY) bsdf->there = opacity;
 }
 
 // The textures of the surface's material.

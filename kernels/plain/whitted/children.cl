@@ -50,9 +50,10 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   SceneRay child = leaving_ray(scene, ray, met, at, reflected_by(&facet, wo), false, &way);
   child.t_max = INFINITY;
   spread_reflected(curvature, &child);
-  const bool simple = !interface.transmits || interface.kt.x + interface.kt.y + interface.kt.z == 0.0f;
+  const bool straight = interface.eta == 1.0f;  // what facets let through, they do not see
+  const bool mends = straight || interface.kt.x + interface.kt.y + interface.kt.z == 0.0f;
   next.throughput = path->throughput * interface.kr;
-  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, 1.0f, interface.kr, interface.f, simple);
+  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, 1.0f, interface.kr, interface.f, mends);
   if (HAS_RANDOM) next.branch = child_branch(path->branch, 0u);
   spawn(scene, tile, &child, &next, COUNT_REFLECTION, counts);
 
@@ -61,7 +62,9 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   child.t_max = INFINITY;
   spread_transmitted(curvature, &interface, &child);
   next.throughput = path->throughput * interface.kt;
-  next.throughput *= facet_weight(&facet, &at->bsdf, child.d, -1.0f, interface.kt, 1.0f - interface.f, false);
+  if (!straight)
+    next.throughput *=
+        facet_weight(&facet, &at->bsdf, child.d, -1.0f, interface.kt, 1.0f - interface.f, false);
   if (HAS_RANDOM) next.branch = child_branch(path->branch, 1u);
   const bool nothing = cut_away(&facet.bsdf, &interface), free = nothing && may_cross(ray);
   if (free) cross_further(ray, &child);

@@ -47,6 +47,19 @@ TEST_CASE("in a white furnace rough metal is white at every roughness, as its lo
   });
 }
 
+TEST_CASE("in a white furnace rough metal is white where it is partly there, by every integrator") {
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const char* integrator : {"whitted", "path"})
+      for (const double roughness : {0.5, 0.9}) {
+        INFO(integrator << " " << roughness);
+        SceneDescription scene = furnace(white_metal, roughness, {0.3, 0.1, 0});
+        scene.render.integrator = integrator;
+        scene.materials.back().opacity = 0.4;
+        CHECK(mean_of(scenes::render_on(device, scene).image) == Approx(1).epsilon(0.02));
+      }
+  });
+}
+
 TEST_CASE("in a white furnace rough glass is white at every roughness") {
   on_picture_devices([&](const DeviceInfo& device) {
     for (const double roughness : {0.1, 0.3, 0.6, 1.0}) {

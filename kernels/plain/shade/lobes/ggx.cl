@@ -124,7 +124,7 @@ static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   if (facets->mends) {
     const float more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha), -1.0f);
     // Multiply scattered light of a frosted wall may leave on either side.
-    const float3 kept = is_frosted(facets) ? interface.kr + interface.kt : color;
+    const float3 kept = is_frosted(facets) ? interface.kr + interface.kt : own_color(bsdf, color);
     color = (float3)(color.x * fma(kept.x, more, 1.0f), color.y * fma(kept.y, more, 1.0f),
                      color.z * fma(kept.z, more, 1.0f));
   }
