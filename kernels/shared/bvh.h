@@ -90,8 +90,8 @@ typedef struct Instance {
   u32 material;  // of a solid; mesh triangles have their own unless material != NO_MATERIAL
   u32 flags;     // INSTANCE_*
   u32 object;    // index of its scene object, for AOVs and messages
-  float touch;   // above 0 if its surfaces may touch others or each other: the gap that rounding may open (1
-                 // for fields)
+  float touch;   // above 0 if its surfaces may touch others or each other: the gap that rounding may open; 1
+                 // for fields of which rays remember their side
   u32 light;     // index of the light that it shows, or NO_LIGHT
   u32 first_prim;        // of a mesh: the index of its first triangle
   float4 world_center;   // centre of the bounds; w = half the diagonal (0 if unbounded)

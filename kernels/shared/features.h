@@ -15,7 +15,7 @@
   LOBE_FEATURES(FEATURE)                                                                                          \
   FEATURE(bool, HAS_MEDIA, media, same)                 /* some material has a medium, or the world absorbs */    \
   FEATURE(bool, HAS_TOUCHING, touching, same)           /* surfaces of solids with media may coincide */          \
-  FEATURE(bool, HAS_SIDES, near_fields, same)           /* fields may touch others, of which some show both walls */ \
+  FEATURE(bool, HAS_SIDES, near_fields, same)           /* some field shows both walls: rays remember their side */ \
   FEATURE(bool, HAS_ABSORPTION, absorption, same)       /* some medium absorbs */                                 \
   FEATURE(bool, HAS_SHADOW_FILTERS, shadow_filters, same) /* shadow rays pass transmissive objects */             \
   FEATURE(bool, HAS_FRACTIONAL_EXPONENTS, fractional_exponents, same) /* some exponent is fractional */           \

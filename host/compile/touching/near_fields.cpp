@@ -27,13 +27,14 @@ bool mark_near_fields(std::span<const Bounds> boxes, std::span<const SurfaceFact
     return (materials[field.material].flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER)) != 0;
   };
   bool any = false;
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (!shows_both(fields[i])) continue;
+    any = true;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
       const double slack = near * std::max(extent(boxes[i]), extent(boxes[k]));
-      if (!(shows_both(fields[i]) || shows_both(fields[k])) || !overlap(boxes[i], boxes[k], slack)) continue;
-      fields[i].touch = fields[k].touch = 1;
-      any = true;
+      if (k == i || overlap(boxes[i], boxes[k], slack)) fields[k].touch = 1;
     }
+  }
   return any;
 }
 

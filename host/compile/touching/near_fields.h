@@ -5,8 +5,9 @@
 
 namespace sundog {
 
-/// Marks fields that may touch others (Instance::touch): those whose boxes meet that of one whose walls both
-/// show, or all but. Returns whether there are any. `boxes`: of the fields.
+/// Marks fields of which rays remember their side (Instance::touch): those whose walls both show, as rays may
+/// start anywhere inside them, and those whose boxes all but meet one of them. Returns whether there are any.
+/// `boxes`: of the fields.
 bool mark_near_fields(std::span<const Bounds> boxes, std::span<const SurfaceFacts> materials,
                       std::span<Instance> fields);
 

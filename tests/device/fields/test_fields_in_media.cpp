@@ -85,6 +85,35 @@ TEST_CASE("paths that scatter in glass before the wall of liquid within it are o
   });
 }
 
+TEST_CASE("in a white surrounding, light that starts anywhere inside a fractal leaves it") {
+  const auto white = [](const std::string& medium, const std::string& inside) {
+    const nlohmann::json document = parse_json(fmt::format(R"({{"image": {{"width": 24, "height": 24,
+          "background": {{"bottom": [1, 1, 1], "top": [1, 1, 1]}}}},
+        "camera": {{"position": [0.3, 0.6, 4.5], "target": [0, 0, 0], "fov": 30}},
+        "render": {{"max_depth": 300, "samples": 16, "integrator": "path"}}, "media": {{"m": {}}},
+        "materials": {{"m": {{"type": "dielectric", "medium": "m"}}, "mirror": {{"diffuse": 0, "ambient": 0, "reflection": 1}}}},
+        "objects": [{{"type": "fractal", "formula": "mandelbulb", "material": "m"}} {}]}})",
+                                                           medium, inside),
+                                               "test.json");
+    const JsonContext context{"test.json"};
+    return read_scene(JsonValue(document, context));
+  };
+  const SceneDescription scattering = white(R"({"ior": 1.2, "scattering": [2, 2, 2]})", ""),
+                         mirrors = white(R"({"absorption": [1e-6, 1e-6, 1e-6]})",
+                                         R"(, {"type": "sphere", "radius": 0.6, "material": "mirror"})");
+  on_picture_devices([&](const DeviceInfo& device) {
+    for (const SceneDescription* scene : {&scattering, &mirrors}) {
+      const RenderResult result = scenes::render_on(device, *scene);
+      check_counts(result);
+      double sum = 0;
+      const auto channels = static_cast<std::size_t>(result.image.channels);
+      for (std::size_t i = 0; i < result.image.data.size(); i += channels)
+        sum += double(result.image.data[i]);
+      CHECK(sum * double(channels) / double(result.image.data.size()) == Approx(1).epsilon(0.003));
+    }
+  });
+}
+
 TEST_CASE("glass and liquid in one place, or closer than a ray arrives, are one glass, in any order") {
   const std::string julia = R"("type": "fractal", "formula": "julia", "parameters": {"seed": [0, 0, 0, 0]})";
   const std::string smaller = julia + R"(, "transform": [{"scale": 0.999}])", nothing = ball(0.1, 9);
