@@ -66,15 +66,6 @@ const FormulaDefinition* find_formula(const std::string& name) {
   return nullptr;
 }
 
-SdfDescription default_field(const FormulaDefinition& d) {
-  SdfDescription field;
-  field.name = d.name;
-  field.root.formula = {{{d, default_values(d), 1}}, d.iterations, d.bailout, d.safety};
-  field.lower = {d.bounds[0], d.bounds[1], d.bounds[2]};
-  field.upper = {d.bounds[3], d.bounds[4], d.bounds[5]};
-  return field;
-}
-
 const std::vector<FieldOperation>& field_operations() {
   static const std::vector<FieldOperation> list{
       {"hybrid", "steps, iterations, bailout, safety", "formulas applied in turn, each \"times\" in a row"},
