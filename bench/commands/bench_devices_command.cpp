@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "app/options/devices.h"
-#include "app/options/option_helpers.h"
 #include "base/image_compare.h"
 #include "bench/commands/bench_run.h"
 #include "bench/frames/frame_runner.h"
@@ -19,7 +18,6 @@
 #include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/runs/measure.h"
-#include "render/render.h"
 
 namespace sundog {
 namespace {
@@ -123,8 +121,6 @@ class DeviceRanking {
       subject.check = [made, common] { return made->check(*common); };
     }
   }
-
-  ~DeviceRanking() = default;
 
   /// Frames of all combinations in turn, on devices that are opened once. A picture that is not the first
   /// device's but for rounding is a problem, or not its to the bit where all devices of a combination draw

@@ -3,10 +3,8 @@
 // they shade differently, so outlines are what can be compared. Mandelbulber's Mandelbulb counts its angle
 // from the equator, which makes it another set of the same kind: there outlines differ.
 #include <fmt/format.h>
-#include <sched.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -71,35 +69,20 @@ struct Times {
   std::vector<double> wall, processor;  // seconds
 };
 
-double seconds(const timeval& t) {
-  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-}
-
-[[noreturn]] void become(const std::vector<std::string>& command, const std::string& log) {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(0, &one);
-  sched_setaffinity(0, sizeof one, &one);
-  if (!std::freopen(log.c_str(), "w", stdout) || dup2(1, 2) < 0) _exit(126);
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  execvp(words[0], words.data());
-  _exit(127);
-}
-
 /// Runs a program on one processor with its output in `log`. Throws when it fails.
 void run(const std::vector<std::string>& command, const std::string& log, Times& times) {
+  const auto processor = [] {
+    rusage used{};
+    ::getrusage(RUSAGE_CHILDREN, &used);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+  };
+  const double before = processor();
   const Stopwatch clock;
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) become(command, log);
-  int status = 0;
-  rusage used{};
-  if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0)
-    throw std::runtime_error(command[0] + " failed; see " + log);
+  const std::string line = fmt::format("taskset -c 0 '{}' > '{}' 2>&1", fmt::join(command, "' '"), log);
+  if (std::system(line.c_str()) != 0) throw std::runtime_error(command[0] + " failed; see " + log);
   times.wall.push_back(clock.seconds());
-  times.processor.push_back(seconds(used.ru_utime) + seconds(used.ru_stime));
+  times.processor.push_back(processor() - before);
 }
 
 /// Share of the pixels that show the background, which is magenta, in one picture alone.
