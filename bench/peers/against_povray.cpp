@@ -11,7 +11,6 @@
 
 #include "base/arguments.h"
 #include "base/environment.h"
-#include "base/error.h"
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"

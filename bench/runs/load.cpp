@@ -8,8 +8,6 @@
 #include <fstream>
 #include <string>
 
-#include "bench/runs/energy.h"
-
 namespace sundog {
 namespace {
 

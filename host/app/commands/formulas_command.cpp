@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/command.h"
-#include "app/options/option_helpers.h"
 #include "formula/functions.h"
 #include "formula/list.h"
 
