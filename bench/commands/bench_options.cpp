@@ -1,4 +1,4 @@
-// See bench_options.h.
+// Loads and compiles a bench's scenes with its overrides, and writes its reports.
 #include "bench/commands/bench_options.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See bench_run.h.
+// Collects facts and parts, writes the report while it grows, and ends with the exit status.
 #include "bench/commands/bench_run.h"
 
 #include <fmt/format.h>

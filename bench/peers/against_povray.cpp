@@ -50,12 +50,6 @@ struct Measured {
   ImageDifference difference;
 };
 
-Spread ratio(const std::vector<double>& theirs, const std::vector<double>& ours) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < theirs.size(); ++i) ratios.push_back(theirs[i] / ours[i]);
-  return spread(ratios);
-}
-
 SceneDescription load(const Options& options, const std::string& name) {
   std::vector<std::string> overrides{fmt::format("/image/width={}", options.width),
                                      fmt::format("/image/height={}", options.height), "/render/samples=1"};

@@ -1,4 +1,4 @@
-// See exact_tracer.h.
+// Crosses triangles (Moeller and Trumbore 1997) and the solids of bench/plain in double precision.
 #include "bench/rays/exact_tracer.h"
 
 #include <algorithm>

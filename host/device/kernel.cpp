@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
-#include "device/program.h"
 
 namespace sundog {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "formula/functions.h"
 #include "formula/list_parts.h"
-#include "formula/lower.h"
 #include "formula/syntax.h"
 
 namespace sundog {

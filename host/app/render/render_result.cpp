@@ -1,4 +1,4 @@
-// See render_result.h.
+// Denoises, tone-maps and saves the picture, then reports figures and the exit status.
 #include "app/render/render_result.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,6 @@
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/film/motion.h"
-#include "render/film/part.h"
 #include "render/film/sampling_report.h"
 #include "scene/dark_world.h"
 #include "scene/shot.h"

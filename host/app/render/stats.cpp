@@ -10,7 +10,6 @@
 
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
-#include "render/device/tuning.h"
 #include "render/film/sampling_report.h"
 #include "scene/integrators.h"
 

@@ -1,4 +1,4 @@
-// See read_leaf.h.
+// Reads parameters and texts, and lowers each formula once as a check.
 #include "scene/read/field_formulas.h"
 
 #include <fmt/format.h>
