@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "bench/runs/energy.h"
+
 namespace sundog {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "device/cl_status.h"
+#include "device/program.h"
 
 namespace sundog {
 namespace {

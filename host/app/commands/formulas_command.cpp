@@ -1,6 +1,7 @@
 // See formulas_command.h. JSON: "formulas" with each surface's source, text, limits, interval and parameters;
 // "operations" with what puts fields together; "functions" of the language.
 #include "app/commands/formulas_command.h"
+#include "base/arguments.h"
 
 #include <fmt/format.h>
 

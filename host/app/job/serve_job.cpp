@@ -13,6 +13,7 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "render/remote/hang_watch.h"
+#include "render/remote/remote_values.h"
 #include "render/remote/worker_process.h"
 
 namespace sundog {

@@ -9,6 +9,7 @@
 #include "app/options/picture_options.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
+#include "base/arguments.h"
 #include "base/file.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/group_names.h"
