@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "app/options/devices.h"
@@ -130,9 +131,8 @@ class DeviceRanking {
   void add_to(Report& report) const {
     std::vector<std::size_t> order(subjects_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-      if (subjects_[a].is_good() != subjects_[b].is_good()) return subjects_[a].is_good();
-      return subjects_[a].seconds().median < subjects_[b].seconds().median;
+    std::ranges::sort(order, {}, [&](std::size_t i) {
+      return std::tuple(!subjects_[i].is_good(), subjects_[i].seconds().median, i);
     });
     Table table{name_ + ": devices and their combinations, fastest first",
                 {{"devices", ""},
