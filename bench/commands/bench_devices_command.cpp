@@ -8,10 +8,10 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "app/options/devices.h"
-#include "app/options/option_helpers.h"
 #include "base/image_compare.h"
 #include "bench/commands/bench_run.h"
 #include "bench/frames/frame_runner.h"
@@ -19,7 +19,6 @@
 #include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/runs/measure.h"
-#include "render/render.h"
 
 namespace sundog {
 namespace {
@@ -124,8 +123,6 @@ class DeviceRanking {
     }
   }
 
-  ~DeviceRanking() = default;
-
   /// Frames of all combinations in turn, on devices that are opened once. A picture that is not the first
   /// device's but for rounding is a problem, or not its to the bit where all devices of a combination draw
   /// the same bits.
@@ -134,9 +131,8 @@ class DeviceRanking {
   void add_to(Report& report) const {
     std::vector<std::size_t> order(subjects_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-      if (subjects_[a].is_good() != subjects_[b].is_good()) return subjects_[a].is_good();
-      return subjects_[a].seconds().median < subjects_[b].seconds().median;
+    std::ranges::sort(order, {}, [&](std::size_t i) {
+      return std::tuple(!subjects_[i].is_good(), subjects_[i].seconds().median, i);
     });
     Table table{name_ + ": devices and their combinations, fastest first",
                 {{"devices", ""},

@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/options/option_helpers.h"
 #include "bench/commands/bench_run.h"
-#include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
 #include "device/device.h"
 #include "render/device/kernel_config.h"

@@ -1,4 +1,4 @@
-// See bench_options.h.
+// Loads and compiles a bench's scenes with its overrides, and writes its reports.
 #include "bench/commands/bench_options.h"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <sstream>
 #include <tuple>
 
@@ -16,16 +17,9 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
-#include "app/process/exit_status.h"
-#include "app/process/revision.h"
-#include "app/process/warnings.h"
-#include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "bench/report/machine.h"
 #include "device/build_options.h"
-#include "device/driver_folder.h"
-#include "scene/json/override.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -44,6 +38,12 @@ std::string quoted(std::string_view word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
+}
+
+void write_json(const std::string& file, const nlohmann::json& json) {
+  if (file.empty()) return;
+  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
+             program_environment()->faults);
 }
 
 }  // namespace
@@ -93,16 +93,6 @@ void check_report_files(const ReportFiles& files, const std::vector<std::string>
   for (const std::string& file : files.all())
     if (!file.empty()) check_writable(file);
 }
-
-namespace {
-
-void write_json(const std::string& file, const nlohmann::json& json) {
-  if (file.empty()) return;
-  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
-             program_environment()->faults);
-}
-
-}  // namespace
 
 void write_report(const Report& report, const ReportFiles& files) {
   write_json(files.json, report_json(report));
@@ -170,11 +160,8 @@ std::vector<int> parse_list(const char* option, const std::string& text, int low
 
 std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> parts;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    if (comma > at) parts.push_back(text.substr(at, comma - at));
-    at = comma + 1;
-  }
+  for (const auto part : std::views::split(text, ','))
+    if (!part.empty()) parts.emplace_back(part.begin(), part.end());
   return parts;
 }
 

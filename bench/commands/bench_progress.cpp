@@ -1,4 +1,4 @@
-// See bench_progress.h.
+// Draws a bar on a terminal, or writes a line every ten seconds.
 #include "bench/commands/bench_progress.h"
 
 #include <fmt/format.h>

@@ -1,17 +1,14 @@
-// See bench_run.h.
+// Collects facts and parts, writes the report while it grows, and ends with the exit status.
 #include "bench/commands/bench_run.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/revision.h"
@@ -25,7 +22,6 @@
 #include "bench/runs/energy.h"
 #include "device/driver_folder.h"
 #include "render/film/hash.h"
-#include "scene/json/override.h"
 
 namespace sundog {
 namespace {

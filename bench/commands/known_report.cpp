@@ -1,4 +1,4 @@
-// See known_report.h.
+// Reads the JSON of `bench --json` back into tables and runs.
 #include "bench/commands/known_report.h"
 
 #include <fmt/format.h>

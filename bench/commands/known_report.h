@@ -1,6 +1,5 @@
 // Reports that an earlier run of a bench wrote, read again.
 #pragma once
-#include <map>
 #include <string>
 #include <vector>
 

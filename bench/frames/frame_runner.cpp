@@ -1,4 +1,4 @@
-// See frame_runner.h.
+// Opens the devices' workers in a session, renders frames and compares their bits.
 #include "bench/frames/frame_runner.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See smaller_scene.h.
+// Grows a tiny frame until its time tells how large a picture fits the seconds.
 #include "bench/frames/smaller_scene.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See thread_budget.h.
+// Leaves out plain C++ at large sizes, then frames, then sizes, until the plan fits.
 #include "bench/frames/thread_budget.h"
 
 #include <fmt/format.h>

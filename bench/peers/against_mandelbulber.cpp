@@ -3,10 +3,7 @@
 // they shade differently, so outlines are what can be compared. Mandelbulber's Mandelbulb counts its angle
 // from the equator, which makes it another set of the same kind: there outlines differ.
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -71,35 +68,20 @@ struct Times {
   std::vector<double> wall, processor;  // seconds
 };
 
-double seconds(const timeval& t) {
-  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-}
-
-[[noreturn]] void become(const std::vector<std::string>& command, const std::string& log) {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(0, &one);
-  sched_setaffinity(0, sizeof one, &one);
-  if (!std::freopen(log.c_str(), "w", stdout) || dup2(1, 2) < 0) _exit(126);
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  execvp(words[0], words.data());
-  _exit(127);
-}
-
 /// Runs a program on one processor with its output in `log`. Throws when it fails.
-void run(const std::vector<std::string>& command, const std::string& log, Times& times) {
+void run(const std::string& command, const std::string& log, Times& times) {
+  const auto processor = [] {
+    rusage used{};
+    ::getrusage(RUSAGE_CHILDREN, &used);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+  };
+  const double before = processor();
   const Stopwatch clock;
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) become(command, log);
-  int status = 0;
-  rusage used{};
-  if (child < 0 || wait4(child, &status, 0, &used) != child || status != 0)
-    throw std::runtime_error(command[0] + " failed; see " + log);
+  if (std::system(fmt::format("taskset -c 0 {} > '{}' 2>&1", command, log).c_str()) != 0)
+    throw std::runtime_error(fmt::format("{}: it failed; see {}", command, log));
   times.wall.push_back(clock.seconds());
-  times.processor.push_back(seconds(used.ru_utime) + seconds(used.ru_stime));
+  times.processor.push_back(processor() - before);
 }
 
 /// Share of the pixels that show the background, which is magenta, in one picture alone.
@@ -118,39 +100,28 @@ nlohmann::json measure(const Surface& s, const Options& options) {
   const auto file = [&](const char* end) { return base.string() + end; };
   write_file(file(".json"), our_scene(s, options.size));
   write_file(file(".fract"), their_settings(s, options.size));
-  const std::vector<std::string> ours{SUNDOG_BINARY,       "render",   file(".json"),  "-o",
-                                      file("_sundog.png"), "--device", options.device, "--quiet"};
-  const std::vector<std::string> theirs{"mandelbulber2",
-                                        "-n",
-                                        "-C",
-                                        "-f",
-                                        "png",
-                                        "-r",
-                                        fmt::format("{0}x{0}", options.size),
-                                        "-o",
-                                        file("_mandelbulber.png"),
-                                        file(".fract")};
+  const std::string ours = fmt::format("'{}' render '{}' -o '{}' --device '{}' --quiet", SUNDOG_BINARY,
+                                       file(".json"), file("_sundog.png"), options.device);
+  const std::string theirs = fmt::format("mandelbulber2 -n -C -f png -r {0}x{0} -o '{1}' '{2}'", options.size,
+                                         file("_mandelbulber.png"), file(".fract"));
   Times warm_up, our_times, their_times;
   run(ours, file("_sundog.log"), warm_up);  // kernels are built and kept
   for (int i = 0; i < options.repeats; i++) {
     run(ours, file("_sundog.log"), our_times);
     run(theirs, file("_mandelbulber.log"), their_times);
   }
-  std::vector<double> wall, processor;
-  for (std::size_t i = 0; i < our_times.wall.size(); i++) {
-    wall.push_back(their_times.wall[i] / our_times.wall[i]);
-    processor.push_back(their_times.processor[i] / our_times.processor[i]);
-  }
+  const Spread wall = ratio(their_times.wall, our_times.wall),
+               processor = ratio(their_times.processor, our_times.processor);
   const double outlines = outline_difference(file("_sundog.png"), file("_mandelbulber.png"));
   fmt::print("{:12} {:8.2f} s {:8.2f} s {:9.1f} {:9.1f} {:9.2f} %\n", s.name, spread(our_times.wall).median,
-             spread(their_times.wall).median, spread(wall).median, spread(processor).median, 100 * outlines);
+             spread(their_times.wall).median, wall.median, processor.median, 100 * outlines);
   return {{"surface", s.name},
           {"sundog_seconds", our_times.wall},
           {"mandelbulber_seconds", their_times.wall},
           {"sundog_processor_seconds", our_times.processor},
           {"mandelbulber_processor_seconds", their_times.processor},
-          {"ratio", spread(wall).median},
-          {"processor_ratio", spread(processor).median},
+          {"ratio", wall.median},
+          {"processor_ratio", processor.median},
           {"outlines_differ", outlines}};
 }
 

@@ -11,7 +11,6 @@
 
 #include "base/arguments.h"
 #include "base/environment.h"
-#include "base/error.h"
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
@@ -50,12 +49,6 @@ struct Measured {
   std::uint64_t their_rays = 0, their_shadow_tests = 0;
   ImageDifference difference;
 };
-
-Spread ratio(const std::vector<double>& theirs, const std::vector<double>& ours) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < theirs.size(); ++i) ratios.push_back(theirs[i] / ours[i]);
-  return spread(ratios);
-}
 
 SceneDescription load(const Options& options, const std::string& name) {
   std::vector<std::string> overrides{fmt::format("/image/width={}", options.width),

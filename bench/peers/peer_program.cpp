@@ -1,4 +1,4 @@
-// See peer_program.h.
+// Parses the command line, measures each model, and writes the results as JSON.
 #include "peer_program.h"
 
 #include <fmt/format.h>
@@ -41,6 +41,12 @@ int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& o
     for (const std::string& model : options.models) results.push_back(measure(model));
     if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
   });
+}
+
+Spread ratio(const std::vector<double>& theirs, const std::vector<double>& ours) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < theirs.size(); ++i) ratios.push_back(theirs[i] / ours[i]);
+  return spread(ratios);
 }
 
 nlohmann::json to_json(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }

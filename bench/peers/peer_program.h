@@ -48,6 +48,9 @@ Elapsed elapsed(const Work& work) {
   return {clock.seconds(), processor_seconds() - start};
 }
 
+/// How many times as long as we the peer took, run by run.
+Spread ratio(const std::vector<double>& theirs, const std::vector<double>& ours);
+
 /// {"median", "min", "max"}.
 nlohmann::json to_json(const Spread& spread);
 

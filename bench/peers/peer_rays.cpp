@@ -1,4 +1,4 @@
-// See peer_rays.h.
+// Loads a model, chooses a part of the device, and frames the model for its rays.
 #include "peer_rays.h"
 
 #include <nlohmann/json.hpp>

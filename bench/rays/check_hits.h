@@ -1,7 +1,6 @@
 // Whether a tracer's answers are right. Each ray is traced by the plain C++ tracer as well (bench/plain:
 // floats, none of the kernels' code); where the two differ, double precision decides.
 #pragma once
-#include <span>
 
 #include "bench/plain/tracer.h"
 #include "bench/rays/ray_sets.h"

@@ -1,4 +1,4 @@
-// See exact_tracer.h.
+// Crosses triangles (Moeller and Trumbore 1997) and the solids of bench/plain in double precision.
 #include "bench/rays/exact_tracer.h"
 
 #include <algorithm>
@@ -48,8 +48,9 @@ bool crosses(const Bvh8Node& node, u32 slot, const HostRay& ray) {
   return near <= far;
 }
 
-void visit_leaves(const CompiledScene& scene, u32 word,
-                  const std::function<bool(const Bvh8Node&, u32)>& enter,
+using Enter = std::function<bool(const Bvh8Node&, u32 slot)>;
+
+void visit_leaves(const CompiledScene& scene, u32 word, const Enter& enter,
                   const std::function<void(u32)>& item) {
   if (word & BVH_LEAF) {
     const u32 first = word & BVH_FIRST_MASK;
@@ -60,8 +61,6 @@ void visit_leaves(const CompiledScene& scene, u32 word,
   for (u32 slot = 0; slot < BVH_WIDTH; ++slot)
     if (node.valid >> slot & 1u && enter(node, slot)) visit_leaves(scene, node.child[slot], enter, item);
 }
-
-using Enter = std::function<bool(const Bvh8Node&, u32)>;
 
 std::vector<HostHit> cross_instance(const CompiledScene& scene, u32 index, const HostRay& world_ray,
                                     bool all) {
@@ -123,12 +122,6 @@ std::optional<HostHit> trace_host(const CompiledScene& scene, const HostRay& ray
   return nearest.hit;
 }
 
-std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostRay& ray) {
-  Nearest nearest;
-  for (u32 i = 0; i < scene.info.instance_count; ++i) nearest.offer(cross_instance(scene, i, ray, true));
-  return nearest.hit;
-}
-
 std::vector<HostHit> crossings(const CompiledScene& scene, u32 instance, const HostRay& ray) {
   return cross_instance(scene, instance, ray, true);
 }
@@ -137,13 +130,6 @@ std::optional<HostHit> trace_instance(const CompiledScene& scene, u32 instance, 
   Nearest nearest;
   nearest.offer(cross_instance(scene, instance, ray, false));
   return nearest.hit;
-}
-
-std::vector<u32> leaf_items(const CompiledScene& scene, u32 word) {
-  std::vector<u32> items;
-  visit_leaves(
-      scene, word, [](const Bvh8Node&, u32) { return true; }, [&](u32 item) { items.push_back(item); });
-  return items;
 }
 
 }  // namespace sundog

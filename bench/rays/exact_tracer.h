@@ -24,9 +24,6 @@ struct HostHit {
 /// Nearest hit with t in (t_min, t_max), through the two-level BVH.
 std::optional<HostHit> trace_host(const CompiledScene& scene, const HostRay& ray);
 
-/// trace_host() without the BVH: tries every instance and every block of its mesh.
-std::optional<HostHit> trace_brute_force(const CompiledScene& scene, const HostRay& ray);
-
 /// Every crossing of one instance's surface, nearest first, t in (t_min, t_max).
 std::vector<HostHit> crossings(const CompiledScene& scene, u32 instance, const HostRay& ray);
 
@@ -35,8 +32,5 @@ std::optional<HostHit> trace_instance(const CompiledScene& scene, u32 instance, 
 
 /// The ray in an instance's object space (t unchanged).
 HostRay object_ray(const Instance& instance, const HostRay& ray);
-
-/// Children that a node holds, and the blocks or instances below a node or leaf word.
-std::vector<u32> leaf_items(const CompiledScene& scene, u32 word);
 
 }  // namespace sundog

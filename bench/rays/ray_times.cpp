@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "bench/report/machine.h"
 #include "render/device/kernel_config.h"
 #include "render/film/hash.h"
 

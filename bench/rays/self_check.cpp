@@ -1,4 +1,4 @@
-// See self_check.h.
+// Builds every kernel, compares a small picture with plain C++, and chooses advice by a problem's words.
 #include "bench/rays/self_check.h"
 
 #include <fmt/format.h>

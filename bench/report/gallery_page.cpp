@@ -1,3 +1,4 @@
+// The gallery page's style sheet, and its HTML from plain values.
 #include "bench/report/gallery_page.h"
 
 #include <fmt/format.h>

@@ -40,6 +40,10 @@ std::string time_text() {
   return text.data();
 }
 
+unsigned units_of(const DeviceInfo& device) {
+  return device.sub_units > 0 ? device.sub_units : device.compute_units;
+}
+
 }  // namespace
 
 Facts machine_facts() {
@@ -92,14 +96,6 @@ std::string device_place(const DeviceInfo& device) {
   const std::string label = device.label();
   return label.substr(0, label.find(' '));
 }
-
-namespace {
-
-unsigned units_of(const DeviceInfo& device) {
-  return device.sub_units > 0 ? device.sub_units : device.compute_units;
-}
-
-}  // namespace
 
 void add_device_row(Table& table, const DeviceInfo& device) {
   const auto number = [](auto value) { return Cell(static_cast<double>(value)); };

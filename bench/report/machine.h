@@ -1,8 +1,6 @@
 // Facts about the machine and its load that a report's figures depend on.
 #pragma once
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "bench/report/report.h"
 #include "device/devices.h"

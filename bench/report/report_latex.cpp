@@ -1,7 +1,6 @@
 // Reports for papers and for other tuners: LaTeX with booktabs, and the T4 format.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// See samples.h.
+// Medians, their intervals by order statistics, and the cost of an error by interpolation.
 #include "bench/report/samples.h"
 
 #include <time.h>

@@ -1,4 +1,4 @@
-// See load.h.
+// Reads /proc/stat and cpufreq, and charges each run with what other processes used.
 #include "bench/runs/load.h"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// See ratio.h.
+// Ratios of paired runs, or of calls by bootstrap, each with its interval.
 #include "bench/runs/ratio.h"
 
 #include <algorithm>

@@ -135,10 +135,8 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   film->figures = figures_of(film->result, compile_seconds);
   film->image = share(std::move(film->result.image));
   film->result.film = {};
-  std::vector<std::string> objects, materials;
-  for (const auto& object : description->objects) objects.push_back(object.name);
-  for (const auto& material : description->materials) materials.push_back(material.name);
-  film->texts = sundog::name_cryptomattes(film->result.aovs, {objects, materials});
+  film->texts = sundog::name_cryptomattes(
+      film->result.aovs, {sundog::names_of(description->objects), sundog::names_of(description->materials)});
   for (auto& [name, image] : film->result.aovs) film->aovs.emplace(name, share(std::move(image)));
   return film;
 }

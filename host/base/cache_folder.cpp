@@ -1,3 +1,4 @@
+// Finds or makes the cache folder, and says why one cannot be trusted.
 #include "base/cache_folder.h"
 
 #include <fmt/format.h>

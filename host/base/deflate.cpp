@@ -1,3 +1,4 @@
+// Calls libdeflate; a stream that unpacks to another size gives nothing.
 #include "base/deflate.h"
 
 #include <libdeflate.h>

@@ -1,3 +1,4 @@
+// Joins adopted threads that have ended, and waits for the others within a limit.
 #include "base/driver_threads.h"
 
 #include <optional>

@@ -1,4 +1,4 @@
-// See json_memory.h.
+// Counts values in one scan of the text, without parsing.
 #include "base/json_memory.h"
 
 #include <fmt/format.h>

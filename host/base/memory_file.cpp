@@ -1,4 +1,4 @@
-// See memory_file.h.
+// Calls memfd_create(), and fills the file by pwrite().
 #include "base/memory_file.h"
 
 #include <sys/mman.h>

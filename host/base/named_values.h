@@ -4,7 +4,9 @@
 #include <array>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace sundog {
 
@@ -19,6 +21,13 @@ template <class Row, std::size_t N>
 constexpr std::array<std::string_view, N> names_of(const std::array<Row, N>& table) {
   std::array<std::string_view, N> names{};
   std::ranges::transform(table, names.begin(), &Row::name);
+  return names;
+}
+
+template <class Row>
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) names.push_back(row.name);
   return names;
 }
 

@@ -1,4 +1,4 @@
-// See names.h.
+// Finds the nearest name by optimal string alignment.
 #include "base/names.h"
 
 #include <fmt/format.h>

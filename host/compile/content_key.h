@@ -1,7 +1,6 @@
 // Content keys of parts of a description: equal keys compile to equal bytes.
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <type_traits>
 

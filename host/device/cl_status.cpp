@@ -1,3 +1,4 @@
+// A table of OpenCL 1.2's status codes, and sentences for those a user can mend.
 #include "device/cl_status.h"
 
 #define CL_TARGET_OPENCL_VERSION 120

@@ -15,7 +15,6 @@
 #include "base/faults.h"
 #include "base/memory_file.h"
 #include "device/cl_status.h"
-#include "device/device.h"
 #include "device/driver_folder.h"
 #include "device/empty_launch.h"
 

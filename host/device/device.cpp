@@ -91,6 +91,27 @@ cl::Context make_context(const cl::Device& device, const DeviceInfo& info) {
   return context;
 }
 
+/// PoCL compiles a kernel once per local size, and again for grids below 65536 (its "smallgrid" variant).
+std::string variant(const std::string& kernel, const LaunchSize& grid) {
+  const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
+  return fmt::format("{} {}x{} {}", kernel, grid.local_x, grid.local_y, extent);
+}
+
+std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
+
+/// Faults injected by tests (base/faults.h).
+void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
+                          std::size_t group) {
+  const auto& faults = value_of(info.environment).faults;
+  if (!faults) return;
+  while (fault(faults, "hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
+  for (const char* kind : {"crash", "kill", "stop"}) faults->end_process(kind, place(info), items);
+  if (const auto status = fault(faults, "launch", place(info), items))
+    check_cl(*status, info, fmt::format("launch of {}", name));
+  if (const auto status = fault(faults, "group", place(info), group))
+    check_cl(*status, info, fmt::format("launch of {} in groups of {}", name, group));
+}
+
 }  // namespace
 
 DeviceInfo share_context(DeviceInfo info) {
@@ -192,31 +213,6 @@ void Device::save_programs() noexcept {
 void Device::check_argument(cl_int status, const std::string& name, cl_uint index) const {
   if (status != CL_SUCCESS) check_cl(status, info_, fmt::format("argument {} of kernel {}", index, name));
 }
-
-namespace {
-
-/// PoCL compiles a kernel once per local size, and again for grids below 65536 (its "smallgrid" variant).
-std::string variant(const std::string& kernel, const LaunchSize& grid) {
-  const char* extent = std::max(grid.x, grid.y) < 65536 ? "small" : "large";
-  return fmt::format("{} {}x{} {}", kernel, grid.local_x, grid.local_y, extent);
-}
-
-std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
-
-/// Faults injected by tests (base/faults.h).
-void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
-                          std::size_t group) {
-  const auto& faults = value_of(info.environment).faults;
-  if (!faults) return;
-  while (fault(faults, "hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
-  for (const char* kind : {"crash", "kill", "stop"}) faults->end_process(kind, place(info), items);
-  if (const auto status = fault(faults, "launch", place(info), items))
-    check_cl(*status, info, fmt::format("launch of {}", name));
-  if (const auto status = fault(faults, "group", place(info), group))
-    check_cl(*status, info, fmt::format("launch of {} in groups of {}", name, group));
-}
-
-}  // namespace
 
 std::optional<NvidiaLimits> Device::nvidia() const {
   // From cl_nv_device_attribute_query, by value: headers lack the names.

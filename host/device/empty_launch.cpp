@@ -1,3 +1,4 @@
+// Launches a kernel over no work, which makes drivers compile it for a work-group size.
 #include "device/empty_launch.h"
 
 #include <fmt/format.h>

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "device/embedded_kernels.h"
 #include "lanes/lanes.h"
 

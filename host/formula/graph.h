@@ -1,7 +1,6 @@
 // A formula as straight-line scalar code: nodes in evaluation order. Common subexpressions are shared and
 // constants folded, so differentiation leaves no dead code.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>

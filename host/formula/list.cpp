@@ -7,7 +7,6 @@
 
 #include "formula/functions.h"
 #include "formula/list_parts.h"
-#include "formula/lower.h"
 #include "formula/syntax.h"
 
 namespace sundog {
@@ -64,15 +63,6 @@ const FormulaDefinition* find_formula(const std::string& name) {
   for (const FormulaDefinition& d : formula_list())
     if (d.name == name || (d.old_name == name && !name.empty())) return &d;
   return nullptr;
-}
-
-SdfDescription default_field(const FormulaDefinition& d) {
-  SdfDescription field;
-  field.name = d.name;
-  field.root.formula = {{{d, default_values(d), 1}}, d.iterations, d.bailout, d.safety};
-  field.lower = {d.bounds[0], d.bounds[1], d.bounds[2]};
-  field.upper = {d.bounds[3], d.bounds[4], d.bounds[5]};
-  return field;
 }
 
 const std::vector<FieldOperation>& field_operations() {

@@ -13,9 +13,6 @@ const std::vector<FormulaDefinition>& formula_list();
 /// nullptr if unknown.
 const FormulaDefinition* find_formula(const std::string& name);
 
-/// A formula with default parameters, iterations, bailout and interval.
-SdfDescription default_field(const FormulaDefinition& definition);
-
 /// An operation that combines fields: its type in scene files, its keys, its effect.
 struct FieldOperation {
   std::string type, keys, meaning;

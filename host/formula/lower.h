@@ -8,7 +8,6 @@
 // differentiation of the scalar graph; the estimate divides by its largest stretch.
 // direction.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "formula/definition.h"

@@ -1,6 +1,5 @@
 // Signed distance fields as plain values: formulas combined by constructive operations, in an interval.
 #pragma once
-#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>

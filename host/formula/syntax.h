@@ -5,7 +5,6 @@
 //     z = t ^ power + c                ^ binds closest and to the right, then unary -, * /, + -, comparisons,
 //     &&, ||, ?: z.x = z.x > 0 ? z.x : -z.x       components x y z w, or several: v.zxy
 #pragma once
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>

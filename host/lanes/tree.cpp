@@ -44,6 +44,28 @@ namespace {
 
 int up_to(int at, int alignment) { return (at + alignment - 1) / alignment * alignment; }
 
+std::map<std::string, BuiltIn> built_ins() {
+  using enum Type::Kind;
+  std::map<std::string, BuiltIn> all{{"as_int", {1, nothing, integer, "AS_MASK"}},
+                                     {"as_uint", {1, nothing, natural, "AS_UINTS"}},
+                                     {"as_float", {1, nothing, real, "AS_REAL"}},
+                                     {"min", {2, integer, integer}},
+                                     {"max", {2, integer, integer}}};
+  for (const char* name : {"fma", "mad", "mix", "clamp"}) all[name] = {3, real, real};
+  for (const char* name : {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "step"})
+    all[name] = {2, real, real};
+  for (const char* name : {"sqrt", "rsqrt", "fabs",  "floor", "ceil", "trunc", "round", "rint", "sin",
+                           "cos",  "tan",   "asin",  "acos",  "atan", "exp",   "exp2",  "log",  "log2",
+                           "cbrt", "sign",  "sinpi", "cospi", "cosh", "sinh",  "tanh"})
+    all[name] = {1, real, real};
+  for (const char* name : {"sin", "cos", "sinpi", "cospi", "asin", "acos", "atan2", "fmod"})
+    all[name].cost = 30;
+  for (const char* name : {"pow", "cbrt", "tan"}) all[name].cost = 40;
+  for (const char* name : {"exp", "log"}) all[name].cost = 20;
+  all["sqrt"].cost = 6;
+  return all;
+}
+
 }  // namespace
 
 int size_of(const Type& type) {
@@ -74,32 +96,6 @@ bool compares(std::string_view sign) {
   return sign == "<" || sign == ">" || sign == "<=" || sign == ">=" || sign == "==" || sign == "!=";
 }
 bool joins(std::string_view sign) { return sign == "&&" || sign == "||"; }
-
-namespace {
-
-std::map<std::string, BuiltIn> built_ins() {
-  using enum Type::Kind;
-  std::map<std::string, BuiltIn> all{{"as_int", {1, nothing, integer, "AS_MASK"}},
-                                     {"as_uint", {1, nothing, natural, "AS_UINTS"}},
-                                     {"as_float", {1, nothing, real, "AS_REAL"}},
-                                     {"min", {2, integer, integer}},
-                                     {"max", {2, integer, integer}}};
-  for (const char* name : {"fma", "mad", "mix", "clamp"}) all[name] = {3, real, real};
-  for (const char* name : {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "step"})
-    all[name] = {2, real, real};
-  for (const char* name : {"sqrt", "rsqrt", "fabs",  "floor", "ceil", "trunc", "round", "rint", "sin",
-                           "cos",  "tan",   "asin",  "acos",  "atan", "exp",   "exp2",  "log",  "log2",
-                           "cbrt", "sign",  "sinpi", "cospi", "cosh", "sinh",  "tanh"})
-    all[name] = {1, real, real};
-  for (const char* name : {"sin", "cos", "sinpi", "cospi", "asin", "acos", "atan2", "fmod"})
-    all[name].cost = 30;
-  for (const char* name : {"pow", "cbrt", "tan"}) all[name].cost = 40;
-  for (const char* name : {"exp", "log"}) all[name].cost = 20;
-  all["sqrt"].cost = 6;
-  return all;
-}
-
-}  // namespace
 
 const BuiltIn* built_in_of(const std::string& name) {
   static const std::map<std::string, BuiltIn> all = built_ins();

@@ -1,3 +1,4 @@
+// Tries a file's name as written, with / for \, and without its folders.
 #include "models/beside.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Plans a worker for each device, runs the frame once, and returns its film and figures.
 #include "render/render.h"
 
 #include "render/device/local_worker.h"

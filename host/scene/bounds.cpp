@@ -1,3 +1,4 @@
+// Transforms the corners of each object's box, and places a camera before the box of all.
 #include "scene/bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Merges equal images, decodes them in parallel, and halves the largest until all fit.
 #include "scene/decode_images.h"
 
 #include <fmt/format.h>

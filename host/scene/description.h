@@ -1,7 +1,6 @@
 // SceneDescription: the scene file's content as plain values, with names resolved to indices. The loaders in
 // this folder create it; compile() reads it.
 #pragma once
-#include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>

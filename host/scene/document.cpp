@@ -9,7 +9,6 @@
 #include "scene/lamps.h"
 #include "scene/read/focus.h"
 #include "scene/read/parts.h"
-#include "scene/read/scene_reader.h"
 #include "scene/read/surfaces.h"
 
 namespace sundog {

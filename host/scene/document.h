@@ -1,6 +1,5 @@
 // Changes a scene as its JSON document was changed.
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 

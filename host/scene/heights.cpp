@@ -1,3 +1,4 @@
+// Filters texels in double precision, with the textures' wrap modes.
 #include "scene/heights.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // See formulas_command.h. JSON: "formulas" with each surface's source, text, limits, interval and parameters;
 // "operations" with what puts fields together; "functions" of the language.
 #include "app/commands/formulas_command.h"
+#include "base/arguments.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/command.h"
-#include "app/options/option_helpers.h"
 #include "formula/functions.h"
 #include "formula/list.h"
 

@@ -17,7 +17,6 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
-#include "app/process/save_image.h"
 #include "app/process/spawn_self.h"
 #include "app/process/warnings.h"
 #include "base/error.h"

@@ -16,7 +16,6 @@
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/names.h"
 #include "render/film/group_names.h"
 

@@ -1,3 +1,4 @@
+// Looks every 10 ms, once the job is interrupted, for ranks that say nothing.
 #include "app/job/rank_watch.h"
 
 #include <fmt/format.h>

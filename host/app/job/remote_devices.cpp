@@ -50,30 +50,6 @@ std::shared_ptr<const SceneDescription> read_frame(const json& settings, SceneFr
   return at_moment(*frames.read(at.frame), at);
 }
 
-}  // namespace
-
-std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const Moment& moment) {
-  scene.render.samples = moment.samples;
-  scene.render.seed = moment.seed;
-  return std::make_shared<const SceneDescription>(std::move(scene));
-}
-
-json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
-  return {{"scene", command.scene},
-          {"scene_text", is_standard_input(command.scene) ? json(standard_input()) : json()},
-          {"overrides", command.overrides},
-          {"frame", command.frame ? json(*command.frame) : json()},
-          {"moment", moment_json(command.moment)},
-          {"native_code", command.native_code},
-          {"outside_files", command.outside_files},
-          {"aovs", made_aovs(command)},
-          {"work_group", command.work_group},
-          {"device", device},
-          {"nice", false}};
-}
-
-namespace {
-
 std::unique_ptr<SceneFrames> open_frames(const json& settings) {
   if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
   const LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
@@ -155,6 +131,26 @@ std::shared_ptr<DeviceWorker> worker_of(ServedFrame& frame, const DeviceInfo& de
 }
 
 }  // namespace
+
+std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const Moment& moment) {
+  scene.render.samples = moment.samples;
+  scene.render.seed = moment.seed;
+  return std::make_shared<const SceneDescription>(std::move(scene));
+}
+
+json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
+  return {{"scene", command.scene},
+          {"scene_text", is_standard_input(command.scene) ? json(standard_input()) : json()},
+          {"overrides", command.overrides},
+          {"frame", command.frame ? json(*command.frame) : json()},
+          {"moment", moment_json(command.moment)},
+          {"native_code", command.native_code},
+          {"outside_files", command.outside_files},
+          {"aovs", made_aovs(command)},
+          {"work_group", command.work_group},
+          {"device", device},
+          {"nice", false}};
+}
 
 OpenedWorker open_worker(const json& settings, KeptOpen* kept) {
   const auto device = settings.at("device").get<DeviceInfo>();

@@ -1,4 +1,4 @@
-// See devices.h.
+// Lists devices, reads SUNDOG_DEVICE, and prints the warnings of a choice.
 #include "app/options/devices.h"
 
 #include <fmt/format.h>

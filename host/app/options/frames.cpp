@@ -1,3 +1,4 @@
+// Reads `--frames` lists such as 1,4,10..20, and fills frame numbers into file names.
 #include "app/options/frames.h"
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <ranges>
 #include <regex>
 #include <set>
 #include <string_view>
@@ -35,15 +37,13 @@ std::vector<int> parse_frames(const std::string& text, int step) {
   const auto add = [&](int frame) {
     if (known.insert(frame).second) frames.push_back(frame);
   };
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::string_view part = std::string_view(text).substr(at, end - at);
+  for (const auto range : std::views::split(text, ',')) {
+    const std::string_view part(range.begin(), range.end());
     const std::size_t dots = std::min(part.find(".."), part.size());
     const int first = frame_number(part.substr(0, dots), text),
               last = dots == part.size() ? first : frame_number(part.substr(dots + 2), text);
     for (int frame = first; frame <= last; frame += step) add(frame);
     for (int frame = first; frame >= last; frame -= step) add(frame);
-    at = end + 1;
   }
   return frames;
 }

@@ -1,3 +1,4 @@
+// Reads NAME=FACTOR[,#RRGGBB] into a linear colour per light group.
 #include "app/options/light_balance.h"
 
 #include <fmt/format.h>

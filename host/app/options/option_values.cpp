@@ -1,3 +1,4 @@
+// Reads sizes, numbers, splits and work-groups from the command line's text.
 #include "app/options/option_values.h"
 
 #include <fmt/format.h>

@@ -12,7 +12,6 @@
 #include <optional>
 
 #include "app/options/option_values.h"
-#include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"

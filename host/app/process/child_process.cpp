@@ -1,4 +1,4 @@
-// See child_process.h.
+// Reads a child's lines until it ends; kills it when its time is over.
 #include "app/process/child_process.h"
 
 #include <fcntl.h>

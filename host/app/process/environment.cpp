@@ -1,4 +1,4 @@
-// See environment.h.
+// Reads the variables once, and gives the layers below the means to start and end processes.
 #include "app/process/environment.h"
 
 #include <sys/resource.h>

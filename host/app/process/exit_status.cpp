@@ -1,3 +1,4 @@
+// Maps each exception type to its exit status, and names the option that mends the error.
 #include "app/process/exit_status.h"
 
 #include <fmt/format.h>

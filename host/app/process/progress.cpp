@@ -1,3 +1,4 @@
+// Formats the progress line for the terminal's width, and draws it at most ten times a second.
 #include "app/process/progress.h"
 
 #include <fmt/format.h>

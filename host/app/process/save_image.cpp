@@ -1,3 +1,4 @@
+// Writes the image; if the disk fails, keeps a checkpoint, or the image in the temporary folder.
 #include "app/process/save_image.h"
 
 #include <fmt/format.h>

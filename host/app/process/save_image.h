@@ -5,7 +5,6 @@
 #include <string>
 
 #include "base/image_io.h"
-#include "base/tone_map.h"
 #include "render/film/film.h"
 #include "render/film/part.h"
 

@@ -1,3 +1,4 @@
+// Counts the parts of a scene description and of its compiled tables, as JSON.
 #include "app/process/scene_figures.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See spawn_self.h.
+// Calls posix_spawn() on /proc/self/exe; the new process holds no signals back.
 #include "app/process/spawn_self.h"
 
 #include <fcntl.h>

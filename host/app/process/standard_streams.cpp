@@ -1,4 +1,4 @@
-// See standard_streams.h.
+// Keeps the real standard output aside, and reads the standard input once.
 #include "app/process/standard_streams.h"
 
 #include <fcntl.h>

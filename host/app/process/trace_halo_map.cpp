@@ -1,4 +1,4 @@
-// See trace_halo_map.h.
+// Tries each device in turn, then the host.
 #include "app/process/trace_halo_map.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See variables.h.
+// Picks variables by prefix, and the libraries that .icd files name.
 #include "app/process/variables.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// A thread renders the draft; the device's owner adopts it if it outlives the frame.
 #include "app/render/draft.h"
 
 #include <exception>

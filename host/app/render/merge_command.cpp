@@ -4,13 +4,12 @@
 #include <memory>
 
 #include "app/options/command.h"
-#include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/picture_options.h"
 #include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
-#include "base/error.h"
+#include "base/arguments.h"
 #include "base/file.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/group_names.h"

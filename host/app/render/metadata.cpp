@@ -1,4 +1,4 @@
-// See metadata.h.
+// Collects program, settings, devices and time under PNG's or OpenEXR's names.
 #include "app/render/metadata.h"
 
 #include <fmt/chrono.h>

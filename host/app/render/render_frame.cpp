@@ -1,4 +1,4 @@
-// See render_frame.h.
+// Loads, compiles, draws, saves and reports one frame, in this order.
 #include "app/render/render_frame.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,6 @@
 #include "app/process/warnings.h"
 #include "app/render/draft.h"
 #include "app/render/render_result.h"
-#include "base/error.h"
 #include "base/file.h"
 #include "bench/runs/energy.h"
 #include "render/device/tuning.h"

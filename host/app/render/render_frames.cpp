@@ -1,4 +1,4 @@
-// See render_frames.h.
+// Draws one frame while the next is loaded and the one before saved.
 #include "app/render/render_frames.h"
 
 #include <fmt/format.h>

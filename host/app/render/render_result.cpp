@@ -1,4 +1,4 @@
-// See render_result.h.
+// Denoises, tone-maps and saves the picture, then reports figures and the exit status.
 #include "app/render/render_result.h"
 
 #include <fmt/format.h>
@@ -19,12 +19,12 @@
 #include "app/render/metadata.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/named_values.h"
 #include "compile/placing/next_shot.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/film/motion.h"
-#include "render/film/part.h"
 #include "render/film/sampling_report.h"
 #include "scene/dark_world.h"
 #include "scene/shot.h"
@@ -95,13 +95,6 @@ Image take_image(const RenderCommand& command, const ToneMap& tone_map, RenderRe
   if (command.denoise && (result.complete || result.time_limited))
     Denoiser().denoise(image, result.aovs.at(feature_albedo), result.aovs.at(feature_normal));
   return shown_in(format_name(command), std::move(image), tone_map, dithers(command));
-}
-
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& things) {
-  std::vector<std::string> names;
-  for (const Named& thing : things) names.push_back(thing.name);
-  return names;
 }
 
 std::optional<Region> region_of(const RenderCommand& command, const ImageSettings& image) {

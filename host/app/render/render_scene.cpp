@@ -11,7 +11,6 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
-#include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
 #include "app/render/denoise.h"

@@ -10,7 +10,6 @@
 
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
-#include "render/device/tuning.h"
 #include "render/film/sampling_report.h"
 #include "scene/integrators.h"
 
@@ -129,6 +128,27 @@ json energy_json(const TimeLedger& times) {
           {"counted_by", times.joules_by}};
 }
 
+std::string work_group_text(const KernelTimes& times) {
+  return times.local_x > 0 ? fmt::format("{}x{}", times.local_x, times.local_y) : "chosen by the driver";
+}
+
+std::string device_text(const DeviceReport& report) {
+  std::string text = fmt::format("  {}: {:.1f} % of the pixels, {} tiles in {:.3f} s", report.info.label(),
+                                 100 * report.share, report.tiles, report.busy_seconds);
+  if (report.outrun > 0) text += fmt::format(", {} outrun by others", report.outrun);
+  if (report.ready)
+    text += report.kernels_cached ? ", kernels from the cache" : ", kernels compiled";
+  else if (!report.retired)
+    text += ", not ready before the end";
+  if (report.retired) text += ", retired";
+  text += "\n";
+  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
+  for (const auto& [name, kernel] : report.kernels)
+    text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
+                        kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));
+  return text;
+}
+
 }  // namespace
 
 json rays_json(const RayCounts& counts) {
@@ -218,31 +238,6 @@ std::vector<std::string> failures_text(const DeviceReport& report) {
   if (report.retired && !sentences.empty()) sentences.back() += "; the device was retired";
   return sentences;
 }
-
-namespace {
-
-std::string work_group_text(const KernelTimes& times) {
-  return times.local_x > 0 ? fmt::format("{}x{}", times.local_x, times.local_y) : "chosen by the driver";
-}
-
-std::string device_text(const DeviceReport& report) {
-  std::string text = fmt::format("  {}: {:.1f} % of the pixels, {} tiles in {:.3f} s", report.info.label(),
-                                 100 * report.share, report.tiles, report.busy_seconds);
-  if (report.outrun > 0) text += fmt::format(", {} outrun by others", report.outrun);
-  if (report.ready)
-    text += report.kernels_cached ? ", kernels from the cache" : ", kernels compiled";
-  else if (!report.retired)
-    text += ", not ready before the end";
-  if (report.retired) text += ", retired";
-  text += "\n";
-  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
-  for (const auto& [name, kernel] : report.kernels)
-    text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
-                        kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));
-  return text;
-}
-
-}  // namespace
 
 std::string details_text(const RenderResult& result, const TimeLedger& times) {
   std::string text;

@@ -1,3 +1,4 @@
+// Lists scenes below a folder within limits, and keeps uploads in a temporary folder.
 #include "app/serve/folder.h"
 
 #include <fmt/format.h>
@@ -27,6 +28,13 @@ bool is_scene(const fs::path& file) {
 bool is_below(const fs::path& folder, const fs::path& file) {
   const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   return end == folder.end() && rest != file.end();
+}
+
+fs::path private_folder() {
+  std::string name = (temporary_folder() / "sundog-XXXXXX").string();
+  if (!::mkdtemp(name.data()))
+    throw IoError(fmt::format("{}: a folder for uploads cannot be made: {}", name, std::strerror(errno)));
+  return name;
 }
 
 }  // namespace
@@ -72,17 +80,6 @@ std::string safe_file_name(const std::string& name) {
   if (safe.size() > 100) safe.resize(100);
   return safe.empty() || safe[0] == '.' ? "scene" + safe : safe;
 }
-
-namespace {
-
-fs::path private_folder() {
-  std::string name = (temporary_folder() / "sundog-XXXXXX").string();
-  if (!::mkdtemp(name.data()))
-    throw IoError(fmt::format("{}: a folder for uploads cannot be made: {}", name, std::strerror(errno)));
-  return name;
-}
-
-}  // namespace
 
 Uploads::~Uploads() { forget_all(); }
 

@@ -1,3 +1,4 @@
+// Makes the server's messages from descriptions, figures and errors.
 #include "app/serve/messages.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// A thread encodes each new picture once, and shows it to all pages.
 #include "app/serve/picture_stream.h"
 
 #include <fmt/format.h>

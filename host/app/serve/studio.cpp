@@ -13,7 +13,6 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "models/model.h"
-#include "render/device/tuning.h"
 #include "scene/json/parse.h"
 #include "scene/light_groups.h"
 

@@ -1,3 +1,4 @@
+// Matrices by primaries and white point; white points adapt by Bradford's cone responses.
 #include "base/colors/color_space.h"
 
 namespace sundog {

@@ -1,3 +1,4 @@
+// Adds an ordered threshold to each value before it is rounded to 8 bits.
 #include "base/pixels/dither.h"
 
 #include <algorithm>

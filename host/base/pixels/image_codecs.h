@@ -1,7 +1,6 @@
 // Codecs between bytes in memory and an Image, one format each. Only image_io.cpp and tests use them.
 // Decoders throw std::runtime_error with the reason; image_io.cpp adds the file's name.
 #pragma once
-#include <optional>
 #include <string>
 #include <string_view>
 

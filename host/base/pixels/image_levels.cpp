@@ -308,25 +308,6 @@ void make_levels(const StoredImage& image, SampleUse use, std::size_t most, cons
     make_levels<4>(image, use, most, take);
 }
 
-std::vector<StoredImage> levels_of(const StoredImage& image, SampleUse use, std::size_t most) {
-  std::vector<StoredImage> levels;
-  for (int width = image.width, height = image.height; (width > 1 || height > 1) && levels.size() < most;) {
-    StoredImage& level = levels.emplace_back();
-    level.width = width = std::max(1, width / 2);
-    level.height = height = std::max(1, height / 2);
-    level.channels = image.channels;
-    level.sample = image.sample;
-    level.data.resize(level.pixel_count() * level.pixel_bytes());
-  }
-  make_levels(image, use, levels.size(), [&](std::size_t number, int y, const std::uint8_t* samples) {
-    if (number == 0) return;
-    StoredImage& level = levels[number - 1];
-    const std::size_t row = static_cast<std::size_t>(level.width) * level.pixel_bytes();
-    std::memcpy(level.data.data() + static_cast<std::size_t>(y) * row, samples, row);
-  });
-  return levels;
-}
-
 }  // namespace
 
 const std::array<float, 256>& linear_bytes() {
@@ -370,12 +351,18 @@ void each_level_row(const StoredImage& image, SampleUse use, const TakeRow& take
   make_levels(image, use, std::numeric_limits<std::size_t>::max(), take);
 }
 
-std::vector<StoredImage> smaller_levels(const StoredImage& image, SampleUse use) {
-  return levels_of(image, use, std::numeric_limits<std::size_t>::max());
-}
-
 StoredImage half_size(const StoredImage& image, SampleUse use) {
-  return std::move(levels_of(image, use, 1).front());
+  StoredImage half;
+  half.width = std::max(1, image.width / 2);
+  half.height = std::max(1, image.height / 2);
+  half.channels = image.channels;
+  half.sample = image.sample;
+  half.data.resize(half.pixel_count() * half.pixel_bytes());
+  const std::size_t row = static_cast<std::size_t>(half.width) * half.pixel_bytes();
+  make_levels(image, use, 1, [&](std::size_t level, int y, const std::uint8_t* samples) {
+    if (level == 1) std::memcpy(half.data.data() + static_cast<std::size_t>(y) * row, samples, row);
+  });
+  return half;
 }
 
 }  // namespace sundog

@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 #include <functional>
-#include <vector>
 
 #include "base/pixels/stored_image.h"
 
@@ -30,9 +29,6 @@ using TakeRow = std::function<void(std::size_t level, int y, const std::uint8_t*
 /// edges use three weights a pixel, which preserves the mean (Guthe and Heckbert 2005, "Non-Power-of-Two
 /// Mipmapping").
 void each_level_row(const StoredImage& image, SampleUse use, const TakeRow& take);
-
-/// All levels after `image`.
-std::vector<StoredImage> smaller_levels(const StoredImage& image, SampleUse use);
 
 /// The first level after `image`, which must have more than one pixel.
 StoredImage half_size(const StoredImage& image, SampleUse use);

@@ -1,3 +1,4 @@
+// Picks the decoder by a file's first bytes, and converts stored samples to linear values.
 #include "base/pixels/stored_image.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 // See held_bailout.h.
 #include "compile/fields/held_bailout.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "formula/lower.h"

@@ -1,3 +1,4 @@
+// Writes a function for each pattern, and one that calls them by number.
 #include "compile/fields/pattern_code.h"
 
 #include <fmt/format.h>

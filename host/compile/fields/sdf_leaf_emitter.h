@@ -1,11 +1,9 @@
 // Emits one function of a leaf. Internal to leaf_code().
 #pragma once
 #include <array>
-#include <string>
 #include <vector>
 
 #include "compile/fields/sdf_emit.h"
-#include "compile/fields/sdf_leaf.h"
 #include "formula/lower.h"
 #include "formula/sdf.h"
 

@@ -1,3 +1,4 @@
+// Finds the scale of a field's values from its operations, bottom up.
 #include "compile/fields/sdf_scale.h"
 
 #include <algorithm>

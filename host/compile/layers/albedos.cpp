@@ -38,36 +38,6 @@ double over_hemisphere(int rows, int columns, const Value& value) {
   return sum * 2 / (rows * columns);
 }
 
-}  // namespace
-
-double layer_cosine(std::size_t column) { return std::max(double(column) / (LAYER_STEPS - 1), 0.01); }
-
-double at_cosine(const AlbedoRow& row, double cosine) {
-  const double x = std::clamp(cosine, 0.0, 1.0) * (LAYER_STEPS - 1);
-  const auto left = std::min(static_cast<std::size_t>(x), std::size_t{LAYER_STEPS - 2});
-  return std::lerp(row[left], row[left + 1], x - double(left));
-}
-
-dvec3 viewer(double cosine, double turn) {
-  const double side = std::sqrt(std::max(1 - cosine * cosine, 0.0));
-  return {side * std::cos(turn), side * std::sin(turn), cosine};
-}
-
-AlbedoRow fuzz_albedo(double alpha) {
-  AlbedoRow albedo{};
-  tbb::parallel_for(std::size_t{0}, std::size_t{LAYER_STEPS}, [&](std::size_t i) {
-    const dvec3 wo = viewer(layer_cosine(i), 0);
-    albedo[i] = over_hemisphere(48, 96, [&](const dvec3& wi) {
-      const dvec3 h = glm::normalize(wo + wi);
-      const double fibres = (2 + 1 / alpha) / 2 * std::pow(std::max(1 - h.z * h.z, 1e-12), 0.5 / alpha);
-      return fibres / (4 * std::max(wo.z + wi.z - wo.z * wi.z, 1e-4));
-    });
-  });
-  return albedo;
-}
-
-namespace {
-
 /// Integrals over wi of the terms of a white matte ground, by the column of `past` that weights each: 1, the
 /// term of wi, and for each viewer the term of both.
 struct MatteSums {
@@ -103,6 +73,32 @@ double weighed(const AlbedoRow& sums, const AlbedoRow& past) {
 }
 
 }  // namespace
+
+double layer_cosine(std::size_t column) { return std::max(double(column) / (LAYER_STEPS - 1), 0.01); }
+
+double at_cosine(const AlbedoRow& row, double cosine) {
+  const double x = std::clamp(cosine, 0.0, 1.0) * (LAYER_STEPS - 1);
+  const auto left = std::min(static_cast<std::size_t>(x), std::size_t{LAYER_STEPS - 2});
+  return std::lerp(row[left], row[left + 1], x - double(left));
+}
+
+dvec3 viewer(double cosine, double turn) {
+  const double side = std::sqrt(std::max(1 - cosine * cosine, 0.0));
+  return {side * std::cos(turn), side * std::sin(turn), cosine};
+}
+
+AlbedoRow fuzz_albedo(double alpha) {
+  AlbedoRow albedo{};
+  tbb::parallel_for(std::size_t{0}, std::size_t{LAYER_STEPS}, [&](std::size_t i) {
+    const dvec3 wo = viewer(layer_cosine(i), 0);
+    albedo[i] = over_hemisphere(48, 96, [&](const dvec3& wi) {
+      const dvec3 h = glm::normalize(wo + wi);
+      const double fibres = (2 + 1 / alpha) / 2 * std::pow(std::max(1 - h.z * h.z, 1e-12), 0.5 / alpha);
+      return fibres / (4 * std::max(wo.z + wi.z - wo.z * wi.z, 1e-4));
+    });
+  });
+  return albedo;
+}
 
 double matte_albedo(double roughness, const AlbedoRow& past) {
   static const MatteSums sums = make_matte_sums();

@@ -95,6 +95,33 @@ double white_returned(const FacetGains& gains, const GainPlace& wo, const std::v
   return sum * gain_at(gains, wo) / facet_draws;
 }
 
+/// Groups facets by cosine, each with an equal share of light.
+std::array<FacetGroup, round_groups> grouped(std::vector<SentLight> sent, const FacetGains& gains) {
+  std::ranges::sort(sent, {}, &SentLight::cosine);
+  double all = 0;
+  for (const SentLight& one : sent) all += one.part;
+  std::array<dvec3, round_groups> sums{};  // of cosines, fractions and fractions with gains
+  double before = 0;
+  for (const SentLight& one : sent) {
+    const double end = before + one.part;
+    // A facet that straddles groups is divided between them.
+    for (double from = before; from < end;) {
+      const auto group = std::min(static_cast<std::size_t>(from / all * round_groups), round_groups - 1);
+      const double limit =
+          group + 1 == round_groups ? end : std::min(end, all * double(group + 1) / round_groups);
+      const double share = limit > from ? limit - from : end - from;
+      sums[group] += share * dvec3(one.cosine, 1, gain_at(gains, one.from));
+      from += share;
+    }
+    before = end;
+  }
+  std::array<FacetGroup, round_groups> groups;
+  for (std::size_t i = 0; i < round_groups; ++i)
+    groups[i] = {float(sums[i].x / sums[i].y), float(sums[i].y / facet_draws),
+                 float(sums[i].z / facet_draws)};
+  return groups;
+}
+
 }  // namespace
 
 double interface_reflects(double c, const Interface& interface) {
@@ -152,37 +179,6 @@ FacetAlbedo facet_albedo(const FacetWidths& widths, const FacetGains& gains, con
   albedo.scale = 1 / std::max(1.0, *std::ranges::max_element(most));
   return albedo;
 }
-
-namespace {
-
-/// Groups facets by cosine, each with an equal share of light.
-std::array<FacetGroup, round_groups> grouped(std::vector<SentLight> sent, const FacetGains& gains) {
-  std::ranges::sort(sent, {}, &SentLight::cosine);
-  double all = 0;
-  for (const SentLight& one : sent) all += one.part;
-  std::array<dvec3, round_groups> sums{};  // of cosines, fractions and fractions with gains
-  double before = 0;
-  for (const SentLight& one : sent) {
-    const double end = before + one.part;
-    // A facet that straddles groups is divided between them.
-    for (double from = before; from < end;) {
-      const auto group = std::min(static_cast<std::size_t>(from / all * round_groups), round_groups - 1);
-      const double limit =
-          group + 1 == round_groups ? end : std::min(end, all * double(group + 1) / round_groups);
-      const double share = limit > from ? limit - from : end - from;
-      sums[group] += share * dvec3(one.cosine, 1, gain_at(gains, one.from));
-      from += share;
-    }
-    before = end;
-  }
-  std::array<FacetGroup, round_groups> groups;
-  for (std::size_t i = 0; i < round_groups; ++i)
-    groups[i] = {float(sums[i].x / sums[i].y), float(sums[i].y / facet_draws),
-                 float(sums[i].z / facet_draws)};
-  return groups;
-}
-
-}  // namespace
 
 RoundFacets make_round_facets(double alpha) {
   const FacetWidths widths{alpha, alpha};

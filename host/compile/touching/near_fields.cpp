@@ -1,3 +1,4 @@
+// Compares the boxes of all pairs of fields.
 #include "compile/touching/near_fields.h"
 
 #include <algorithm>

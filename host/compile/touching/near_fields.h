@@ -1,3 +1,4 @@
+// Finds distance fields that lie close together. In: their boxes and materials. Out: a mark on each.
 #pragma once
 #include <span>
 

@@ -117,24 +117,6 @@ std::size_t scheme_length(std::string_view text, const JsonAt& uri) {
   return end;
 }
 
-}  // namespace
-
-GltfContainer open_container(const Source& source) {
-  GltfContainer container;
-  if (model_extension(source.path) == ".glb" || source.bytes.starts_with("glTF")) {
-    if (!source.bytes.starts_with("glTF"))
-      fail_at_byte(source, 0, "not a GLB file: it must begin with 'glTF'");
-    container = open_glb(source);
-  } else {
-    container.json = source.bytes;
-  }
-  if (container.json.starts_with(byte_order_mark))
-    fail(source, "", "glTF's JSON must not begin with a byte order mark");
-  return container;
-}
-
-namespace {
-
 /// Calls step() and ignores errors, which are reported when the faulty part is used.
 template <class Step>
 void leniently(const Step& step) {
@@ -152,6 +134,20 @@ void note_uri(const Source& source, const JsonAt& named) {
 }
 
 }  // namespace
+
+GltfContainer open_container(const Source& source) {
+  GltfContainer container;
+  if (model_extension(source.path) == ".glb" || source.bytes.starts_with("glTF")) {
+    if (!source.bytes.starts_with("glTF"))
+      fail_at_byte(source, 0, "not a GLB file: it must begin with 'glTF'");
+    container = open_glb(source);
+  } else {
+    container.json = source.bytes;
+  }
+  if (container.json.starts_with(byte_order_mark))
+    fail(source, "", "glTF's JSON must not begin with a byte order mark");
+  return container;
+}
 
 void note_files(const Source& source, const JsonAt& root) {
   for (const char* key : {"images", "buffers"})

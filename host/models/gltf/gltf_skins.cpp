@@ -1,3 +1,4 @@
+// Blends joint matrices by a vertex's weights, and moves positions and normals.
 #include "models/gltf/gltf_skins.h"
 
 #include <optional>

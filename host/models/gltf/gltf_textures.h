@@ -1,7 +1,6 @@
 // glTF's textures, samplers and images (glTF 2.0, section 3.8), KHR_texture_transform and EXT_texture_webp.
 #pragma once
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 

@@ -1,3 +1,4 @@
+// Reads a statement's options and file name, and adds its texture to the model.
 #include "models/obj/mtl_maps.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Maps property names to slots, and colours to linear values.
 #include "models/ply/ply_layout.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // A light, as a scene file or a model has it.
 #pragma once
 #include <glm/glm.hpp>
-#include <limits>
 #include <string>
 
 #include "shared/lights.h"

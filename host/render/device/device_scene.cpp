@@ -1,3 +1,4 @@
+// Uploads the tables that differ from those on the device.
 #include "render/device/device_scene.h"
 
 #include <fmt/format.h>

@@ -215,11 +215,4 @@ bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tu
   return !has(make_kernel_config(scene, info, tuning)) && has(drawing_draft_config(scene, info, tuning));
 }
 
-FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
-                                 const WorkGroup& asked, bool aovs, RenderTimes& times) {
-  FrameKernels kernels;
-  update_frame_kernels(device, scene, tuning, asked, aovs, kernels, times);
-  return kernels;
-}
-
 }  // namespace sundog

@@ -1,10 +1,8 @@
 // The kernels of a frame on one device, built for its scene, and the scene's tables.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "render/device/device_scene.h"
 #include "render/device/kernel_store.h"
 #include "render/values/options.h"
@@ -41,12 +39,6 @@ struct FrameKernels {
   KernelStore* store = nullptr;         // others may draw while the scene's are built; null: they do not
 };
 
-/// Builds the integrator's kernel and, with `aovs`, the AOV kernel; uploads the scene and determines the
-/// media around the camera; fills `times`. Throws DeviceError, BuildError; UsageError if the requested group
-/// is not possible.
-FrameKernels build_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
-                                 const WorkGroup& asked, bool aovs, RenderTimes& times);
-
 /// Whether the frame's kernels must be built on the device, while those of its draft are in its cache.
 bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning);
 
@@ -57,8 +49,11 @@ struct KernelUpdate {
   bool changed = false;  // the kernels have changed
 };
 
-/// Updates `kernels`, built on this device, for another scene: builds only kernels whose definitions differ,
-/// writes only tables that differ. After an exception they are invalid.
+/// Builds the integrator's kernel and, with `aovs`, the AOV kernel; uploads the scene and determines the
+/// media around the camera; fills `times`. `kernels` are empty or built on this device for another scene:
+/// then only kernels whose definitions differ are built, and only tables that differ written. After an
+/// exception they are invalid. Throws DeviceError, BuildError; UsageError if the requested group is not
+/// possible.
 KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,
                                   RenderTimes& times);

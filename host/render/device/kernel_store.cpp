@@ -1,3 +1,4 @@
+// Picks a scene's own kernels if they are built, then exact stand-ins, then drafts.
 #include "render/device/kernel_store.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Sets the time after which a launch counts as hung, by its expected and longest times.
 #include "render/device/launch_watch.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Opens the device for a scene, renders tiles with it and sums its figures over scenes.
 #include "render/device/local_worker.h"
 
 #include <utility>

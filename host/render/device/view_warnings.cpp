@@ -1,3 +1,4 @@
+// Compares a pixel's size with the spacing of floats at the camera and at each field.
 #include "render/device/view_warnings.h"
 
 #include <fmt/format.h>

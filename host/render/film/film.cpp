@@ -49,47 +49,6 @@ void copy_rows(const Film& film, const Tile& tile, std::size_t per_pixel, std::s
                 to.begin() + static_cast<std::ptrdiff_t>(offset(film, tile.x, tile.y + y) * per_pixel));
 }
 
-}  // namespace
-
-bool Film::is_done(const Tile& tile) const {
-  for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
-    if (!std::all_of(row, row + tile.width, [](std::uint8_t d) { return d != 0; })) return false;
-  }
-  return true;
-}
-
-std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
-                        std::span<const float> tile_weights, std::span<const float4> tile_aovs,
-                        std::span<const u32> tile_rays) {
-  copy_rows(*this, tile, 1, tile_sums, sums);
-  copy_rows(*this, tile, 1, tile_weights, weights);
-  if (!tile_aovs.empty()) copy_rows(*this, tile, layout.vectors(), tile_aovs, aovs);
-  if (!tile_rays.empty()) copy_rows(*this, tile, 1, tile_rays, rays);
-  std::uint64_t fresh = 0;
-  for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
-    fresh += static_cast<std::uint64_t>(std::count(row, row + tile.width, std::uint8_t{0}));
-    std::fill_n(row, tile.width, std::uint8_t{1});
-  }
-  return fresh;
-}
-
-Film Film::cut(const Tile& area) const {
-  Film part(area.width, area.height, *this);
-  part.grows = part.keeps_earlier = false;
-  part.sums = cut_pixels(sums, width, area);
-  part.weights = cut_pixels(weights, width, area);
-  part.aovs = cut_pixels(aovs, width, area, layout.vectors());
-  part.rays = cut_pixels(rays, width, area);
-  part.done = cut_pixels(done, width, area);
-  part.taken = cut_pixels(taken, width, area);
-  part.stage = stage, part.surfaces_seen = surfaces_seen;
-  return part;
-}
-
-namespace {
-
 enum class AovKind { surface, matte, light };
 
 /// Where an AOV stands in a pixel's vectors: `count` floats from `first` on among those of its kind.
@@ -168,6 +127,43 @@ const AovPlace* find_place(const std::string& name) {
 }
 
 }  // namespace
+
+bool Film::is_done(const Tile& tile) const {
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
+    if (!std::all_of(row, row + tile.width, [](std::uint8_t d) { return d != 0; })) return false;
+  }
+  return true;
+}
+
+std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
+                        std::span<const float> tile_weights, std::span<const float4> tile_aovs,
+                        std::span<const u32> tile_rays) {
+  copy_rows(*this, tile, 1, tile_sums, sums);
+  copy_rows(*this, tile, 1, tile_weights, weights);
+  if (!tile_aovs.empty()) copy_rows(*this, tile, layout.vectors(), tile_aovs, aovs);
+  if (!tile_rays.empty()) copy_rows(*this, tile, 1, tile_rays, rays);
+  std::uint64_t fresh = 0;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
+    fresh += static_cast<std::uint64_t>(std::count(row, row + tile.width, std::uint8_t{0}));
+    std::fill_n(row, tile.width, std::uint8_t{1});
+  }
+  return fresh;
+}
+
+Film Film::cut(const Tile& area) const {
+  Film part(area.width, area.height, *this);
+  part.grows = part.keeps_earlier = false;
+  part.sums = cut_pixels(sums, width, area);
+  part.weights = cut_pixels(weights, width, area);
+  part.aovs = cut_pixels(aovs, width, area, layout.vectors());
+  part.rays = cut_pixels(rays, width, area);
+  part.done = cut_pixels(done, width, area);
+  part.taken = cut_pixels(taken, width, area);
+  part.stage = stage, part.surfaces_seen = surfaces_seen;
+  return part;
+}
 
 const std::vector<std::string>& aov_names() {
   static const std::vector<std::string> names = [] {

@@ -1,3 +1,4 @@
+// Sums the bytes a pixel of film, AOVs, passes, denoiser and encoders.
 #include "render/film/frame_memory.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Mixes 8 bytes at a time; a scene's hash covers its settings, generated sources and tables.
 #include "render/film/hash.h"
 
 #include <bit>

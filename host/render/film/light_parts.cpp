@@ -1,3 +1,4 @@
+// Adjusts rounded parts by single float steps until their sum equals the colour.
 #include "render/film/light_parts.h"
 
 #include <cmath>

@@ -13,18 +13,6 @@ namespace sundog {
 
 namespace {
 constexpr int bands_a_part = 8;
-}  // namespace
-
-std::vector<RowRange> part_rows(int height, const PartOfFrame& part) {
-  if (part.count <= 1) return {{0, height}};
-  const int band = std::max(4, height / (part.count * bands_a_part) / 4 * 4);
-  std::vector<RowRange> rows;
-  for (int first = (part.index - 1) * band; first < height; first += part.count * band)
-    rows.push_back({first, std::min(band, height - first)});
-  return rows;
-}
-
-namespace {
 
 constexpr std::size_t most_listed = 8, longest_setting = 60;
 
@@ -110,6 +98,15 @@ void add(Film& whole, const Film& part) {
 }
 
 }  // namespace
+
+std::vector<RowRange> part_rows(int height, const PartOfFrame& part) {
+  if (part.count <= 1) return {{0, height}};
+  const int band = std::max(4, height / (part.count * bands_a_part) / 4 * 4);
+  std::vector<RowRange> rows;
+  for (int first = (part.index - 1) * band; first < height; first += part.count * band)
+    rows.push_back({first, std::min(band, height - first)});
+  return rows;
+}
 
 PartFile merge_parts(const std::vector<std::filesystem::path>& paths) {
   if (paths.empty()) throw UsageError("there are no parts to merge");

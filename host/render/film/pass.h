@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "render/film/film.h"
-#include "shared/launch.h"
 
 namespace sundog {
 

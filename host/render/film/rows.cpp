@@ -1,3 +1,4 @@
+// Divides an image's rows by shares, at multiples of the tiles' alignment.
 #include "render/film/rows.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Begins, continues and ends passes, and develops the film when the last is done.
 #include "render/frame/final_frame.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Checks AOVs, sampling and memory; makes the frame's film, passes and workers.
 #include "render/frame/frame_plan.h"
 
 #include <fmt/format.h>

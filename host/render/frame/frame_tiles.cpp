@@ -1,3 +1,4 @@
+// Makes lists of unfinished tiles from region, split, part and device speeds.
 #include "render/frame/frame_tiles.h"
 
 #include <fmt/format.h>

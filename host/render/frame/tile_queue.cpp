@@ -1,3 +1,4 @@
+// Hands tiles to threads under one lock, and takes back those whose device failed.
 #include "render/frame/tile_queue.h"
 
 #include <algorithm>

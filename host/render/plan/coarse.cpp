@@ -1,3 +1,4 @@
+// Chooses block sizes by the time that a pixel takes.
 #include "render/plan/coarse.h"
 
 #include <algorithm>

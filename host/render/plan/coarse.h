@@ -3,7 +3,6 @@
 #pragma once
 #include <vector>
 
-#include "base/image.h"
 #include "render/film/pass.h"
 
 namespace sundog {

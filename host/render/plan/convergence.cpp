@@ -9,8 +9,6 @@
 #include <limits>
 #include <numeric>
 
-#include "render/plan/pixel_rules.h"
-
 namespace sundog {
 namespace {
 

@@ -1,3 +1,4 @@
+// Deals each device to the rank with the fewest, and divides a processor among its ranks.
 #include "render/plan/deal_devices.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // Assigns devices to the ranks of a job: every device of a machine once, however many ranks run there.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "device/devices.h"

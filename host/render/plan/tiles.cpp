@@ -1,3 +1,4 @@
+// Finds runs of unfinished blocks, hands tiles out, and sizes launches by time.
 #include "render/plan/tiles.h"
 
 #include <algorithm>

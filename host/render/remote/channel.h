@@ -2,7 +2,6 @@
 // socket, or another machine's process.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>

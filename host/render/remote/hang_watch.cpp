@@ -1,3 +1,4 @@
+// A thread that looks at the worker's launch every 50 ms, and reports one that hangs.
 #include "render/remote/hang_watch.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes arrays as bytes beside the JSON, and checks their lengths when it reads them.
 #include "render/remote/remote_values.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// Sends orders to the other process, and turns its failures back into exceptions.
 #include "render/remote/remote_worker.h"
 
 #include <nlohmann/json.hpp>

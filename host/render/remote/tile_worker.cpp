@@ -1,3 +1,4 @@
+// Executes orders in turn; a thread reads the channel, so that a tile can be cancelled at once.
 #include "render/remote/tile_worker.h"
 
 #include <sched.h>
@@ -18,6 +19,30 @@ Message failure(const std::exception& error) {
   }
   if (dynamic_cast<const UsageError*>(&error)) values["usage"] = true;
   return {Message::failed, values, {}};
+}
+
+/// The worker of the frame in hand.
+struct Current {
+  OpenedWorker opened;
+  nlohmann::json settings;
+};
+
+Message opened(Current& current, const Message& order,
+               const std::function<OpenedWorker(const nlohmann::json&)>& make) {
+  if (!current.opened.worker || current.settings != order.values) {
+    if (const auto last = std::exchange(current.opened, {}); last.worker) last.worker->close();
+    current.opened = make(order.values);
+    current.settings = order.values;
+  }
+  const RenderTimes times = current.opened.worker->open();
+  return {Message::ready, {{"times", times}, {"scene", current.opened.scene}}, {}};
+}
+
+Message made(DeviceWorker& worker, const Message& order, const StopFlags& flags) {
+  PackedTile packed = pack_tile(worker.render(unpack_request(order.values, order.data), flags));
+  packed.values["job"] = order.values.at("job");
+  packed.values["figures"] = worker.figures();
+  return {Message::tile, std::move(packed.values), std::move(packed.data)};
 }
 
 }  // namespace
@@ -77,34 +102,6 @@ std::optional<Message> Orders::next() {
   }
   return message;
 }
-
-namespace {
-
-/// The worker of the frame in hand.
-struct Current {
-  OpenedWorker opened;
-  nlohmann::json settings;
-};
-
-Message opened(Current& current, const Message& order,
-               const std::function<OpenedWorker(const nlohmann::json&)>& make) {
-  if (!current.opened.worker || current.settings != order.values) {
-    if (const auto last = std::exchange(current.opened, {}); last.worker) last.worker->close();
-    current.opened = make(order.values);
-    current.settings = order.values;
-  }
-  const RenderTimes times = current.opened.worker->open();
-  return {Message::ready, {{"times", times}, {"scene", current.opened.scene}}, {}};
-}
-
-Message made(DeviceWorker& worker, const Message& order, const StopFlags& flags) {
-  PackedTile packed = pack_tile(worker.render(unpack_request(order.values, order.data), flags));
-  packed.values["job"] = order.values.at("job");
-  packed.values["figures"] = worker.figures();
-  return {Message::tile, std::move(packed.values), std::move(packed.data)};
-}
-
-}  // namespace
 
 void serve_orders(Channel& channel, Orders& orders,
                   const std::function<OpenedWorker(const nlohmann::json& settings)>& make,

@@ -1,7 +1,6 @@
 // The byte transport between the processes of a job. The MPI implementation is a separate shared library
 // (host/mpi), loaded only by a sundog started by mpirun; tests use one within a process.
 #pragma once
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// Starts a worker with a socket as file 3, and explains how it ended.
 #include "render/remote/worker_process.h"
 
 #include <fmt/format.h>

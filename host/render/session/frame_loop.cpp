@@ -1,3 +1,4 @@
+// Starts the threads, gives each its turn in the frame, and leaves those in a driver behind at the end.
 #include "render/session/frame_loop.h"
 #include "render/session/frame_watch.h"
 

@@ -1,3 +1,4 @@
+// Splits JSON pointers (RFC 6901), and sets values by them; errors name the setting.
 #include "scene/json/override.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See schema.h.
+// Compiles the embedded schema's JSON to rules, and describes them in words.
 #include "scene/json/schema.h"
 
 #include <fmt/format.h>

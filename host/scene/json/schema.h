@@ -2,7 +2,6 @@
 // find them by the kind of an object (its name in the schema's $defs), compiled once.
 #pragma once
 #include <array>
-#include <cstddef>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <span>

@@ -1,3 +1,4 @@
+// The presets' table as JSON with its sources; merges those a scene names into its document.
 #include "scene/materials/presets.h"
 
 #include <fmt/format.h>

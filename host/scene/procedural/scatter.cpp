@@ -1,7 +1,6 @@
 // See scatter.h.
 #include "scene/procedural/scatter.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,4 +1,4 @@
-// See read_leaf.h.
+// Reads parameters and texts, and lowers each formula once as a check.
 #include "scene/read/field_formulas.h"
 
 #include <fmt/format.h>
@@ -61,8 +61,7 @@ void read_arguments(JsonObject& object, FormulaDefinition& d) {
           return p.name == key || (p.old_name == key && !key.empty());
         });
     if (found == d.parameters.end()) {
-      std::vector<std::string> names;
-      for (const FormulaParameter& p : d.parameters) names.push_back(p.name);
+      const std::vector<std::string> names = names_of(d.parameters);
       const std::string all = fmt::format("it has {}", fmt::join(names, ", "));
       value.fail(fmt::format("{} has no parameter \"{}\": {}", d.name, name,
                              did_you_mean(name, names, names.empty() ? "it has none" : all)));
@@ -154,9 +153,7 @@ FormulaDefinition read_listed(JsonObject& object) {
   const JsonValue name = object.at("formula");
   const FormulaDefinition* listed = find_formula(name.text());
   if (!listed) {
-    std::vector<std::string> names;
-    for (const FormulaDefinition& d : formula_list()) names.push_back(d.name);
-    if (const auto near = nearest_name(name.text(), names))
+    if (const auto near = nearest_name(name.text(), names_of(formula_list())))
       name.fail(fmt::format("no surface \"{}\" in the list: did you mean \"{}\"?", name.text(), *near));
     name.wanted(
         "the name of a surface of the list (sundog formulas prints it; a text of your own is the \"map\" or "

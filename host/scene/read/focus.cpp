@@ -1,4 +1,4 @@
-// See focus.h.
+// Measures the depth of the middle of the named object's box.
 #include "scene/read/focus.h"
 
 #include <fmt/format.h>

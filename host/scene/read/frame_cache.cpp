@@ -1,4 +1,4 @@
-// See frame_cache.h.
+// Keeps the things that a frame asked for, and drops the others at its end.
 #include "scene/read/frame_cache.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Reads each file once, shifts its indices to the scene's, and places copies.
 #include "scene/read/library.h"
 
 #include <fmt/format.h>

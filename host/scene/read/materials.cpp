@@ -85,27 +85,6 @@ void refuse_texture_object(const JsonValue& value) {
     value.fail("a texture is taken by its name alone: wanted the name of one of /textures as a string");
 }
 
-}  // namespace
-
-Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures) {
-  refuse_texture_object(value);
-  if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
-  const dvec3 color = value.vec3();
-  return {color, color, -1};
-}
-
-void read_number(JsonObject& object, std::string_view key, double& to, int& texture,
-                 TextureLibrary& textures) {
-  const auto value = object.find(key);
-  if (!value) return object.read(key, to);
-  refuse_texture_object(*value);
-  if (!value->json().is_string()) return value->get(to);
-  texture = textures.use(*value, TextureUse::number);
-  to = 1;
-}
-
-namespace {
-
 /// Defaults of a shading term, and where to store an exponent.
 struct TermRules {
   Pattern color;
@@ -221,7 +200,33 @@ int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use
   });
 }
 
+void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
+  object.read("cutoff", material.cutoff);
+  read_number(object, "opacity", material.opacity, material.textures.opacity, textures);
+  if ((material.medium >= 0 || material.wall_ior > 0) &&
+      (material.opacity < 1 || material.textures.opacity >= 0))
+    object.at("opacity").fail(
+        "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" instead");
+}
+
 }  // namespace
+
+Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures) {
+  refuse_texture_object(value);
+  if (value.json().is_string()) return {dvec3(1), dvec3(1), textures.use(value, TextureUse::color)};
+  const dvec3 color = value.vec3();
+  return {color, color, -1};
+}
+
+void read_number(JsonObject& object, std::string_view key, double& to, int& texture,
+                 TextureLibrary& textures) {
+  const auto value = object.find(key);
+  if (!value) return object.read(key, to);
+  refuse_texture_object(*value);
+  if (!value->json().is_string()) return value->get(to);
+  texture = textures.use(*value, TextureUse::number);
+  to = 1;
+}
 
 void read_surface(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
   if (const auto map = object.find("normal_map"))
@@ -252,19 +257,6 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
   material.shadow_opaque = shadow == "opaque";
   material.shadow_filter = object.has("shadow") && !material.shadow_opaque;
 }
-
-namespace {
-
-void read_opacity(JsonObject& object, MaterialDescription& material, TextureLibrary& textures) {
-  object.read("cutoff", material.cutoff);
-  read_number(object, "opacity", material.opacity, material.textures.opacity, textures);
-  if ((material.medium >= 0 || material.wall_ior > 0) &&
-      (material.opacity < 1 || material.textures.opacity >= 0))
-    object.at("opacity").fail(
-        "a material with a \"medium\" or an \"ior\" is not partly there: give it a \"transmission\" instead");
-}
-
-}  // namespace
 
 int find_name(const JsonValue& name, const NameTable& table, std::string_view what) {
   const std::string text = name.text();

@@ -1,4 +1,4 @@
-// See motion.h.
+// Adds an object's own motion to that of its groups.
 #include "scene/read/motion.h"
 
 namespace sundog {

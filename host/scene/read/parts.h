@@ -1,5 +1,6 @@
 // Readers of the parts of a scene file. All throw SceneError with file and pointer.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -18,6 +19,10 @@ class TextureLibrary;
 
 /// The index of a name that must be in `table`; `what` is its kind ("material").
 int find_name(const JsonValue& name, const NameTable& table, std::string_view what);
+
+/// The file that the scene names, relative to its own folder. Throws SceneError for one that is outside of
+/// it, if that is not allowed, or cannot be read.
+std::filesystem::path find_file(const JsonValue& value);
 
 /// `position` and `target` must both be given or both be missing, which `placed` returns. Lenses are in
 /// millimetres, so `unit` is the metres of a scene unit.

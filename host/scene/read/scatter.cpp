@@ -1,4 +1,4 @@
-// See scatter.h.
+// Reads the keys with their defaults, and copies objects by a transform.
 #include "scene/read/scatter.h"
 
 namespace sundog {

@@ -100,17 +100,7 @@ class SceneReader {
       }
   }
 
-  /// A file named in the scene, relative to the scene's folder.
-  fs::path find_file(const JsonValue& value) const {
-    const fs::path file = scene_.file.parent_path() / value.text();
-    if (file != scene_.file && !root_.context().outside_files && leads_outside(scene_.file, file))
-      value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint),
-                 Remedy::outside_files);
-    require_readable(file, scene_.file, value.pointer());
-    return file;
-  }
-
-  fs::path find_model(const JsonValue& value) const {
+  static fs::path find_model(const JsonValue& value) {
     fs::path file = find_file(value);
     if (!is_model_file(file)) value.wanted("a model file (" SUNDOG_MODEL_EXTENSIONS ", each also .gz)");
     return file;
@@ -301,6 +291,15 @@ class SceneReader {
 };
 
 }  // namespace
+
+fs::path find_file(const JsonValue& value) {
+  const fs::path &scene = value.context().file, file = scene.parent_path() / value.text();
+  if (file != scene && !value.context().outside_files && leads_outside(scene, file))
+    value.fail(fmt::format("\"{}\" leads out of the scene's folder: {}", value.text(), outside_hint),
+               Remedy::outside_files);
+  require_readable(file, scene, value.pointer());
+  return file;
+}
 
 SceneDescription read_scene(const JsonValue& root, std::optional<Model> known, const NamedMeshes& made) {
   return SceneReader(root, std::move(known), made).read();

@@ -1,3 +1,4 @@
+// Reads sections in order of dependency; numbers and names of earlier ones are known to later ones.
 #include "scene/read/surfaces.h"
 
 #include <algorithm>

@@ -53,16 +53,6 @@ void read_wraps(JsonObject& object, TextureDescription& texture) {
   for (std::size_t i = 0; i < 2; ++i) items[i].get(texture.wrap[i]);
 }
 
-/// An image file named in the scene, relative to the scene's folder.
-fs::path find_image(const JsonValue& value) {
-  const fs::path scene = value.context().file, file = scene.parent_path() / value.text();
-  if (!value.context().outside_files && leads_outside(scene, file))
-    value.fail("\"" + value.text() + "\" leads out of the scene's folder: " + outside_hint,
-               Remedy::outside_files);
-  require_readable(file, scene, value.pointer());
-  return file;
-}
-
 }  // namespace
 
 void TextureLibrary::read(const JsonValue& value, const std::string& name) {
@@ -234,7 +224,7 @@ TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
   TextureDescription& texture = entry.texture;
   texture.kind = TEXTURE_IMAGE;
   const JsonValue file = object.at("file");
-  entry.file = find_image(file).string();
+  entry.file = find_file(file).string();
   entry.place = file.pointer();
   object.read("encoding", entry.encoding, "filter", texture.filter);
   read_wraps(object, texture);

@@ -1,4 +1,4 @@
-// See tracks.h.
+// Reads keys and turns, checks their order, and evaluates the curves between keys.
 #include "scene/read/tracks.h"
 
 #include <fmt/format.h>

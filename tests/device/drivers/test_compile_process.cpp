@@ -183,7 +183,8 @@ TEST_CASE("the kernel of photons is begun before the integrator's is built") {
     Device device(with(info, stand_in, cache,
                        "build@" + std::to_string(info.platform) + ":" + std::to_string(info.device)));
     RenderTimes times;
-    CHECK_THROWS_AS(build_frame_kernels(device, compiled, {}, {}, false, times), BuildError);
+    FrameKernels kernels;
+    CHECK_THROWS_AS(update_frame_kernels(device, compiled, {}, {}, false, kernels, times), BuildError);
     REQUIRE(stand_in.asked.size() == 1);
     CHECK(stand_in.asked[0].find("\ntrace_photons 4 1 0 ") != std::string::npos);
   }

@@ -6,8 +6,8 @@
 
 #include "catch.h"
 #include "compile/fields/sdf.h"
+#include "default_field.h"
 #include "devices.h"
-#include "formula/list.h"
 
 /// Builds `text`, which includes lib/sdf/..., for the fields, with LANES lanes.
 inline sundog::Program build_fields(sundog::Device& device, const std::string& text,

@@ -1,6 +1,4 @@
 // Samples of images against double precision.
-#include <base/pixels/image_levels.h>
-
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -11,6 +9,7 @@
 #include "compile/surfaces/textures.h"
 #include "devices.h"
 #include "scenes.h"
+#include "smaller_levels.h"
 #include "surface_testing.h"
 
 using namespace sundog;

@@ -1,6 +1,5 @@
 // Images as textures take them: the formats, the precision of samples, smaller levels, and hostile files.
 #include <base/image_io.h>
-#include <base/pixels/image_levels.h>
 #include <base/pixels/stored_image.h>
 #include <zlib.h>
 
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "catch.h"
+#include "smaller_levels.h"
 
 using namespace sundog;
 

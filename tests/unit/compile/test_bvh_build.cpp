@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "bench/rays/exact_tracer.h"
+#include "brute_force.h"
 #include "catch.h"
 #include "compile/bvh/wide_bvh.h"
 #include "compile/compiled_scene.h"

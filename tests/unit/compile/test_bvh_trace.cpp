@@ -2,7 +2,7 @@
 #include <random>
 #include <set>
 
-#include "bench/rays/exact_tracer.h"
+#include "brute_force.h"
 #include "catch.h"
 #include "every_kind.h"
 #include "test_meshes.h"

@@ -5,7 +5,7 @@
 
 #include "catch.h"
 #include "compile/fields/sdf.h"
-#include "formula/list.h"
+#include "default_field.h"
 
 using namespace sundog;
 

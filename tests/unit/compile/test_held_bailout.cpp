@@ -1,7 +1,7 @@
 // How far an orbit may go before floats end.
 #include "catch.h"
 #include "compile/fields/held_bailout.h"
-#include "formula/list.h"
+#include "default_field.h"
 
 using namespace sundog;
 

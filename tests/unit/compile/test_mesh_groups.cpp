@@ -3,7 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "bench/rays/exact_tracer.h"
+#include "brute_force.h"
 #include "catch.h"
 #include "compile/scene_compiler.h"
 #include "scenes.h"

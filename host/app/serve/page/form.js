@@ -2,7 +2,7 @@
 import {html, Group, Button, useStore} from './ui.js';
 import {store} from './store.js';
 import {join} from './pointer.js';
-import {branch, changesFor, definition, fits, isTextureName, missing, nameOf, resolve, sample, unitOf, variants, words} from './schema.js';
+import {branch, changesFor, definition, fits, isTextureName, missing, resolve, sample, unitOf, variants, words} from './schema.js';
 import {BooleanField, ChoiceField, CodeField, ColorField, NumberField, Row, TextField, VectorField} from './fields.js';
 
 const isColor = (s) => ['color', 'share_color', 'light_color'].includes(s.kind);

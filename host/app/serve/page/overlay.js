@@ -1,7 +1,7 @@
 // Draws lights and the selected field's interval over the picture, projected with its camera. Both can be dragged.
 import {html, useRef, useStore} from './ui.js';
 import {store} from './store.js';
-import {project, unproject, add, sub, dot, scale} from './camera.js';
+import {project, unproject, add, scale} from './camera.js';
 
 let gestures = 0;
 

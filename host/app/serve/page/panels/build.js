@@ -3,7 +3,7 @@ import {html, Group, Button, useEffect, useRef, useState, useStore} from '../ui.
 import {store} from '../store.js';
 import {get, join} from '../pointer.js';
 import {definition, sample, variants, words} from '../schema.js';
-import {ChoiceField, NumberField, VectorField, Row, CodeField} from '../fields.js';
+import {NumberField, VectorField, CodeField} from '../fields.js';
 import {Fields, Table} from '../form.js';
 import {SurfaceList, Thumbnail} from '../surfaces.js';
 import {Presets, materials, setMaterial} from '../presets.js';

@@ -4,7 +4,7 @@ import {store} from '../store.js';
 import {VectorField, NumberField, ChoiceField} from '../fields.js';
 import {Fields} from '../form.js';
 import {CameraPath} from './path.js';
-import {cameraChanges, dolly, move, orbit, turnAbout} from '../camera.js';
+import {cameraChanges, dolly, move, turnAbout} from '../camera.js';
 
 function change(next, gesture = '') {
   const before = store.state.resolved.camera;
