@@ -16,6 +16,9 @@ Bsdfs make_surface(__global const Material* materials, REAL3 n, int before, int 
   bsdf.emission = none;
   bsdf.exponent = (REAL)(materials[0].specular.w);
 #endif
+#if HAS_OPACITY
+  bsdf.there = (REAL)(1.0f);
+#endif
   return bsdf;
 }
 )";

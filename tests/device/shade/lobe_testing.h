@@ -33,7 +33,6 @@ Bsdfs surface(__global const Material* materials, u32 below, float4 base, float4
   bsdf.base = bsdf.diffuse;
   bsdf.tangent = real3(1.0f, 0.0f, 0.0f);
   bsdf.bitangent = real3(0.0f, 1.0f, 0.0f);
-  bsdf.there = (REAL)(1.0f);
   const MASK layered = MASK_OF((bsdf.flags & (int)MATERIAL_LAYERED) != 0), inside = MASK_OF(below != 0u && !(materials[0].flags & MATERIAL_THIN));
   if (layered) bsdf.diffuse = none;
   bsdf.coated = layered & ~inside;
