@@ -143,22 +143,23 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNT_REFLECTION 1
 #define COUNT_REFRACTION 2
 #define COUNT_SHADOW 3
-#define COUNT_MARCH_STEPS 4
-#define COUNT_PRIMARY_HIT 5
-#define COUNT_CUT_OFF 6      // rays not spawned because of low throughput
-#define COUNT_DEPTH_LIMIT 7  // rays not spawned because of max_depth
-#define COUNT_RAY_STACK_OVERFLOW 8
-#define COUNT_MEDIA_STACK_OVERFLOW 9
-#define COUNT_NON_FINITE 10          // samples dropped
-#define COUNT_STRAY_EXIT 11          // left a medium that had not been entered (an open mesh)
-#define COUNT_SHADOW_LIMIT 12        // shadow rays dropped after too many filters
-#define COUNT_MARCH_LIMIT 13         // marches stopped by their step limit
-#define COUNT_MARCH_BACK 14          // relaxed steps that were reverted
-#define COUNT_MARCH_BUDGET 15        // marches skipped because the sample's budget was spent
-#define COUNT_MARCH_LEFT 16          // not a counter: remaining march budget of a sample (lib/path/fields.cl)
-#define COUNT_FINISHED 17            // twice the camera rays of finished work-items (lib/core/counters.cl)
-#define COUNT_CAMERA_DEPTH_LIMIT 18  // camera rays going straight on, of those ended by max_depth
-#define COUNT_LOST_PIXEL 19          // pixels with such overflows or exits; the host counts them (LOST_PIXEL)
+#define COUNT_PRIMARY_HIT 4
+#define COUNT_CUT_OFF 5      // rays not spawned because of low throughput
+#define COUNT_DEPTH_LIMIT 6  // rays not spawned because of max_depth
+#define COUNT_RAY_STACK_OVERFLOW 7
+#define COUNT_MEDIA_STACK_OVERFLOW 8
+#define COUNT_NON_FINITE 9           // samples dropped
+#define COUNT_STRAY_EXIT 10          // left a medium that had not been entered (an open mesh)
+#define COUNT_SHADOW_LIMIT 11        // shadow rays dropped after too many filters
+#define COUNT_CAMERA_DEPTH_LIMIT 12  // camera rays going straight on, of those ended by max_depth
+#define COUNT_LOST_PIXEL 13          // pixels with such overflows or exits; the host counts them (LOST_PIXEL)
+// Of scenes with fields alone:
+#define COUNT_MARCH_STEPS 14
+#define COUNT_MARCH_LIMIT 15   // marches stopped by their step limit
+#define COUNT_MARCH_BACK 16    // relaxed steps that were reverted
+#define COUNT_MARCH_BUDGET 17  // marches skipped because the sample's budget was spent
+#define COUNT_MARCH_LEFT 18    // not a counter: remaining march budget of a sample (lib/path/fields.cl)
+#define COUNT_FINISHED 19      // twice the camera rays of finished work-items (lib/core/counters.cl)
 #define COUNTERS 20
 // A launch uses several blocks of counters, to be summed: COUNTER_ITEMS consecutive work-items share one, so
 // that processors rarely write to the same cache line.

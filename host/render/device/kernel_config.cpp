@@ -33,7 +33,8 @@ constexpr unsigned general_depth = 12, general_bvh_stack = 64, general_bvh_level
 /// Waiting shadow rays per surface: one per light, within limits, and rounded up so that similar scenes share
 /// kernels.
 unsigned light_room(const CompiledScene& scene) {
-  return std::clamp(std::bit_ceil(scene.info.light_count), 2u, 16u);
+  const unsigned lights = std::clamp(scene.info.light_count, 2u, 16u), step = std::bit_floor(lights) / 2;
+  return (lights + step - 1) / step * step;
 }
 
 /// Nodes on the longest way from `root` to a leaf.
@@ -269,7 +270,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Beyond
   // 32 levels, the kernel counts rays that do not fit and the frame reports them.
   const bool waits = scene.features.secondary_rays && integrator_of(scene.integrator).branches;
-  const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + 2u) : batch;
+  const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + (batch > 1 ? 2u : 0u)) : batch;
   define("RAY_STACK", rays);
   config.ray_stack = rays;
   if (batch == 1) {

@@ -14,10 +14,13 @@ static inline __global u32* counters_of(__global u32* counters, u32 item) {
   return counters + item / COUNTER_ITEMS % COUNTER_BLOCKS * COUNTER_BLOCK;
 }
 
+// The counters that a work-item keeps.
+#define OWN_COUNTERS (HAS_SDF ? COUNT_FINISHED : COUNT_MARCH_STEPS)
+
 static inline void add_counts(__global u32* restrict counters, u32* counts) {
-  counts[COUNT_MARCH_LEFT] = 0u;
+  if (HAS_SDF) counts[COUNT_MARCH_LEFT] = 0u;
   counts[COUNT_LOST_PIXEL] = 0u;
-  for (u32 i = 0; i < COUNTERS; ++i)
+  for (u32 i = 0; i < OWN_COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);
 }
 

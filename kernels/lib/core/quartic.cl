@@ -52,6 +52,7 @@ static inline u32 roots_between(const float* c, const float* derivative, float l
   return found;
 }
 
+// `roots` has room for eight.
 static inline u32 quartic_roots(float a2, float a1, float a0, float low, float high, float* roots) {
   const float quartic[5] = {a0, a1, a2, 0.0f, 1.0f}, cubic[5] = {a1, 2.0f * a2, 0.0f, 4.0f, 0.0f},
               quadratic[5] = {2.0f * a2, 0.0f, 12.0f, 0.0f, 0.0f};
@@ -63,8 +64,5 @@ static inline u32 quartic_roots(float a2, float a1, float a0, float low, float h
     turn_count = 2;
   }
   const u32 count = roots_between(cubic, quadratic, low, high, turns, turn_count, extrema);
-  float all[8];
-  const u32 found = min(roots_between(quartic, cubic, low, high, extrema, count, all), 4u);
-  for (u32 i = 0; i < found; ++i) roots[i] = all[i];
-  return found;
+  return min(roots_between(quartic, cubic, low, high, extrema, count, roots), 4u);
 }

@@ -40,7 +40,7 @@ static inline void begin_numbers(const TileSamples* tile, const WaitingRays* pat
   numbers->at.x = numbers->at.y = NO_LANES;
   numbers->at.seed = tile->seed;
   EACH_LANE(i, lanes) {
-    const u32 pixel = (u32)MASK_LANE(paths->pixel, i);
+    const u32 pixel = BATCH > 1 ? (u32)MASK_LANE(paths->pixel, i) : 0u;
     MASK_LANE(numbers->at.x, i) = MASK_LANE(tile->x, pixel);
     MASK_LANE(numbers->at.y, i) = MASK_LANE(tile->y, pixel);
   }

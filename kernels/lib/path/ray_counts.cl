@@ -14,17 +14,17 @@
 // Counts a ray for each lane of `lanes`.
 static inline void count_lanes(u32* counts, u32 which, MASK lanes) { counts[which] += lane_count(lanes); }
 
-#define ALL_COUNTS (COUNTERS + (RAYS_BY_LANE ? BATCH : 0))
+#define ALL_COUNTS (OWN_COUNTERS + (RAYS_BY_LANE ? BATCH : 0))
 
 // Counts a ray for each lane of `lanes`, in the work-item's pixels `pixels`.
 static inline void note_rays(MASK pixels, MASK lanes, u32* counts) {
   if (!RAYS_BY_LANE) return;
-  EACH_LANE(i, lanes) counts[COUNTERS + MASK_LANE(pixels, i)] += 1u;
+  EACH_LANE(i, lanes) counts[OWN_COUNTERS + MASK_LANE(pixels, i)] += 1u;
 }
 // note_rays() if lane i is of pixel i.
 static inline void note_own_rays(MASK lanes, u32* counts) {
   if (!RAYS_BY_LANE) return;
-  float* own = (float*)(counts + COUNTERS);
+  float* own = (float*)(counts + OWN_COUNTERS);
   write_lanes(own, AS_REAL(AS_MASK(read_lanes(own)) - lanes));
 }
 // Bits of lanes whose rays have lost count of media become those of their pixels in a work-item, from this
@@ -42,8 +42,8 @@ static inline void note_lost_pixels(MASK pixels, u32* counts) {
 static inline void add_lane_rays(const Launch* launch, u32 place, u32 lane, u32* counts,
                                  __global u32* restrict rays) {
   if (RAYS_BY_LANE) {
-    if (launch->counts_rays) rays[place] += counts[COUNTERS + lane];
-    counts[COUNTERS + lane] = 0u;
+    if (launch->counts_rays) rays[place] += counts[OWN_COUNTERS + lane];
+    counts[OWN_COUNTERS + lane] = 0u;
   }
   if (!(counts[LOST_LANES] & LOST_LANE(lane))) return;
   counts[LOST_LANES] -= LOST_LANE(lane);

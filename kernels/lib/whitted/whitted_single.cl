@@ -11,7 +11,7 @@
 static inline void send_to_lights(const Scene* scene, const TileSamples* tile, const SceneRays* rays,
                                   const WaitingRays* paths, const WaitingRays* whole, const Encounters* met,
                                   const SurfaceShadings* at, u32* counts) {
-  u32 light = (u32)next_light(whole, ALL_LANES);
+  u32 light = meets_again(whole, ALL_LANES) ? tile->stack->light : 0u;
 #if HAS_SHAFTS
   u32 sent[LIGHT_ROOM], count = 0;
   while (light < scene->info->light_count && count < LIGHT_ROOM)
@@ -22,8 +22,11 @@ static inline void send_to_lights(const Scene* scene, const TileSamples* tile, c
 #endif
   if (light < scene->info->light_count) {
     WaitingRays again = *whole;
-    wait_for_light(&again, (int)light, ALL_LANES);
+    meet_again(&again, ALL_LANES);
     push_rays(tile->stack, rays, &again, ALL_LANES);
+    tile->stack->light = light;
+    tile->stack->t_min = rays->t_min;
+    HAVING(HAS_MEDIA, tile->stack->since = rays->since;)
   }
   for (u32 i = 0; i < count; ++i) {
 #if HAS_SHAFTS
@@ -51,7 +54,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   EITHER(HAS_PARALLAX, KEEP_IN_MEMORY(SurfaceShadings, at);, SurfaceShadings shading CLEARED_ON_GPUS;
          SurfaceShadings* at = &shading;)
   const REAL3 seen = see_met(scene, tile, rays, paths, unseen, &met, at, counts, ALL_LANES);
-  add_to_pixels(seen, paths->pixel, MASK_OF(next_light(&whole, ALL_LANES) == 0), tile->radiance);
+  add_to_pixels(seen, paths->pixel, ~meets_again(&whole, ALL_LANES), tile->radiance);
   forget_glow(rays, ALL_LANES);
   if (unseen | ~hit_anything(&met.hit)) return unseen;
   send_to_lights(scene, tile, rays, paths, &whole, &met, at, counts);
@@ -68,7 +71,12 @@ static inline void trace_whitted(const Scene* scene, TileSamples* tile, SceneRay
   *paths = camera_path(NO_LANES, lanes);
   while (any_lane(lanes)) {
     lanes = follow_ray(scene, tile, rays, paths, counts);
-    if (!any_lane(lanes) && stack.count) lanes = pop_rays(&stack, 1u, rays, paths);
+    if (!any_lane(lanes) && stack.count) {
+      lanes = pop_rays(&stack, 1u, rays, paths);
+      const bool again = meets_again(paths, lanes);
+      rays->t_min = again ? stack.t_min : 0.0f;
+      HAVING(HAS_MEDIA, rays->since = again ? stack.since : 0.0f;)
+    }
   }
 }
 #endif

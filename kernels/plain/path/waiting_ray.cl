@@ -3,15 +3,15 @@
 
 // Flag in the depth of rays that do not go straight on from the camera.
 #define TURNED 0x80
-// A ray that met a surface with more lights than the stack has room for waits itself, to meet it once more:
-// its depth then holds the next light in the bits from here on.
-#define DEPTH_BITS 8
+// Flag in the depth of a ray that met a surface with more lights than the stack has room for, and waits to
+// meet it once more (devices with one ray a lane).
+#define AGAIN 0x100
 
 // Data of a ray besides its geometry.
 typedef struct WaitingRay {
   float3 throughput;              // of a shadow ray: the light that it carries
   int pixel;                      // in the work-item's tile
-  int depth;                      // 1 for a camera ray, 0 for a shadow ray; with TURNED and DEPTH_BITS
+  int depth;                      // 1 for a camera ray, 0 for a shadow ray; with TURNED and AGAIN
   HAVING(HAS_RANDOM) int branch;  // position in the ray tree, for random numbers; 0: the camera ray
 } WaitingRay;
 
@@ -26,15 +26,8 @@ ENTRY static inline WaitingRay camera_path(int pixel) {
 
 ENTRY static inline int depth_of(const WaitingRay* path) { return path->depth & (TURNED - 1); }
 static inline bool is_straight(const WaitingRay* path) { return (path->depth & TURNED) == 0; }
-ENTRY static inline bool is_from_camera(const WaitingRay* path) {
-  return (path->depth & ((1 << DEPTH_BITS) - 1)) == 1;
+ENTRY static inline bool is_from_camera(const WaitingRay* path) { return (path->depth & (AGAIN - 1)) == 1; }
+ENTRY static inline bool meets_again(const WaitingRay* path) {
+  return HAS_ONE_RAY && (path->depth & AGAIN) != 0;
 }
-
-// The next light of a surface that the ray meets again, 0 at the first meeting (devices with one ray a lane).
-ENTRY static inline int next_light(const WaitingRay* path) {
-  if (HAS_ONE_RAY) return path->depth >> DEPTH_BITS;
-  return 0;
-}
-ENTRY static inline void wait_for_light(WaitingRay* path, UNIFORM int light) {
-  path->depth = (path->depth & ((1 << DEPTH_BITS) - 1)) | light << DEPTH_BITS;
-}
+ENTRY static inline void meet_again(WaitingRay* path) { path->depth |= AGAIN; }

@@ -58,7 +58,7 @@ ENTRY static inline float3 see_met(UNIFORM const Scene* scene, UNIFORM const Til
   if (HAS_FOG) light += see_fog(scene, met, path);
   if (!hit_anything(&met->hit)) return light + see_background(scene, tile, ray, path);
   shade_hit(scene, ray, met, at);
-  if (next_light(path) > 0) return light;
+  if (meets_again(path)) return light;
   light += see_ambient(scene, ray, path, met, at);
   if (HAS_EMISSION) light += see_emission(scene, path, at);
   if (HAS_MATTES && is_straight(path)) cover_by(scene, tile, path->pixel, &at->s, mean_of(arriving));
