@@ -298,7 +298,9 @@ typedef struct Passages {
 // the face seen, but the hit's distance remains that of the first. `mask`: as above.
 static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
                                       Faces* faces, Passages* passages, u32* counts) {
+  Hit met[MOST_TOUCHING];
   Touching touching;
+  touching.met.hits = met;
   Seen seen CLEARED_ON_GPUS;
   const Hit first = get_hit(hits, i);
   const REAL time = time_of_rays(rays);

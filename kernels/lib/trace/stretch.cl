@@ -10,12 +10,13 @@
 #define MOST_TOUCHING 16u
 
 // A short interval of a ray, and all its hits in (from, to], unordered. Boxes are tested in a longer one,
-// because rounding may place a hit outside its box by more than boxes are widened.
+// because rounding may place a hit outside its box by more than boxes are widened. The hits are not in it, so
+// that it can stay in registers.
 typedef struct Stretch {
   float3 o, d;
   float from, to, box_from, box_to;
   u32 count;
-  Hit hits[MOST_TOUCHING];
+  Hit* hits;  // MOST_TOUCHING
   HAVING(HAS_OBJECT_MOTION, float time;)
 } Stretch;
 
@@ -78,13 +79,26 @@ static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
   note_exit(scene, index, stretch, last);
 }
 
-// Pushes the children of a node that the interval crosses. Returns the new top.
-static inline u32 push_all_crossed(__global const u32* nodes, u32 word, const SlabRay* slabs,
-                                   const Stretch* stretch, u32* stack, u32 top) {
-  __global const BvhNode* node = node_at(nodes, word);
-  for (u32 bits = cross_children(node, slabs, stretch->box_from, stretch->box_to); bits; bits &= bits - 1u)
-    stack[top++] = child_word(node, lowest_bit(bits));
-  return top;
+// A node and the slots of its waiting children, of which the last is the next.
+#define WALK_LEVELS (WIDE_VECTORS ? BVH_STACK : BVH_LEVELS)
+
+// Pushes a node if the interval crosses children of it. Returns the new top.
+static inline u32 push_node(__global const u32* nodes, u32 word, const SlabRay* slabs, const Stretch* stretch,
+                            uint2* stack, u32 top) {
+  const u32 bits = cross_children(node_at(nodes, word), slabs, stretch->box_from, stretch->box_to);
+  stack[top] = (uint2)(word, bits);
+  return bits ? top + 1u : top;
+}
+
+// Takes the next child.
+static inline u32 pop_child(__global const u32* nodes, uint2* stack, u32* top) {
+  const uint2 next = stack[*top - 1u];
+  const u32 slot = 31u - clz(next.y), rest = next.y & ~(1u << slot);
+  if (rest)
+    stack[*top - 1u].y = rest;
+  else
+    --*top;
+  return child_word(node_at(nodes, next.x), slot);
 }
 
 #if WIDE_VECTORS
@@ -121,7 +135,7 @@ static inline void note_block(const Scene* scene, u32 index, const ShearRay* she
 }
 #endif
 
-static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u32* stack) {
+static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, uint2* stack) {
   __global const Instance* instance = scene->instances + index;
   float3 o = stretch->o, d = stretch->d;
   if (!(instance->flags & INSTANCE_IDENTITY)) {
@@ -130,43 +144,38 @@ static inline void note_mesh(const Scene* scene, u32 index, Stretch* stretch, u3
   }
   const SlabRay slabs = make_slab_ray(o, d);
   const ShearRay shear = make_shear_ray(o, d);
-  u32 top = 0;
-  stack[top++] = instance->root;
-  while (top) {
-    const u32 word = stack[--top];
+  u32 top = 0, word = instance->root;
+  for (;; word = pop_child(scene->nodes, stack, &top)) {
     if (word & BVH_LEAF) {
       const u32 first = word & BVH_FIRST_MASK,
                 last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
       for (u32 i = first; i <= last; ++i) note_block(scene, i, &shear, index, stretch);
     } else
-      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
+      top = push_node(scene->nodes, word, &slabs, stretch, stack, top);
+    if (!top) break;
   }
 }
 
 static inline void note_bounded(const Scene* scene, Stretch* stretch) {
-  u32 stack[BVH_STACK + 1];
-  u32 top = 0;
-  if (scene->info->bounded_count) stack[top++] = scene->info->tlas_root;
+  uint2 stack[WALK_LEVELS];
+  u32 top = 0, word = scene->info->tlas_root;
   const SlabRay slabs = make_slab_ray(stretch->o, stretch->d);
-  while (top) {
-    const u32 word = stack[--top];
-    if (!(word & BVH_LEAF)) {
-      top = push_all_crossed(scene->nodes, word, &slabs, stretch, stack, top);
-      continue;
-    }
+  for (;; word = pop_child(scene->nodes, stack, &top)) {
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
-    for (u32 i = first; i <= last; ++i) {
+    if (!(word & BVH_LEAF)) top = push_node(scene->nodes, word, &slabs, stretch, stack, top);
+    for (u32 i = first; (word & BVH_LEAF) && i <= last; ++i) {
       if (HAS_MESH && scene->instances[i].shape == SHAPE_MESH)
         note_mesh(scene, i, stretch, stack + top);
       else if (HAS_SOLID)
         note_solid(scene, i, stretch);
     }
+    if (!top) break;
   }
 }
 
 NEVER_INLINE void note_all(const Scene* scene, Stretch* stretch) {
   stretch->count = 0;
-  if (HAS_BVH) note_bounded(scene, stretch);
+  if (HAS_BVH && scene->info->bounded_count) note_bounded(scene, stretch);
   const u32 first = HAS_BVH ? scene->info->bounded_count : 0u;
   for (u32 i = first; HAS_SOLID && i < scene->info->instance_count; ++i)
     if (comes_near(scene->instances + i, stretch)) note_solid(scene, i, stretch);
