@@ -62,9 +62,14 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   met->box_to = met->to + reach;
   note_all(scene, met);
   bool found = false;
-  for (u32 i = 0; i < met->count; ++i) found |= same_face(&met->hits[i], first);
-  if (!found) met->hits[min(met->count++, MOST_TOUCHING - 1u)] = *first;
-  met->count = min(met->count, MOST_TOUCHING);
+  for (u32 i = 0; i < met->count; ++i) {
+    const Hit hit = listed_hit(scene, met, i);
+    found |= same_face(&hit, first);
+  }
+  if (!found) {
+    met->count = min(met->count, MOST_TOUCHING - 1u);
+    list_face(met, first->t, NO_INSTANCE, 0.0f, 0.0f, 0.0f);
+  }
   touching->end = first->t;
   touching->apart = own;
   // First within rounding plus a quarter, then closely behind the last of those, so that the next ray's
@@ -72,18 +77,18 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   for (u32 pass = 0; pass < 2u; ++pass) {
     const float from = touching->end;
     for (u32 i = 0; i < met->count; ++i) {
-      const Hit* hit = &met->hits[i];
-      const float3 other = outward_of(scene, hit, time_of_stretch(met));
-      const float limit = fmax(own, rounding_of(scene, hit, other, least));
+      const Hit hit = listed_hit(scene, met, i);
+      const float3 other = outward_of(scene, &hit, time_of_stretch(met));
+      const float limit = fmax(own, rounding_of(scene, &hit, other, least));
       const float steep = fmax(slope, fabs(dot(unit_normal(other), d)));
-      if ((hit->t - from) * steep > (pass ? 0.5f : 1.25f) * limit) continue;
-      touching->end = fmax(touching->end, hit->t);
-      touching->apart = fmax(touching->apart, fmax(limit, (hit->t - first->t) * steep + 0.25f * limit));
+      if ((hit.t - from) * steep > (pass ? 0.5f : 1.25f) * limit) continue;
+      touching->end = fmax(touching->end, hit.t);
+      touching->apart = fmax(touching->apart, fmax(limit, (hit.t - first->t) * steep + 0.25f * limit));
     }
   }
   u32 kept = 0;
   for (u32 i = 0; i < met->count; ++i)
-    if (met->hits[i].t <= touching->end) met->hits[kept++] = met->hits[i];
+    if (met->faces[i].t <= touching->end) met->faces[kept++] = met->faces[i];
   met->count = kept;
 }
 
@@ -97,8 +102,8 @@ static inline int find_touching_fields(const Scene* scene, const SceneRays* rays
   SceneRays again = *rays;
   int crossed = 0;
   met->d = get3(&rays->d, lane);
-  met->hits[0] = *first;
-  met->count = 1;
+  met->count = 0;
+  list_hit(met, first);
   touching->end = first->t;
   touching->apart = 0.0f;
   const float slope = fabs(dot(unit_normal(outward_of(scene, first, time_of_stretch(met))), met->d));
@@ -109,7 +114,8 @@ static inline int find_touching_fields(const Scene* scene, const SceneRays* rays
     Hits hits = no_hits((REAL)(first->t + reach));
     march_range(scene, &again, index, index + 1u, only, purpose, &hits, counts);
     if (MASK_LANE(hits.instance, lane) != (int)index || met->count >= MOST_TOUCHING) continue;
-    met->hits[met->count++] = get_hit(&hits, lane);
+    const Hit hit = get_hit(&hits, lane);
+    list_hit(met, &hit);
     touching->end = fmax(touching->end, REAL_LANE(hits.t, lane));
     crossed |= side;
   }
@@ -143,14 +149,17 @@ typedef struct Changes {
 static inline Changes faces_of(const Scene* scene, const Stretch* met) {
   Changes changes = {0, 0, 0};
   for (u32 i = 0; i < met->count; ++i) {
-    const Hit* hit = &met->hits[i];
+    const Hit hit = listed_hit(scene, met, i);
     bool again = false;
-    for (u32 k = 0; k < i; ++k) again |= on_shared_edge(scene->instances, &met->hits[k], hit);
-    const u32 flags = scene->materials[material_of(scene, hit)].flags;
+    for (u32 k = 0; HAS_MESH && k < i; ++k) {
+      const Hit before = listed_hit(scene, met, k);
+      again |= on_shared_edge(scene->instances, &before, &hit);
+    }
+    const u32 flags = scene->materials[material_of(scene, &hit)].flags;
     if (again || !(flags & MATERIAL_TRANSMITS)) continue;
     if (flags & MATERIAL_THIN)
       changes.thin |= 1u << i;
-    else if (dot(outward_of(scene, hit, time_of_stretch(met)), met->d) < 0.0f)
+    else if (dot(outward_of(scene, &hit, time_of_stretch(met)), met->d) < 0.0f)
       changes.entered |= 1u << i;
     else
       changes.left |= 1u << i;
@@ -163,13 +172,14 @@ static inline Changes faces_of(const Scene* scene, const Stretch* met) {
 static inline void take_out_pairs(const Scene* scene, const Stretch* met, Changes* changes) {
   for (u32 facing = 2; facing-- > 0;)
     for (u32 entered = changes->entered; entered; entered &= entered - 1u) {
-      const u32 i = lowest_bit(entered), medium = medium_inside(scene, &met->hits[i]);
-      const float3 normal = unit_normal(outward_of(scene, &met->hits[i], time_of_stretch(met)));
+      const u32 i = lowest_bit(entered);
+      const Hit hit = listed_hit(scene, met, i);
+      const float3 normal = unit_normal(outward_of(scene, &hit, time_of_stretch(met)));
       for (u32 left = changes->left; left; left &= left - 1u) {
         const u32 k = lowest_bit(left);
-        if (medium_inside(scene, &met->hits[k]) != medium) continue;
-        if (facing &&
-            dot(normal, unit_normal(outward_of(scene, &met->hits[k], time_of_stretch(met)))) > -0.9f)
+        const Hit other = listed_hit(scene, met, k);
+        if (medium_inside(scene, &other) != medium_inside(scene, &hit)) continue;
+        if (facing && dot(normal, unit_normal(outward_of(scene, &other, time_of_stretch(met)))) > -0.9f)
           continue;
         changes->entered &= ~(1u << i);
         changes->left &= ~(1u << k);
@@ -180,7 +190,8 @@ static inline void take_out_pairs(const Scene* scene, const Stretch* met, Change
 
 // Whether the first of two solids entered at one place is the outer one: the larger. Ties are broken by
 // medium, so that the order in the file does not matter.
-static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, const Hit* b, u32 medium_b) {
+static inline bool is_outer(const Scene* scene, const Hit* a, const Hit* b) {
+  const u32 medium_a = medium_inside(scene, a), medium_b = medium_inside(scene, b);
   const float size_a = scene->instances[a->instance].world_center.w,
               size_b = scene->instances[b->instance].world_center.w;
   if (size_a != size_b) return size_a == 0.0f || (size_b != 0.0f && size_a > size_b);
@@ -188,25 +199,20 @@ static inline bool is_outer(const Scene* scene, const Hit* a, u32 medium_a, cons
   return index_a != index_b ? index_a < index_b : medium_a < medium_b;
 }
 
-// The face of `bits`, which is not 0, whose solid is outermost or, if not `outermost`, innermost.
-static inline u32 pick_face(const Scene* scene, const Stretch* met, u32 bits, bool outermost) {
-  u32 best = lowest_bit(bits), medium = medium_inside(scene, &met->hits[best]);
-  for (bits &= bits - 1u; bits; bits &= bits - 1u) {
-    const u32 i = lowest_bit(bits), other = medium_inside(scene, &met->hits[i]);
-    if (is_outer(scene, &met->hits[i], other, &met->hits[best], medium) != outermost) continue;
-    best = i;
-    medium = other;
-  }
-  return best;
-}
-
 // Enters the media of the faces `entered`, outer ones first. Returns how many did not fit.
 static inline u32 enter_all(const Scene* scene, const Stretch* met, u32 entered, MediaStack* stack) {
   u32 lost = 0;
-  for (u32 left = entered; left;) {
-    const u32 outer = pick_face(scene, met, left, true);
-    left &= ~(1u << outer);
-    if (!cross_one(stack, (int)medium_inside(scene, &met->hits[outer]), true)) ++lost;
+  while (entered) {
+    u32 best = lowest_bit(entered);
+    Hit outer = listed_hit(scene, met, best);
+    for (u32 left = entered & (entered - 1u); left; left &= left - 1u) {
+      const Hit hit = listed_hit(scene, met, lowest_bit(left));
+      if (!is_outer(scene, &hit, &outer)) continue;
+      best = lowest_bit(left);
+      outer = hit;
+    }
+    entered &= ~(1u << best);
+    if (!cross_one(stack, (int)medium_inside(scene, &outer), true)) ++lost;
   }
   return lost;
 }
@@ -259,30 +265,32 @@ static inline void join_faces(const Scene* scene, const Touching* touching, u32 
   seen->strays = 0;
   bool opaque = false;
   for (u32 i = 0; i < met->count; ++i) {
-    const u32 material = material_of(scene, &met->hits[i]);
+    const Hit hit = listed_hit(scene, met, i);
+    const u32 material = material_of(scene, &hit);
     if ((scene->materials[material].flags & mask) == MATERIAL_TRANSMITS) continue;
-    if (opaque && comes_first(&seen->hit, &met->hits[i])) continue;
+    if (opaque && comes_first(&seen->hit, &hit)) continue;
     opaque = true;
-    seen->hit = met->hits[i];
+    seen->hit = hit;
     seen->material = material;
   }
   if (opaque) return;
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
-  for (u32 left = changes.left; left; left &= left - 1u)
-    if (!cross_one(&seen->behind, (int)medium_inside(scene, &met->hits[lowest_bit(left)]), false))
-      ++seen->strays;
+  for (u32 left = changes.left; left; left &= left - 1u) {
+    const Hit hit = listed_hit(scene, met, lowest_bit(left));
+    if (!cross_one(&seen->behind, (int)medium_inside(scene, &hit), false)) ++seen->strays;
+  }
   seen->overflows = enter_all(scene, met, changes.entered, &seen->behind);
   seen->after = (u32)current_of_one(scene->media, &seen->behind);
   const u32 some = changes.thin | changes.entered | changes.left;
-  u32 best = some ? lowest_bit(some) : 0u;
+  seen->hit = listed_hit(scene, met, some ? lowest_bit(some) : 0u);
   for (u32 bits = some; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    if (is_seen_before(scene, &met->hits[i], &met->hits[best], current, seen->after, changes.left >> i & 1u))
-      best = i;
+    const Hit hit = listed_hit(scene, met, i);
+    if (is_seen_before(scene, &hit, &seen->hit, current, seen->after, changes.left >> i & 1u))
+      seen->hit = hit;
   }
-  seen->hit = met->hits[best];
-  seen->material = material_of(scene, &met->hits[best]);
+  seen->material = material_of(scene, &seen->hit);
 }
 
 // The passages of a ray that has hit faces which touch each other: the media behind them all, the distance of
@@ -298,11 +306,12 @@ typedef struct Passages {
 // the face seen, but the hit's distance remains that of the first. `mask`: as above.
 static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
                                       Faces* faces, Passages* passages, u32* counts) {
-  Hit met[MOST_TOUCHING];
+  ListedFace faces_met[MOST_TOUCHING];
   Touching touching;
-  touching.met.hits = met;
+  touching.met.faces = faces_met;
   Seen seen CLEARED_ON_GPUS;
   const Hit first = get_hit(hits, i);
+  touching.met.first = first;
   const REAL time = time_of_rays(rays);
   const MediaStack before = {MASK_LANE(rays->media.low, i), MASK_LANE(rays->media.high, i)};
   HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
@@ -313,6 +322,7 @@ static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays,
   } else
     find_touching(scene, get3(&rays->o, i), get3(&rays->d, i), REAL_LANE(rays->t_min, i), &first, &touching);
   join_faces(scene, &touching, mask, before, &seen);
+  seen.hit.prim = listed_part(scene, &touching.met, &seen.hit);
   seen.hit.t = first.t;
   set_hit(hits, i, &seen.hit);
   const float3 outward = outward_of(scene, &seen.hit, REAL_LANE(time, i));

@@ -9,14 +9,23 @@
 
 #define MOST_TOUCHING 16u
 
+// A hit as a GPU's small stack keeps it: of a triangle its place (finish_triangle()), u and v; else the
+// normal.
+typedef struct ListedFace {
+  float t;
+  u32 instance;  // NO_INSTANCE: the ray's first hit
+  float x, y, z;
+} ListedFace;
+
 // A short interval of a ray, and all its hits in (from, to], unordered. Boxes are tested in a longer one,
-// because rounding may place a hit outside its box by more than boxes are widened. The hits are not in it, so
-// that it can stay in registers.
+// because rounding may place a hit outside its box by more than boxes are widened. The faces are not in it,
+// so that it can stay in registers.
 typedef struct Stretch {
   float3 o, d;
   float from, to, box_from, box_to;
   u32 count;
-  Hit* hits;  // MOST_TOUCHING
+  ListedFace* faces;  // MOST_TOUCHING
+  Hit first;
   HAVING(HAS_OBJECT_MOTION, float time;)
 } Stretch;
 
@@ -28,11 +37,27 @@ static inline bool same_face(const Hit* a, const Hit* b) {
   return a->instance == b->instance && a->prim == b->prim;
 }
 
-// A triangle may be in several leaves of its tree.
-static inline void note_hit(Stretch* stretch, const Hit* hit) {
-  for (u32 i = 0; i < stretch->count; ++i)
-    if (same_face(&stretch->hits[i], hit) && stretch->hits[i].t == hit->t) return;
-  if (stretch->count < MOST_TOUCHING) stretch->hits[stretch->count++] = *hit;
+static inline void list_face(Stretch* stretch, float t, u32 instance, float x, float y, float z) {
+  const ListedFace face = {t, instance, x, y, z};
+  if (stretch->count < MOST_TOUCHING) stretch->faces[stretch->count++] = face;
+}
+
+static inline void list_hit(Stretch* stretch, const Hit* hit) {
+  list_face(stretch, hit->t, hit->instance, hit->ng_x, hit->ng_y, hit->ng_z);
+}
+
+// The face `i`; all solids are on the part of the first hit (listed_part()).
+static inline Hit listed_hit(const Scene* scene, const Stretch* stretch, u32 i) {
+  const ListedFace face = stretch->faces[i];
+  Hit hit = {face.t, 0.0f, 0.0f, stretch->first.prim, face.instance, face.x, face.y, face.z};
+  if (face.instance == NO_INSTANCE) return stretch->first;
+  if (HAS_MESH && scene->instances[face.instance].shape == SHAPE_MESH) {
+    hit.prim = as_uint(face.x);
+    hit.u = face.y;
+    hit.v = face.z;
+    finish_triangle(scene->instances, scene->blocks, &hit);
+  }
+  return hit;
 }
 
 // Whether the interval may touch the instance's bounding ball, if it has one.
@@ -65,18 +90,29 @@ static inline void note_exit(const Scene* scene, u32 index, Stretch* stretch, Hi
   behind.ng_x = -hit.ng_x;
   behind.ng_y = -hit.ng_y;
   behind.ng_z = -hit.ng_z;
-  stretch->hits[stretch->count++] = behind;
+  list_hit(stretch, &behind);
 }
 
 static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
   Hit last, hit = next_hit(scene, index, stretch, stretch->from, stretch->to);
   if (hit.instance == NO_INSTANCE) return;
   for (u32 i = 0; i < 4u && hit.instance != NO_INSTANCE; ++i) {
-    note_hit(stretch, &hit);
+    list_hit(stretch, &hit);
     last = hit;
     hit = next_hit(scene, index, stretch, last.t, stretch->to);
   }
   note_exit(scene, index, stretch, last);
+}
+
+// The part of a solid that a listed hit is on; of others their prim.
+static inline u32 listed_part(const Scene* scene, const Stretch* stretch, const Hit* hit) {
+  const bool solid = HAS_SOLID && hit->instance < scene->info->instance_count &&
+                     scene->instances[hit->instance].shape != SHAPE_MESH;
+  if (!solid || (hit->instance == stretch->first.instance && hit->t == stretch->first.t)) return hit->prim;
+  Hit again = {.t = stretch->from, .instance = hit->instance};
+  while (again.t < hit->t && again.instance != NO_INSTANCE)
+    again = next_hit(scene, hit->instance, stretch, again.t, stretch->to);
+  return again.prim;
 }
 
 // A node and the slots of its waiting children, of which the last is the next.
@@ -101,6 +137,19 @@ static inline u32 pop_child(__global const u32* nodes, uint2* stack, u32* top) {
   return child_word(node_at(nodes, next.x), slot);
 }
 
+// A triangle may be in several leaves of its tree.
+static inline void note_triangle(__global const TriangleBlock* restrict blocks, Stretch* stretch, u32 place,
+                                 u32 instance, float t, float u, float v) {
+  for (u32 i = 0; i < stretch->count; ++i) {
+    const ListedFace* face = &stretch->faces[i];
+    const u32 other = as_uint(face->x);
+    if (face->instance == instance && face->t == t &&
+        blocks[other >> 3].prim[other & 7u] == blocks[place >> 3].prim[place & 7u])
+      return;
+  }
+  list_face(stretch, t, instance, as_float(place), u, v);
+}
+
 #if WIDE_VECTORS
 static inline void note_block(const Scene* scene, u32 index, const ShearRay* shear, u32 instance,
                               Stretch* stretch) {
@@ -112,14 +161,7 @@ static inline void note_block(const Scene* scene, u32 index, const ShearRay* she
   vstore8(test.v, 0, v);
   for (u32 bits = test.lanes; bits; bits &= bits - 1u) {
     const u32 i = lowest_bit(bits);
-    Hit hit;
-    hit.t = t[i];
-    hit.u = u[i];
-    hit.v = v[i];
-    hit.prim = index * 8u + i;
-    hit.instance = instance;
-    finish_triangle(scene->instances, scene->blocks, &hit);
-    note_hit(stretch, &hit);
+    note_triangle(scene->blocks, stretch, index * 8u + i, instance, t[i], u[i], v[i]);
   }
 }
 #else
@@ -128,9 +170,8 @@ static inline void note_block(const Scene* scene, u32 index, const ShearRay* she
   for (u32 i = 0; i < 8u && scene->blocks[index].prim[i] != NO_PRIM; ++i) {
     Hit hit = {.t = stretch->to, .instance = NO_INSTANCE};
     meet_triangle(scene->blocks, index * 8u + i, shear, stretch->from, instance, &hit);
-    if (hit.instance == NO_INSTANCE) continue;
-    finish_triangle(scene->instances, scene->blocks, &hit);
-    note_hit(stretch, &hit);
+    if (hit.instance != NO_INSTANCE)
+      note_triangle(scene->blocks, stretch, hit.prim, instance, hit.t, hit.u, hit.v);
   }
 }
 #endif
