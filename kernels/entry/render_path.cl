@@ -23,6 +23,7 @@ typedef struct LaneWork {
   float sign[BATCH];  // what the sample counts that the lane is at
   PathStates paths;   // set where lanes begin, as `rays`; of others their samples alone are read
   SceneRays rays;
+  HAVING(HAS_ROUGH, LampLights lamps;)  // registers are scarce where surfaces have many lobes
   u32 counts[ALL_COUNTS];
 } LaneWork;
 
@@ -141,7 +142,9 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
     counts[COUNT_PRIMARY] += lane_count(begun);
     note_own_rays(begun, counts);
     start_marching(counts);
-    lanes = going & step_path(scene, paths, &work->rays, !any_lane(lanes), counts, going);
+    EITHER(HAS_ROUGH, LampLights* const lamps = &work->lamps;, LampLights one CLEARED_ON_GPUS;
+           LampLights* const lamps = &one;)
+    lanes = going & step_path(scene, paths, &work->rays, lamps, !any_lane(lanes), counts, going);
     HAVING(HAS_MATTES, add_mattes(scene, launch, work, going, film);)
     const MASK over = going & ~lanes;
     if (!any_lane(over)) continue;

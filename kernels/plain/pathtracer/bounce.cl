@@ -130,7 +130,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
 
 // The path at a surface: adds what that sends along it to `light`. Returns whether the path continues.
 static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, PathState* path, SceneRay* ray,
-                          SampledSpectrum* light, UNIFORM u32* counts) {
+                          SampledSpectrum* light, OUT LampLight* lamp, UNIFORM u32* counts) {
   SurfaceShading at;
   shade_hit(scene, ray, met, &at);
   follow_hero(&path->wavelengths, &at.bsdf);
@@ -152,25 +152,24 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
-  LampLight lamp;
-  lamp.some = false;
-  if (HAS_CAUSTICS) lamp.photons = (SampledSpectrum)(0.0f);
+  lamp->some = false;
+  if (HAS_CAUSTICS) lamp->photons = (SampledSpectrum)(0.0f);
   if (!deep && scattered_share(&lobes) > 0.0f) {
-    if (scene->info->light_count > 0u) choose_lamp(scene, path, ray, met, &at, &lobes, &lamp, counts);
-    if (HAS_CAUSTICS) lamp.photons = gather_photons(scene, path, ray, &at, &lobes);
+    if (scene->info->light_count > 0u) choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
+    if (HAS_CAUSTICS) lamp->photons = gather_photons(scene, path, ray, &at, &lobes);
   }
   bool going = false;
   if (!deep || cut_out) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
-  if (lamp.some) *light += arriving_of_lamp(scene, path, &lamp, counts);
-  if (HAS_CAUSTICS) *light += lamp.photons;
+  if (lamp->some) *light += arriving_of_lamp(scene, path, lamp, counts);
+  if (HAS_CAUSTICS) *light += lamp->photons;
   return going;
 }
 
 // Takes the path a step further: whether it continues. The light of one that does not is complete.
 // `coherent`: the rays run close together.
-ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, UNIFORM bool coherent,
-                            UNIFORM u32* counts) {
+ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRay* ray, OUT LampLight* lamp,
+                            UNIFORM bool coherent, UNIFORM u32* counts) {
   Encounter met;
   if (HAS_MATTES) path->matte = 0.0f;
   const BegunRay begun = begun_ray_of(ray);
@@ -191,7 +190,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, NO_LIGHT_GROUP, met_fog(scene, &met, path));
   bool going = false;
   if (hit_anything(&met.hit)) {
-    going = reach_surface(scene, &met, path, ray, &light, counts);
+    going = reach_surface(scene, &met, path, ray, &light, lamp, counts);
   } else {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
