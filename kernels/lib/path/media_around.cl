@@ -13,7 +13,9 @@ static inline void leave_medium(u32 medium, MediaStack* entered, MediaStack* hol
 static inline float cross_faces(const Scene* scene, SceneRays* rays, const Hits* hits, MediaStack* entered,
                                 MediaStack* holding, u32* counts) {
   const Hit first = get_hit(hits, 0);
+  ListedFace listed[MOST_TOUCHING];
   Touching touching;
+  touching.met.faces = listed;
   HAVING(HAS_OBJECT_MOTION, touching.met.time = 0.0f;)
   if (HAS_SIDES && first.instance >= scene->info->instance_count) {
     HAVING(HAS_SIDES,
@@ -23,11 +25,7 @@ static inline float cross_faces(const Scene* scene, SceneRays* rays, const Hits*
   const Stretch* met = &touching.met;
   Changes changes = faces_of(scene, met);
   take_out_pairs(scene, met, &changes);
-  for (u32 left = changes.left; left;) {
-    const u32 inner = pick_face(scene, met, left, false);
-    left &= ~(1u << inner);
-    leave_medium(medium_inside(scene, &met->hits[inner]), entered, holding);
-  }
+  while (changes.left) leave_medium(take_face(scene, met, &changes.left, false), entered, holding);
   enter_all(scene, met, changes.entered, entered);
   return touching.end;
 }

@@ -55,6 +55,7 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   const float slope = fabs(dot(unit_normal(outward), d));
   met->o = o;
   met->d = d;
+  met->first = *first;
   const float reach = fmax(2.0f * own, scene->instances[first->instance].touch) / fmax(slope, 1e-3f);
   met->from = fmax(t_min, first->t - reach);
   met->to = first->t + reach;
@@ -64,7 +65,10 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   bool found = false;
   for (u32 i = 0; i < met->count; ++i) {
     const Hit hit = listed_hit(scene, met, i);
-    found |= same_face(&hit, first);
+    if (!same_face(&hit, first)) continue;
+    found = true;
+    if (HAS_MESH && hit.t == first->t && dot(normal_of(&hit), normal_of(first)) > 0.0f)
+      met->faces[i].instance = NO_INSTANCE;  // read at once
   }
   if (!found) {
     met->count = min(met->count, MOST_TOUCHING - 1u);
@@ -74,7 +78,7 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
   touching->apart = own;
   // First within rounding plus a quarter, then closely behind the last of those, so that the next ray's
   // start, `apart` behind, has a quarter to the faces on either side.
-  for (u32 pass = 0; pass < 2u; ++pass) {
+  for (u32 pass = 0; pass < 2u && met->count > 1u; ++pass) {
     const float from = touching->end;
     for (u32 i = 0; i < met->count; ++i) {
       const Hit hit = listed_hit(scene, met, i);
@@ -102,6 +106,7 @@ static inline int find_touching_fields(const Scene* scene, const SceneRays* rays
   SceneRays again = *rays;
   int crossed = 0;
   met->d = get3(&rays->d, lane);
+  met->first = *first;
   met->count = 0;
   list_hit(met, first);
   touching->end = first->t;
@@ -199,21 +204,26 @@ static inline bool is_outer(const Scene* scene, const Hit* a, const Hit* b) {
   return index_a != index_b ? index_a < index_b : medium_a < medium_b;
 }
 
+// Takes the face of *bits, which is not 0, whose solid is outermost or, if not `outermost`, innermost.
+// Returns its medium.
+static inline u32 take_face(const Scene* scene, const Stretch* met, u32* bits, bool outermost) {
+  u32 best = lowest_bit(*bits);
+  Hit hit = listed_hit(scene, met, best);
+  for (u32 left = *bits & (*bits - 1u); left; left &= left - 1u) {
+    const Hit other = listed_hit(scene, met, lowest_bit(left));
+    if (is_outer(scene, &other, &hit) != outermost) continue;
+    best = lowest_bit(left);
+    hit = other;
+  }
+  *bits &= ~(1u << best);
+  return medium_inside(scene, &hit);
+}
+
 // Enters the media of the faces `entered`, outer ones first. Returns how many did not fit.
 static inline u32 enter_all(const Scene* scene, const Stretch* met, u32 entered, MediaStack* stack) {
   u32 lost = 0;
-  while (entered) {
-    u32 best = lowest_bit(entered);
-    Hit outer = listed_hit(scene, met, best);
-    for (u32 left = entered & (entered - 1u); left; left &= left - 1u) {
-      const Hit hit = listed_hit(scene, met, lowest_bit(left));
-      if (!is_outer(scene, &hit, &outer)) continue;
-      best = lowest_bit(left);
-      outer = hit;
-    }
-    entered &= ~(1u << best);
-    if (!cross_one(stack, (int)medium_inside(scene, &outer), true)) ++lost;
-  }
+  while (entered)
+    if (!cross_one(stack, (int)take_face(scene, met, &entered, true), true)) ++lost;
   return lost;
 }
 
@@ -306,12 +316,11 @@ typedef struct Passages {
 // the face seen, but the hit's distance remains that of the first. `mask`: as above.
 static inline void meet_touching_lane(const Scene* scene, const SceneRays* rays, u32 i, u32 mask, Hits* hits,
                                       Faces* faces, Passages* passages, u32* counts) {
-  ListedFace faces_met[MOST_TOUCHING];
+  ListedFace listed[MOST_TOUCHING];
   Touching touching;
-  touching.met.faces = faces_met;
+  touching.met.faces = listed;
   Seen seen CLEARED_ON_GPUS;
   const Hit first = get_hit(hits, i);
-  touching.met.first = first;
   const REAL time = time_of_rays(rays);
   const MediaStack before = {MASK_LANE(rays->media.low, i), MASK_LANE(rays->media.high, i)};
   HAVING(HAS_OBJECT_MOTION, touching.met.time = REAL_LANE(time, i);)
