@@ -15,7 +15,7 @@ static inline __global u32* counters_of(__global u32* counters, u32 item) {
 }
 
 // The counters that a work-item keeps.
-#define OWN_COUNTERS (HAS_SDF ? COUNT_FINISHED : COUNT_MARCH_STEPS)
+#define OWN_COUNTERS (HAS_SDF ? COUNTERS : COUNT_MARCH_STEPS)
 
 static inline void add_counts(__global u32* restrict counters, u32* counts) {
   if (HAS_SDF) counts[COUNT_MARCH_LEFT] = 0u;
