@@ -1,5 +1,5 @@
-// See any_solid.h. No distance is steeper than 1, so there is no crossing nearer than the distance: the line
-// is gone along in such steps, and halved where the sign changes.
+// Steps along the line by the distance, as no crossing is nearer, and bisects where the sign changes; normals
+// are central differences.
 #include "bench/plain/any_solid.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See media.h.
+// Keeps media in an array by order of entry and searches it from the end; absorption is Beer's law.
 #include "bench/plain/media.h"
 
 #include <algorithm>

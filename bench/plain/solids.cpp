@@ -1,4 +1,4 @@
-// See solids.h. Each solid offers its crossings; the formulas are templates over the precision.
+// Solves each solid's equation in templates over the precision, and leaves solids without one to any_solid.h.
 #include "bench/plain/solids.h"
 
 #include <algorithm>

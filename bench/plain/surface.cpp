@@ -1,4 +1,5 @@
-// See surface.h.
+// Bends smooth normals to the silhouette, lifts points off smooth meshes (Hanika 2021), filters checkers, and
+// evaluates lights, Phong's or Blinn's highlight and Fresnel's equations.
 #include "bench/plain/surface.h"
 
 #include <algorithm>

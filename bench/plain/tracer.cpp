@@ -1,4 +1,4 @@
-// See tracer.h: the two-level BVH child by child, triangles after Moeller and Trumbore (1997).
+// Walks the two-level BVH child by child, near ones first; triangles after Moeller and Trumbore (1997).
 #include "bench/plain/tracer.h"
 
 #include <algorithm>

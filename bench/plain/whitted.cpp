@@ -1,4 +1,5 @@
-// See whitted.h.
+// Follows a ray to its next visible surface, adds the lights through shadow filters, then recurses into the
+// reflected and the refracted ray; surface.h shades, media.h keeps the media.
 #include "bench/plain/whitted.h"
 
 #include <fmt/format.h>

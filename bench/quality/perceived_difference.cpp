@@ -1,4 +1,5 @@
-// See perceived_difference.h.
+// Blurs both pictures by the eye's contrast sensitivity, compares colours in CIELab, and raises the
+// differences where edges and points differ.
 #include "bench/quality/perceived_difference.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See check_hits.h.
+// Checks rays in parallel; where the tracers differ, traces the ray and copies moved by the rounding error in
+// double precision, and accepts an answer within their range.
 #include "bench/rays/check_hits.h"
 
 #include <tbb/blocked_range.h>

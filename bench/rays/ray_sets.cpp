@@ -1,4 +1,4 @@
-// See ray_sets.h.
+// Orders primary rays by tiles, and starts the other kinds where these hit; glass rays cross 5 surfaces.
 #include "bench/rays/ray_sets.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See ray_times.h.
+// Checks the first answers of each kind with check_hits.h, later ones by their hash, and reports the whole
+// run's rate beside the kernel's.
 #include "bench/rays/ray_times.h"
 
 #include <fmt/format.h>

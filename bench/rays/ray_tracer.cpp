@@ -1,4 +1,4 @@
-// See ray_tracer.h.
+// Builds entry/trace_rays.cl with the scene's configuration, and times runs by the device's clock.
 #include "bench/rays/ray_tracer.h"
 
 #include <algorithm>

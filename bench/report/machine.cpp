@@ -1,4 +1,4 @@
-// See machine.h.
+// Reads /proc/cpuinfo, uname() and getloadavg(); a fact that cannot be read is "unknown" or empty.
 #include "bench/report/machine.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See device_peaks.h.
+// Runs kernels/entry/peaks.cl at all vector widths, doubles the work until a run takes 10 ms, and compares
+// the results with the host's.
 #include "bench/roofline/device_peaks.h"
 
 #include <fmt/format.h>

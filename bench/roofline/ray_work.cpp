@@ -1,4 +1,5 @@
-// See ray_work.h. The constants count what stands in kernels/lib/trace/nodes.cl and triangles.cl.
+// Counts the plain tracer's visits, at the cost in operations and bytes that each has in the device's tracer
+// (kernels/lib/trace/nodes.cl and triangles.cl).
 #include "bench/roofline/ray_work.h"
 
 #include <algorithm>

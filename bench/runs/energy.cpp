@@ -1,4 +1,5 @@
-// See energy.h.
+// Sums counters of RAPL, or else of hwmon, and of NVML, which is loaded at run time; if one device has none,
+// the sum is unknown.
 #include "bench/runs/energy.h"
 
 #include <dlfcn.h>

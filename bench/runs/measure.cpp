@@ -1,4 +1,5 @@
-// See measure.h.
+// Runs each way once, then all in shuffled rounds until number, time and precision suffice; if too few runs
+// were quiet, the least disturbed ones count too.
 #include "bench/runs/measure.h"
 
 #include <fmt/format.h>

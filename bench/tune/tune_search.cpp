@@ -1,4 +1,5 @@
-// See tune_search.h.
+// Tries every second value of each axis, then neighbours of the best until none is 2 % faster; the winner
+// must beat the default again in pairs.
 #include "bench/tune/tune_search.h"
 
 #include <cmath>

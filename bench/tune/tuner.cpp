@@ -1,4 +1,5 @@
-// See tuner.h.
+// Tunes the frame's kernel, then the AOVs' with 15 % of the budget; each candidate runs in turn with the
+// default, and tune_search.h chooses the candidates.
 #include "bench/tune/tuner.h"
 
 #include <fmt/format.h>

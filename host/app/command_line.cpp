@@ -1,4 +1,5 @@
-// See command_line.h.
+// Checks commands and options for misspellings (command_words.h), then has CLI11 parse them; each command
+// adds its own options.
 #include "app/command_line.h"
 
 #include <fmt/format.h>

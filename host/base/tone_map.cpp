@@ -1,4 +1,5 @@
-// See tone_map.h.
+// Measures the exposure and adds bloom, then maps pixels in parallel: white balance, vignette, curve,
+// contrast. Has Reinhard's and AgX's curves; aces.h has that of ACES.
 #include "base/tone_map.h"
 
 #include <algorithm>

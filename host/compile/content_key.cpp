@@ -1,4 +1,5 @@
-// See content_key.h. A key takes all members of a struct, in their order, but those that are named here.
+// Hashes all members of a struct in their order except those named here; large blocks of bytes are hashed in
+// pieces by several threads.
 #include "compile/content_key.h"
 
 #include "compile/steps.h"

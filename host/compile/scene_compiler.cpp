@@ -1,4 +1,5 @@
-// See scene_compiler.h.
+// Runs the steps in the order of the diagram below, each again only if the key of its inputs changed, and
+// merges their tables and features.
 #include "compile/scene_compiler.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See shapes.h.
+// Calls the static functions of the solid's struct by the table SOLIDS; meshes and fields have none.
 #include "compile/shapes.h"
 
 #include "base/error.h"

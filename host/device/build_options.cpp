@@ -1,4 +1,5 @@
-// See build_options.h.
+// Joins sundog's options, the device rule's, the entry's, the environment's and the caller's; the
+// environment's replace those of a rule by the same name.
 #include "device/build_options.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See device_rules.h. docs/measurements/gpu-compilers.md has the figures behind the rows.
+// Holds the table; its first matching row counts. docs/measurements/gpu-compilers.md has the figures.
 #include "device/device_rules.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See machine_topology.h.
+// Sets HWLOC_SYNTHETIC to one node with all processors and memory, unless hwloc finds /sys or the user
+// describes the machine.
 #include "device/machine_topology.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See nvidia.h. The log has these lines (older compilers indent the second with spaces only):
+// Searches the log for lines like these (older compilers indent the second with spaces only):
 //     ptxas info    : Compiling entry function 'trace_rays' for 'sm_90'
 //     ptxas info    : Function properties for trace_rays
 //     ptxas         .     512 bytes stack frame, 16 bytes spill stores, 24 bytes spill loads

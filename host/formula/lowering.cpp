@@ -1,4 +1,5 @@
-// See lowering.h.
+// Walks each expression depth first and leaves the operations to Values and call_function(); errors get the
+// innermost place, and domain checks the branch they are in.
 #include "formula/lowering.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// See lanes.h.
+// Preprocesses and parses a file, specialises what its entries call, and writes structures and functions
+// behind guards, as several files may make the same ones.
 #include "lanes/lanes.h"
 
 #include "lanes/writer.h"

@@ -1,4 +1,5 @@
-// See preprocess.h.
+// Blanks comments, splits lines into tokens with their places, handles directives, and expands macros between
+// two directives at once.
 #include "lanes/preprocess.h"
 
 #include <algorithm>

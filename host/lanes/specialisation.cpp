@@ -1,4 +1,5 @@
-// See specialisation.h.
+// Walks the function again and again until nothing more varies: variables set in divergent branches or loops
+// vary, and calls take their own specialisations.
 #include "lanes/specialisation.h"
 
 namespace sundog::spmd {

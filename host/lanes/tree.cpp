@@ -1,4 +1,4 @@
-// See tree.h.
+// Computes sizes and offsets by OpenCL C's rules, and lists built-in functions with their costs.
 #include "lanes/tree.h"
 
 namespace sundog::spmd {

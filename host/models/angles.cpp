@@ -1,4 +1,5 @@
-// See angles.h.
+// Reduces the quotient to |t| <= tan(pi / 8) and sums its series by Estrin's scheme, in a loop of selections
+// that compilers vectorise.
 #include "models/angles.h"
 
 #include <cmath>

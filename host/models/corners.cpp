@@ -1,4 +1,4 @@
-// See corners.h.
+// Counts and places corners in parallel by atomic additions, then sorts those of each point.
 #include "models/corners.h"
 
 #include <algorithm>

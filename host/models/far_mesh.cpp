@@ -1,4 +1,5 @@
-// See far_mesh.h.
+// Rounds the middle of the box to a multiple of a power of two above the mesh's size, subtracts it from the
+// positions, and moves the objects by it.
 #include "models/far_mesh.h"
 
 #include <algorithm>

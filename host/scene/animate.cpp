@@ -1,4 +1,5 @@
-// See animate.h.
+// Resolves names, checks that tracks do not undo each other, and applies them in their order; then the
+// frame's number seeds the noise.
 #include "scene/animate.h"
 
 #include <fmt/format.h>

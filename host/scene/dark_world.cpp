@@ -1,4 +1,5 @@
-// See dark_world.h.
+// Searches environment, lights, materials, fields, background and fog for light; the warning proposes a box
+// that has the world's medium.
 #include "scene/dark_world.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See document.h. Parts that a viewer changes often, up to sixty times a second, are read separately.
+// Reads only camera, image, render, lights and surfaces again, which viewers change up to sixty times a
+// second; returns null for any other change.
 #include "scene/document.h"
 
 #include <algorithm>

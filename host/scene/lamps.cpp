@@ -1,4 +1,5 @@
-// See lamps.h.
+// Switches over the kinds of light: first the shapes of visible objects, then table rows, power and bounds,
+// last the objects with their materials.
 #include "scene/lamps.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See mesh_faults.h.
+// Welds positions and counts each edge's directions; if all match, signs the volume of each connected part,
+// which may face inwards within a larger one.
 #include "scene/mesh_faults.h"
 
 #include <algorithm>

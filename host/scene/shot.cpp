@@ -1,4 +1,5 @@
-// See shot.h. The spaces are those of ImfStandardAttributes.h, which are RenderMan's.
+// Builds matrices in the spaces of ImfStandardAttributes.h, which are RenderMan's, with a depth that makes
+// NDC invertible.
 #include "scene/shot.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// See tinybvh_tables.h. Its layouts changed between versions: what a version has is asked of the compiler.
+// Builds both BVHs on the host and copies their arrays; `requires` and #ifdef select the version's layout.
 #define TINYBVH_IMPLEMENTATION
 #include "tinybvh_tables.h"
 

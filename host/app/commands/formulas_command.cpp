@@ -1,5 +1,5 @@
-// See formulas_command.h. JSON: "formulas" with each surface's source, text, limits, interval and parameters;
-// "operations" with what puts fields together; "functions" of the language.
+// Prints a list, or JSON: "formulas" with each surface's source, text, limits, interval and parameters,
+// "operations" that combine fields, and "functions" of the language.
 #include "app/commands/formulas_command.h"
 #include "base/arguments.h"
 

@@ -1,4 +1,5 @@
-// See command_words.h.
+// Descends the tree of commands word by word, then checks that each option is known and not followed by
+// another option in place of its value.
 #include "app/options/command_words.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See output_files.h.
+// Compares files by device and inode, and by resolved path too; outputs may share a pipe or a device.
 #include "app/options/output_files.h"
 
 #include <fmt/format.h>

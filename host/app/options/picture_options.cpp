@@ -1,4 +1,4 @@
-// See picture_options.h.
+// Declares the options with their help and limits, and checks --format; output_files.h checks the others.
 #include "app/options/picture_options.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// See denoise.h. The functions are those of the library's C interface, of which versions 1.4 and 2 share all
-// that is used here but the names of two.
+// Loads the C interface by dlopen; versions 1.4 and 2 share all but two names. Cleans albedo and normal
+// first, then the colours with their help, and alpha like a colour.
 #include "app/render/denoise.h"
 
 #include <dlfcn.h>

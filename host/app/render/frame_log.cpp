@@ -1,5 +1,5 @@
-// See frame_log.h. Locks of byte ranges far behind the file's end stand for the frames, one a byte, and one
-// more for appending.
+// Appends a line of JSON per frame; locks of single bytes far behind the file's end stand for the frames, and
+// one more for appending.
 #include "app/render/frame_log.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
-// See stray_exits.h.
+// Blames objects with an interior whose meshes are open, turned or inside out (mesh_faults.h) or whose shapes
+// are flat, else coincident surfaces.
 #include "app/render/stray_exits.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See web_server.h. Boost.Beast, asynchronous on one thread: a connection that is slow or gone waits alone.
+// Accepts connections with Boost.Beast, asynchronously on one thread, so that a slow or lost connection
+// delays no other; messages from other threads are posted to it.
 #include "app/serve/web_server.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See aces.h. Numbers are those of the Academy's transforms.
+// Applies glow, the red modifier, the reference curve and the screen's curve with the numbers of the
+// Academy's transforms.
 #include "base/colors/aces.h"
 
 #include <algorithm>

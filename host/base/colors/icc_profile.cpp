@@ -1,4 +1,5 @@
-// See icc_profile.h. Layout: ICC.1:2022 (profile version 4.4), which all readers of version 4 take.
+// Writes header, table and tags in the layout of ICC.1:2022 (profile version 4.4), which all readers of
+// version 4 take, with primaries adapted to D50.
 #include "base/colors/icc_profile.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// See bloom.h. Three means over a window in turn are near a bell (Wells 1986, "Efficient synthesis of
-// Gaussian filters by cascaded uniform filters").
+// Adds three bells of different widths, each three means over a window in turn (Wells 1986, "Efficient
+// synthesis of Gaussian filters by cascaded uniform filters").
 #include "base/pixels/bloom.h"
 
 #include <algorithm>

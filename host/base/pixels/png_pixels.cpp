@@ -1,4 +1,5 @@
-// See png_pixels.h. Portable Network Graphics (PNG) Specification, third edition, sections 5, 9 and 10.
+// Inflates to the end of the pixels' memory and unfilters rows towards its start, a pixel at a time (Portable
+// Network Graphics Specification, third edition, sections 5, 9 and 10).
 #include "base/pixels/png_pixels.h"
 #include "base/memory.h"
 

@@ -1,6 +1,5 @@
-// See quick_png.h. Each row is stored as its difference to the row above (filter 2), which compresses smooth
-// pictures well without trials, then deflated. Portable Network Graphics (PNG) Specification, third edition,
-// sections 5, 9 and 10.
+// Stores rows as differences to the row above, which suits smooth pictures without trials, and deflates them
+// (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
 #include "base/pixels/quick_png.h"
 
 #include <libdeflate.h>

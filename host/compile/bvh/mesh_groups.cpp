@@ -1,4 +1,5 @@
-// See mesh_groups.h.
+// Joins up to 16 meshes with the same transform, placed once each, whose boxes overlap by a quarter of the
+// smaller's area.
 #include "compile/bvh/mesh_groups.h"
 
 #include <algorithm>

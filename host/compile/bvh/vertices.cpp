@@ -1,4 +1,5 @@
-// See vertices.h.
+// Gives each triangle its own vertices if the mesh has no normals; a normal without direction is replaced by
+// the sum of the faces' around it.
 #include "compile/bvh/vertices.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// See wide_bvh.h. A binary tree with each node's minimum cost of becoming 1 to 7 wide children is built, then
-// converted to Bvh8Nodes and leaf blocks.
+// Computes each binary node's least cost as 1 to 7 wide children on the way up, then lays out Bvh8Nodes and
+// leaf blocks; a tree too deep for the stack is built again by median splits.
 #include "compile/bvh/wide_bvh.h"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,4 +1,5 @@
-// See held_bailout.h.
+// Evaluates each map in doubles at 24 points on a sphere, and bisects the radius down to one whose values
+// floats can hold.
 #include "compile/fields/held_bailout.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// See sdf_deep.h. sdf.cpp emits the code of deep fields.
+// Lowers the field's least threshold to the pixel's footprint and adds an iteration per doubling of
+// magnification; sdf.cpp emits the code of deep fields.
 #include "compile/fields/sdf_deep.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See halo_map.h.
+// Divides the rays among 16 bands and the kinds of crystals, sums the bands' cells in doubles, and averages
+// the map with its mirror image in the sun's vertical plane.
 #include "compile/halo/halo_map.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See albedos.h. The lobes are those of kernels/plain/shade/layer_lobes.cl.
+// Integrates the lobes of kernels/plain/shade/layer_lobes.cl over a grid of directions; a matte ground weighs
+// sums that are made once.
 #include "compile/layers/albedos.h"
 
 #include <tbb/parallel_for.h>

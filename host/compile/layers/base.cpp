@@ -1,4 +1,5 @@
-// See base.h.
+// Turns facet albedos (facets.h) into the light past the base and the scales of lobes, for each step of a
+// grid in parallel; equal grids share their rows.
 #include "compile/layers/base.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,5 @@
-// See film.h.
+// Combines the amplitudes of both interfaces by Airy's formula at each row of the spectrum; a metal becomes a
+// dielectric of its reflectance.
 #include "compile/layers/film.h"
 
 #include <algorithm>

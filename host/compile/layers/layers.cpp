@@ -1,4 +1,5 @@
-// See layers.h. The lobes are those of kernels/plain/shade/layer_lobes.cl.
+// Packs numbers of OpenPBR, then appends rows of fuzz, coat, base, film and gains; textures of roughness or
+// coat weight add grids (base.h). Lobes as in kernels/plain/shade/layer_lobes.cl.
 #include "compile/layers/layers.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See round_facets.h. Rows are uniform in the root of the width and interpolated by cubics through four.
+// Interpolates by cubics through four rows, uniform in the root of the width; facets.h has anisotropic ones.
 #include "compile/layers/round_facets.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See environment.h.
+// Draws gradients, skies and halos as pictures, sums luminance to cumulative shares of rows and cells with
+// cutpoints, and adds the sun as a directional light.
 #include "compile/lights/environment.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See light_tree.h.
+// Halves the lights along the longest axis of their centres, left child first, and replaces their light rays
+// by rays to chosen ones.
 #include "compile/lights/light_tree.h"
 
 #include <algorithm>

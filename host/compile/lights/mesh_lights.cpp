@@ -1,4 +1,5 @@
-// See mesh_lights.h.
+// Appends a light per triangle and notes the first on the mesh's instances; meshes that move, shine unevenly
+// or have too many triangles get none.
 #include "compile/lights/mesh_lights.h"
 
 #include "scene/light_groups.h"

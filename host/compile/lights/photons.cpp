@@ -1,4 +1,5 @@
-// See photons.h.
+// Bounds smooth objects by balls, shares photons among lights by the light they send to these, and among
+// balls by their radii.
 #include "compile/lights/photons.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See coarse_starts.h.
+// Computes how far rays start off a surface (kernels/plain/shade/interaction.cl), at each solid's nearest
+// point and each mesh's worst triangle, and compares that with the camera's distance.
 #include "compile/placing/coarse_starts.h"
 
 #include <glm/gtc/matrix_transform.hpp>

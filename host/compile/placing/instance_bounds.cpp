@@ -1,4 +1,5 @@
-// See instance_bounds.h.
+// Takes the shape's reach along each axis of the world, rounds outwards, and cuts solids along their longest
+// axis into two or four parts where that saves area.
 #include "compile/placing/instance_bounds.h"
 
 #include <algorithm>

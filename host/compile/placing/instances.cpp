@@ -1,4 +1,5 @@
-// See instances.h.
+// Places all objects, joins meshes that share a BVH, takes a few large solids out of the tree, builds it, and
+// stores instances in leaf order, then large solids, planes and fields.
 #include "compile/placing/instances.h"
 
 #include <fmt/format.h>

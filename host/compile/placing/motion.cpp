@@ -1,4 +1,5 @@
-// See motion.h.
+// Joins boxes at many times of the shutter, widened by the paths' greatest deviation from their chords, which
+// follows from a bound of the acceleration.
 #include "compile/placing/motion.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See next_shot.h.
+// Takes the next scene's camera, transforms and deformed faces, or without one those at the end of this
+// scene's own motion.
 #include "compile/placing/next_shot.h"
 
 #include "compile/placing/motion.h"

@@ -1,4 +1,5 @@
-// See sky.h.
+// Evaluates Perez's formula relative to the zenith, and dims sunlight by air, haze and ozone (Preetham,
+// Shirley and Smits 1999, "A Practical Analytic Model for Daylight").
 #include "compile/sky/sky.h"
 
 #include <algorithm>

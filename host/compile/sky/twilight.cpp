@@ -1,4 +1,5 @@
-// See twilight.h. Lengths in km.
+// Marches rays through a spherical atmosphere in 12 bands, adds light scattered again from tables of three
+// orders, and keeps the sky as a grid. Lengths in km.
 #include "compile/sky/twilight.h"
 
 #include <tbb/parallel_for.h>

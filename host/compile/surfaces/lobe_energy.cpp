@@ -1,4 +1,5 @@
-// See lobe_energy.h.
+// Averages over visible facets from a Fibonacci lattice, scales gains in 12 rounds, and keeps white lobes
+// slightly dark so that none exceeds 1.
 #include "compile/surfaces/lobe_energy.h"
 
 #include <tbb/parallel_for.h>

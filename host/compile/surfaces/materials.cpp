@@ -1,4 +1,5 @@
-// See materials.h.
+// Packs materials with flags that follow from their values, merges equal media, adds scattering fog to the
+// world's, and tabulates dispersion for paths.
 #include "compile/surfaces/materials.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See box_tree.h. Splits by count along the longest axis of the centres.
+// Splits by count along the longest axis of the centres; searches with a stack and sorts the boxes it finds.
 #include "compile/touching/box_tree.h"
 
 #include <algorithm>

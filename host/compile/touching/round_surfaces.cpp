@@ -1,4 +1,5 @@
-// See round_surfaces.h. Subdivides cells while both surfaces may pass through them nearly parallel.
+// Compares spheres in closed form; halves cells of other pairs while both surfaces may pass nearly parallel,
+// in a half plane if they share an axis.
 #include "compile/touching/round_surfaces.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See touching_triangles.h. Candidates come from a grid with cells about as large as the triangles.
+// Takes candidates from a grid with cells about twice as large as the triangles, and compares their planes,
+// then their outlines along the main axis.
 #include "compile/touching/touching_triangles.h"
 
 #include <tbb/parallel_sort.h>

@@ -1,4 +1,5 @@
-// See filter.h.
+// Integrates the filter in 2^14 steps and inverts the sum to distances at equal quantiles, apart for its
+// positive and negative part.
 #include "compile/view/filter.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See local_origin.h.
+// Rounds a far target to steps of a quarter to half of the view's length, then prefers an object's or light's
+// position nearby that leaves fewer decimals.
 #include "compile/view/local_origin.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See gltf_layers.h.
+// Sets OpenPBR's values extension by extension; rewrites specular-glossiness in the JSON document, before
+// materials are read.
 #include "models/gltf/gltf_layers.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See gltf_unread.h. Ignores values of unexpected types.
+// Compares textures, extensions and attributes with tables of those that are read; ignores values of
+// unexpected types.
 #include "models/gltf/gltf_unread.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See mtl_pbr.h.
+// Writes a glTF material in memory for GltfMaterials; PbrTextures maps its texture numbers to MTL's files.
 #include "models/obj/mtl_pbr.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See openpbr.h.
+// Copies the values to material.layers, derives diffuse, reflection, transmission, emission and opacity, and
+// the medium inside from colour and depth.
 #include "models/values/openpbr.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See profile.h.
+// Evaluates Bezier cubics, and cuts them by blossoms at extrema and inflections of both coordinates.
 #include "models/values/profile.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See refraction.h.
+// Evaluates Sellmeier's and Cauchy's formulas, fits Cauchy's to Abbe numbers, and holds the catalogue.
 #include "models/values/refraction.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// See revolution.h.
+// Cuts the profile into monotone parts; distances by Newton's method from the nearest of eight chords,
+// lengths by Gauss' rule, reach by bisection.
 #include "models/values/revolution.h"
 
 #include <algorithm>

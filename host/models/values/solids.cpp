@@ -1,4 +1,4 @@
-// See solids.h.
+// Computes flat faces of caps, lathes and boxes and a rounded box's distance for the header's structs.
 #include "models/values/solids.h"
 
 namespace sundog {

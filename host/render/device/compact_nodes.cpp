@@ -1,4 +1,4 @@
-// See compact_nodes.h.
+// Rounds boxes outwards to steps of a power of two per axis; children are relative to the first of a kind.
 #include "render/device/compact_nodes.h"
 
 #include <algorithm>

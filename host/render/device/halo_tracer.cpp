@@ -1,4 +1,5 @@
-// See halo_tracer.h.
+// Runs a band's launches one after the other, reads its counts, which are whole numbers and so need no order,
+// and adds them to HaloSum.
 #include "render/device/halo_tracer.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See photon_maps.h.
+// Traces photons in launches, sorts them by cell and draws beams on the host, and uploads as many maps as
+// fit; radii shrink after Knaus and Zwicker (2011).
 #include "render/device/photon_maps.h"
 
 #include <fmt/format.h>

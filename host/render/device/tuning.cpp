@@ -1,4 +1,5 @@
-// See tuning.h.
+// Names files by a hash of platform, device, driver and units, keeps one entry per kernel and class of scene,
+// and takes damaged files as missing.
 #include "render/device/tuning.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-// See cryptomatte.h.
+// Hashes names by MurmurHash3 to ids as floats, splits pairs into layers of two, and writes the manifests;
+// "default" stands for surfaces without an entry.
 #include "render/film/cryptomatte.h"
 
 #include <fmt/format.h>

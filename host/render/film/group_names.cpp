@@ -1,4 +1,5 @@
-// See group_names.h.
+// Numbers groups by their place in the scene's list, the rest 0, expands the AOV of all groups, and refuses
+// parts of light beside groups.
 #include "render/film/group_names.h"
 
 #include <fmt/format.h>

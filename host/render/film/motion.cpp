@@ -1,4 +1,5 @@
-// See motion.h.
+// Finds each pixel's world point by its depth, moves it with its object or with the face that covers it, and
+// projects it by the next camera.
 #include "render/film/motion.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See convergence.h.
+// Weighs a pixel's change, its neighbours' change and the variance of colours around it; after one sample it
+// has the variance alone.
 #include "render/plan/convergence.h"
 
 #include <tbb/blocked_range.h>

@@ -1,4 +1,5 @@
-// See passes.h.
+// Doubles the samples of pixels whose error exceeds the threshold, scaled by cost, within the budget;
+// subsample.h plans frames that interpolate.
 #include "render/plan/passes.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See pixel_rules.h.
+// Divides the difference of colours by the fourth root of light; compares object, material, albedo, normal.
 #include "render/plan/pixel_rules.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// See subsample.h.
+// Samples corners, casts rays that only look between corners that agree, samples pixels that differ and those
+// around surprises, then interpolates.
 #include "render/plan/subsample.h"
 
 #include <algorithm>

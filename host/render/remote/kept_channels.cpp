@@ -1,4 +1,5 @@
-// See kept_channels.h.
+// Lends idle channels by peer; closing one puts it back, unless it broke, and the destructor sends the close
+// to those that are idle.
 #include "render/remote/kept_channels.h"
 
 #include <map>

@@ -1,4 +1,5 @@
-// See frame_watch.h.
+// Looks every 20 ms until the frame is over, then waits a moment for launches and for devices that close, and
+// leaves the threads that stay.
 #include <algorithm>
 
 #include "render/film/checkpoint.h"

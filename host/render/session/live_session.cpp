@@ -1,4 +1,4 @@
-// See live_session.h. The control thread first, then the device threads.
+// Defines the control thread first, then the device threads; frees replaced frames outside the lock.
 #include <algorithm>
 
 #include "render/film/group_names.h"

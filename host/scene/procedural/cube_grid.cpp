@@ -1,4 +1,5 @@
-// See cube_grid.h.
+// Divides the six faces evenly, projects their points, shared along edges, onto the unit sphere, and
+// alternates the diagonals.
 #include "scene/procedural/cube_grid.h"
 
 #include <unordered_map>

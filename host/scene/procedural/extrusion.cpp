@@ -1,4 +1,4 @@
-// See extrusion.h.
+// Turns the outline counterclockwise, makes its walls, and triangulates its ends.
 #include "scene/procedural/extrusion.h"
 
 #include <algorithm>

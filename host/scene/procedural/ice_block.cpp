@@ -1,4 +1,5 @@
-// See ice_block.h.
+// Takes both surfaces from soft_solid.h over one grid of cube_grid.h; the liquid ends within the wall and is
+// cut flat at its level.
 #include "scene/procedural/ice_block.h"
 
 #include <algorithm>

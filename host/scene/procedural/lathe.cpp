@@ -1,4 +1,5 @@
-// See lathe.h.
+// Follows the profile in steps for meshes and in cubics for exact lathes; a liquid's profile runs within the
+// wall, nearer to the inside where the wall bends.
 #include "scene/procedural/lathe.h"
 
 #include <fmt/format.h>

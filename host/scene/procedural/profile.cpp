@@ -1,4 +1,4 @@
-// See profile.h.
+// Fits arcs or splines to the points, and draws them with one of two pens: in short steps or in cubics.
 #include "scene/procedural/profile.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// See random.h. Avoids glm's length and normalize, whose instructions may differ between builds.
+// Hashes with SplitMix64, interpolates gradients of a lattice (Perlin 2002), and has its own length(), as
+// glm's instructions may differ between builds.
 #include "scene/procedural/random.h"
 
 #include <cmath>

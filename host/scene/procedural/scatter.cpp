@@ -1,4 +1,5 @@
-// See scatter.h.
+// Lists triangles that are flat enough with their cumulative areas, draws a place in each equal share of the
+// area, then turn, scale and choice.
 #include "scene/procedural/scatter.h"
 
 #include <cmath>

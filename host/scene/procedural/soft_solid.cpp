@@ -1,4 +1,5 @@
-// See soft_solid.h.
+// Cuts a box by planes and balls, joins their inverse distances along a direction by a p-norm, and adds
+// ripples of noise.
 #include "scene/procedural/soft_solid.h"
 
 #include <algorithm>

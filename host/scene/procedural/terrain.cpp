@@ -1,4 +1,5 @@
-// See terrain.h.
+// Sums octaves of turned noise, or reads the picture or formula, row by row in parallel; normals come from
+// neighbouring heights.
 #include "scene/procedural/terrain.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,5 @@
-// See cie.h.
+// Holds the tables, integrates by trapezoids, and scales weights so that D65 is white; black bodies follow
+// Planck's law, at luminance 1.
 #include "scene/spectra/cie.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See upsample.h.
+// Fits exponents quadratic in wavelength by Newton's method, until the primaries return from their spectra.
 #include "scene/spectra/upsample.h"
 
 #include <algorithm>
