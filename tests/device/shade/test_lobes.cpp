@@ -76,7 +76,7 @@ LobeCase case_of_highlight() {
 }
 
 /// Calls body(tester, case) for each row of a list: one without a case does not compile.
-#define TEST_LOBE(feature, name, flags)                              \
+#define TEST_LOBE(feature, name, flags)                       \
   if (const LobeCase one = case_of_##name(); true) {          \
     INFO(#name);                                              \
     Tester& tester = tester_on(info, one.layers.has_value()); \
