@@ -48,7 +48,7 @@ float odd_part(const CompiledScene& scene, const Ray& ray, float t, const Instan
   return 0.5f + (odd ? 0.5f : -0.5f) * contrast;
 }
 
-vec3 corner_of(const CompiledScene& scene, u32 place, int corner) {
+vec3 corner_of(const CompiledScene& scene, u32 place, std::size_t corner) {
   const float* at = scene.blocks[place >> 3].v0_x + 24 * corner + (place & 7u);
   return {at[0], at[8], at[16]};
 }
@@ -58,12 +58,12 @@ vec3 corner_of(const CompiledScene& scene, u32 place, int corner) {
 std::optional<float> smooth_lift(const CompiledScene& scene, const Hit& hit, bool entering,
                                  const std::array<vec3, 3>& normals) {
   std::array<vec3, 3> corner;
-  for (int i = 0; i < 3; ++i) corner[i] = corner_of(scene, scene.triangles[hit.prim].place, i);
+  for (std::size_t i = 0; i < 3; ++i) corner[i] = corner_of(scene, scene.triangles[hit.prim].place, i);
   const vec3 p = interpolate(hit, corner[0], corner[1], corner[2]);
   const vec3 face = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
   const std::array share{1 - hit.u - hit.v, hit.u, hit.v};
   float lift = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     if (!(glm::dot(face, normals[i]) > 0.5f)) return std::nullopt;
     lift += share[i] * std::max(glm::dot(p - corner[i], entering ? -normals[i] : normals[i]), 0.0f);
   }
