@@ -35,7 +35,7 @@ class Parser {
     FormulaBody result;
     while (skip_ends(), starts_statement())
       result.statements.push_back(next_statement(result.statements.size()));
-    if (tokens_[at_ + 1].kind == Token::Kind::name) refuse_reserved();
+    if (here().kind == Token::Kind::name && tokens_[at_ + 1].kind == Token::Kind::name) refuse_reserved();
     result.result = expression();
     skip_ends();
     if (here().kind != Token::Kind::end) fail(here(), "expected the end after the expression, " + found());
@@ -117,7 +117,8 @@ class Parser {
     if (is("(")) fail(here(), "expected a statement \"name = expression\"");
     for (const std::string_view sign : {"+", "-", "*", "/"})
       if (is(sign) && tokens_[at_ + 1].text == "=")
-        fail(here(), fmt::format("expected '=', found '{1}=': write {0} = {0} {1} ...", s.target, sign));
+        fail(here(), fmt::format("expected '=', found '{1}=': write {0} = {0} {1} ...",
+                                 s.members.empty() ? s.target : s.target + "." + s.members, sign));
     expect("=");
     s.value = expression();
     if (here().kind != Token::Kind::end_of_statement)

@@ -80,6 +80,10 @@ SUNDOG_SHARED_SIZE(Medium, 48)
 #define STRATEGY_LIGHTS 1u
 #define STRATEGY_SURFACES 2u
 
+// Maximum number of shadow rays of a surface that wait on devices with one ray a lane; a surface with more
+// lights is met again for the rest.
+#define MOST_LIGHT_ROOM 16u
+
 // Maximum number of instances for shaft tests of occlusion, which give one bit each.
 #define SHAFT_INSTANCES 32u
 

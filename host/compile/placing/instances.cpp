@@ -343,7 +343,7 @@ dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const 
 Instances compile_instances(const InstanceInputs& in) {
   Instances out;
   out.nodes = in.meshes->nodes;
-  std::vector<Placed> bounded, following, unbounded, fields;
+  std::vector<Placed> bounded, following, unbounded, fields, shown;  // shown: fields whose walls both show
   u32 mesh_stack = 0;
   Placer placer(in, out);
   for (std::size_t i = 0; i < in.objects.size(); ++i) {
@@ -355,11 +355,10 @@ Instances compile_instances(const InstanceInputs& in) {
     }
     const Placed placed = placer.place(object, static_cast<u32>(i));
     out.features.shapes[placed.instance.shape] = true;
-    (placed.instance.shape == SHAPE_SDF ? fields
-     : placed.follows                   ? following
-     : placed.bounded()                 ? bounded
-                                        : unbounded)
-        .push_back(placed);
+    if (placed.instance.shape == SHAPE_SDF)
+      (shows_both_walls(in.surfaces[placed.instance.material]) ? shown : fields).push_back(placed);
+    else
+      (placed.follows ? following : placed.bounded() ? bounded : unbounded).push_back(placed);
   }
   join_sharing(std::move(following), bounded);
   for (const Placed& placed : bounded) out.box.extend(box_of_all(placed));
@@ -379,6 +378,7 @@ Instances compile_instances(const InstanceInputs& in) {
   append(large);
   append(unbounded);
   out.instance_count = static_cast<u32>(instances.size());
+  append(shown);  // first: rays remember the sides of the first fields
   append(fields);
   out.field_end = static_cast<u32>(instances.size());
   const auto boxes = std::span(out.boxes).subspan(out.instance_count);

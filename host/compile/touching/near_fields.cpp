@@ -22,14 +22,15 @@ double extent(const Bounds& box) {
 
 }  // namespace
 
+bool shows_both_walls(const SurfaceFacts& material) {
+  return (material.flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER)) != 0;
+}
+
 bool mark_near_fields(std::span<const Bounds> boxes, std::span<const SurfaceFacts> materials,
                       std::span<Instance> fields) {
-  const auto shows_both = [&](const Instance& field) {
-    return (materials[field.material].flags & (MATERIAL_TRANSMITS | MATERIAL_CATCHER)) != 0;
-  };
   bool any = false;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (!shows_both(fields[i])) continue;
+    if (!shows_both_walls(materials[fields[i].material])) continue;
     any = true;
     for (std::size_t k = 0; k < fields.size(); ++k) {
       const double slack = near * std::max(extent(boxes[i]), extent(boxes[k]));

@@ -33,7 +33,8 @@ constexpr unsigned general_depth = 12, general_bvh_stack = 64, general_bvh_level
 /// Waiting shadow rays per surface: one per light, within limits, and rounded up so that similar scenes share
 /// kernels.
 unsigned light_room(const CompiledScene& scene) {
-  const unsigned lights = std::clamp(scene.info.light_count, 2u, 16u), step = std::bit_floor(lights) / 2;
+  const unsigned lights = std::clamp(scene.info.light_count, 2u, MOST_LIGHT_ROOM),
+                 step = std::bit_floor(lights) / 2;
   return (lights + step - 1) / step * step;
 }
 
@@ -267,10 +268,12 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("TILE_H", config.tile_h);
   define("WIDE_VECTORS", vectors);
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
-  // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Beyond
-  // 32 levels, the kernel counts rays that do not fit and the frame reports them.
+  // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Of a
+  // single ray at most one waits per level. Beyond 34 levels, the kernel counts rays that do not fit and the
+  // frame reports them.
   const bool waits = scene.features.secondary_rays && integrator_of(scene.integrator).branches;
-  const unsigned rays = waits ? batch * (std::min(scene.info.max_depth, 32u) + (batch > 1 ? 2u : 0u)) : batch;
+  const unsigned levels = std::min(scene.info.max_depth + (batch > 1 ? 2u : 0u), 34u);
+  const unsigned rays = waits ? batch * levels : batch;
   define("RAY_STACK", rays);
   config.ray_stack = rays;
   if (batch == 1) {

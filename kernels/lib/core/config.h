@@ -123,7 +123,7 @@
 #endif
 // Waiting shadow rays of a surface if a work-item has one ray.
 #ifndef LIGHT_ROOM
-#define LIGHT_ROOM 16
+#define LIGHT_ROOM MOST_LIGHT_ROOM
 #endif
 // Waiting nodes of a traversal; the host computes the number.
 #ifndef BVH_STACK

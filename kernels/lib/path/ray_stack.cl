@@ -43,7 +43,7 @@ typedef struct ShadowStack {
 #else
 // Both kinds of rays wait together: children, one that meets a surface again if that may have more lights
 // than there is room for, then shadow rays.
-#define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + (LIGHT_ROOM >= 16))
+#define STACK_LENGTH (RAY_STACK + LIGHT_ROOM + (LIGHT_ROOM >= MOST_LIGHT_ROOM))
 #define SHADOW_LENGTH STACK_LENGTH
 #define ShadowStack RayStack
 #endif

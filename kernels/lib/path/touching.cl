@@ -70,8 +70,8 @@ static inline void find_touching(const Scene* scene, float3 o, float3 d, float t
     if (HAS_MESH && hit.t == first->t && dot(normal_of(&hit), normal_of(first)) > 0.0f)
       met->faces[i].instance = NO_INSTANCE;  // read at once
   }
-  if (!found) {
-    met->count = min(met->count, MOST_TOUCHING - 1u);
+  if (!found || met->count == 1u) {  // alone, it is as the ray met it
+    met->count = found ? 0u : min(met->count, MOST_TOUCHING - 1u);
     list_face(met, first->t, NO_INSTANCE, 0.0f, 0.0f, 0.0f);
   }
   touching->end = first->t;

@@ -94,6 +94,9 @@ static inline void note_exit(const Scene* scene, u32 index, Stretch* stretch, Hi
 }
 
 static inline void note_solid(const Scene* scene, u32 index, Stretch* stretch) {
+  // A thin one may be in several leaves of the tree.
+  for (u32 i = 0; i < stretch->count; ++i)
+    if (stretch->faces[i].instance == index) return;
   Hit last, hit = next_hit(scene, index, stretch, stretch->from, stretch->to);
   if (hit.instance == NO_INSTANCE) return;
   for (u32 i = 0; i < 4u && hit.instance != NO_INSTANCE; ++i) {

@@ -169,6 +169,16 @@ TEST_CASE("a thin wall has an index and no medium, and stops shadow rays where i
   CHECK_FALSE(compiled(fixed + "}", "whitted").features.thin_walls);
 }
 
+TEST_CASE("fields that let light through come first, as rays remember the sides of so many fields alone") {
+  const CompiledScene compiled = compile(load_scene_text(R"({"objects": [
+    {"type": "fractal", "formula": "menger", "material": "matte", "transform": [{"translate": [9, 0, 0]}]},
+    {"type": "fractal", "formula": "menger", "material": "glass"}],
+    "materials": {"matte": {"diffuse": 0.8}, "glass": {"type": "dielectric", "ior": 1.5}}})"));
+  CHECK(compiled.features.near_fields);
+  CHECK((compiled.instances[0].object == 1 && compiled.instances[0].touch == 1));
+  CHECK((compiled.instances[1].object == 0 && compiled.instances[1].touch == 0));
+}
+
 TEST_CASE("features follow the materials that are used") {
   SceneDescription scene = glass_sphere();
   CompiledScene flat = compile(scene);

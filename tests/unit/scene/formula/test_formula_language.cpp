@@ -126,6 +126,7 @@ TEST_CASE("a place in the text is given by line and column") {
   check_failure("for (i = 0; i < 3; i = i + 1) z = z * z", 1, 1, "no text has loops");
   check_failure("if (z.x > 0) z = -z", 1, 1, "a ? b : c chooses a value");
   check_failure("z += c", 1, 3, "found '+=': write z = z + ...");
+  check_failure("z.x += 1", 1, 5, "write z.x = z.x + ...");
   check_failure("z = z ** 2 + c", 1, 8, "powers are written a ^ n");
   check_failure("z = z.x > 0 and z.y > 0 ? z : c", 1, 13, "write &&");
   check_failure("z = z * (i % 2)", 1, 12, "the rest of a division is mod(x, m)");

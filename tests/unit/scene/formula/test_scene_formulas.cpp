@@ -54,6 +54,11 @@ TEST_CASE("a formula in a scene is accepted as one string or as lines") {
   CHECK(load_scene_text(scene_of_formula({{"map", {"t = 8", "z = z ^ 8 + c"}}})).fields.size() == 1);
 }
 
+TEST_CASE("a distance that has statements alone, or nothing but a comment, wants an expression") {
+  for (const char* text : {" ", "// x", "a = p"})
+    check_refused({{"distance", text}}, "/distance", "expected");
+}
+
 TEST_CASE("an error in a scene's formula names the line of the array and the column in it") {
   check_map_refused({"t = 1", "z = (z +", "  y)"}, "line 3, column 3: unknown name 'y'");
   check_map_refused("z = z + c.w", "line 1, column 10: ");
