@@ -21,7 +21,6 @@
 #include "render/film/hash.h"
 #include "scene/decode_images.h"
 #include "scene/description.h"
-#include "scene/materials/by_integrator.h"
 
 namespace sundog {
 namespace {
@@ -88,13 +87,12 @@ void add_textured_material(SceneDescription& scene, int edge, int index) {
 
 /// The scene with the numbers and colours of its materials alone.
 SceneDescription without_textures(SceneDescription scene) {
-  for (MaterialDescription& each : scene.materials)
-    change_all(each, [](MaterialDescription& material) {
-      material.textures = {};
-      material.metal_rough.reset();
-      material.cutoff = 0;
-      material.parallax = 0;
-    });
+  for (MaterialDescription& material : scene.materials) {
+    material.textures = {};
+    material.metal_rough.reset();
+    material.cutoff = 0;
+    material.parallax = 0;
+  }
   scene.textures.clear();
   scene.images.clear();
   return scene;

@@ -75,10 +75,10 @@ struct SurfaceInputs {
   bool paths = false, caustics = false;
   bool lacks_materials = false;  // some object or mesh has none
   std::span<const MediumDescription> media{};
+  std::span<const MaterialDescription> materials{};
   std::span<const ImageDescription> images{};
   std::span<const TextureDescription> textures{};
-  std::vector<const MaterialDescription*> materials{};  // as the integrator sees them
-  const FogDescription* fog = nullptr;                  // that scatters
+  const FogDescription* fog = nullptr;  // that scatters
 };
 struct Surfaces {
   SharedTable<Medium> media;

@@ -121,6 +121,7 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
     models::Source source = models::read_source(path);
     source.outside_files = options.outside_files;
     Model model = load(std::move(source), models::model_extension(path), options);
+    model.for_paths = options.for_paths.value_or(model.for_paths && model.lights.empty());
     models::bring_near(model);
     check_extent(path, model);
     if (model.dropped_polygons > 0)

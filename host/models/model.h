@@ -33,6 +33,7 @@ struct Model {
   std::vector<ImageDescription> images;
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
+  bool for_paths = true;  // these are for path tracing: ModelOptions::for_paths
   std::vector<MediumDescription> media;
   std::vector<Object> objects;
   /// Unit conversion. glTF: candela and lux become intensity = value / pi (phong's kd lacks 1/pi), with
@@ -59,6 +60,9 @@ struct ModelOptions {
   /// (glTF and STL flat, OBJ its smoothing groups, otherwise and for PLY 45). 0 is flat.
   std::optional<double> crease_angle = std::nullopt;
   bool outside_files = false;  // the model may name files outside its folder
+  /// Materials for path tracing or for the classical integrator; nullopt: for path tracing, unless the model
+  /// has lights.
+  std::optional<bool> for_paths = std::nullopt;
 };
 
 /// X(extension, reader) for each format, whose reader is models::load_READER(); `First` takes the first.

@@ -18,9 +18,7 @@ bool shines(const EnvironmentDescription& environment) {
          environment.color != dvec3(0);
 }
 bool shines(const LightDescription& light) { return light.intensity > 0 && light.color != dvec3(0); }
-bool glows(const MaterialDescription& material) {
-  return material.emission != dvec3(0) || (material.by_paths && material.by_paths->emission != dvec3(0));
-}
+bool glows(const MaterialDescription& material) { return material.emission != dvec3(0); }
 
 bool shines_from_afar(const SceneDescription& scene) {
   return shines(scene.environment) || std::ranges::any_of(scene.lights, [](const LightDescription& light) {

@@ -84,10 +84,6 @@ void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
   drop(material.textures.normal);
   drop(material.textures.height);
   drop(material.displaced_by);
-  if (!material.by_paths) return;
-  auto other = std::make_shared<MaterialDescription>(*material.by_paths);
-  drop_reliefs(*other, white, scene);
-  material.by_paths = std::move(other);
 }
 
 /// Including mip levels.

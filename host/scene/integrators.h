@@ -16,7 +16,7 @@ struct Integrator {
   // What it does: scenes are compiled, kernels built and options refused by it.
   bool branches;       // child rays wait on a stack, and each light is sent a ray
   bool scatters;       // in media and fog
-  bool own_materials;  // MaterialDescription::by_paths, spectra, shadow catchers; no soft shadows of fields
+  bool own_materials;  // ModelOptions::for_paths, spectra, shadow catchers; no soft shadows of fields
   bool photons;        // caustics and guides
   bool light_parts;    // AOVs of light by lobes and by groups of lights
 };

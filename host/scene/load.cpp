@@ -11,6 +11,7 @@
 #include "models/model.h"
 #include "scene/animate.h"
 #include "scene/document.h"
+#include "scene/integrators.h"
 #include "scene/json/override.h"
 #include "scene/json/parse.h"
 #include "scene/model_scene.h"
@@ -56,6 +57,13 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
   return document;
 }
 
+/// The integrator that a document names, or the default one; nullptr if invalid (reading reports the error).
+const Integrator* integrator_in(const json& document) {
+  const json::json_pointer place("/render/integrator");
+  if (!document.contains(place)) return &integrators.front();
+  return document[place].is_string() ? find_integrator(document[place].get<std::string>()) : nullptr;
+}
+
 /// A file's document before any frame of it, with the model that it was made up around.
 struct SceneSource {
   fs::path file;
@@ -63,6 +71,22 @@ struct SceneSource {
   std::optional<Model> model = std::nullopt;
   json played = {};  // of a model with animations: before settings
 };
+
+/// Reads the model and generates the document around it. Lights that are generated suit materials for paths.
+void read_model(SceneSource& source, const std::vector<std::string>& overrides, bool outside_files) {
+  const auto read = [&](std::optional<bool> for_paths) {
+    source.model = load_model(source.file, {.outside_files = outside_files, .for_paths = for_paths});
+  };
+  json stated = json::object();
+  for (const std::string& setting : overrides)
+    if (setting.starts_with("/render/integrator=")) apply_override(stated, setting, source.file);
+  const Integrator* wanted = integrator_in(stated);
+  read(wanted && wanted->own_materials ? std::optional(true) : std::nullopt);
+  source.document = make_scene(source.file, *source.model, overrides);
+  apply_overrides(source.document, source.file, overrides);
+  wanted = integrator_in(source.document);
+  if (wanted && wanted->own_materials != source.model->for_paths) read(wanted->own_materials);
+}
 
 SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,
                         const LoadOptions& options) {
@@ -73,8 +97,8 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
   } else {
     require_readable(path, path, "");
     if (is_model_file(path)) {
-      source.model = load_model(path, {.outside_files = options.outside_files});
-      source.document = make_scene(path, *source.model, overrides);
+      read_model(source, overrides, options.outside_files);
+      return source;
     } else if (path.extension() == ".json") {
       source.document = read_json_file(path, options.faults);
     } else {

@@ -8,7 +8,7 @@
 
 #include "scene/bounds.h"
 #include "scene/kinds.h"
-#include "scene/materials/by_integrator.h"
+#include "scene/materials/conserve_light.h"
 
 namespace sundog {
 using nlohmann::json;
@@ -54,9 +54,8 @@ double brightness_of(const Model& model) {
   double vertex_color = 0, brightest = 0;
   for (const Mesh& mesh : model.meshes)
     for (const glm::vec3& color : mesh.colors) vertex_color = std::max(vertex_color, greatest(dvec3(color)));
-  const auto add = [&](MaterialDescription material) {
-    conserve_light(material);
-    const MaterialDescription& m = surface_for(true, material);
+  const auto add = [&](MaterialDescription m) {
+    conserve_light(m);
     const double color = m.vertex_color ? vertex_color : 1;
     const double broad = 20 / std::max(m.exponent, 20.0);  // a narrow highlight may be white
     brightest = std::max(brightest, color * greatest(m.diffuse) + broad * greatest(m.specular));

@@ -208,12 +208,11 @@ Layers make_layers(const OpenPbr& v, const MaterialTextures& textures, LayerRows
 }
 
 void add_layers(const SurfaceInputs& in, Surfaces& out) {
-  if (std::ranges::none_of(in.materials, [](const MaterialDescription* m) { return m->layers.has_value(); }))
+  if (std::ranges::none_of(in.materials, [](const MaterialDescription& m) { return m.layers.has_value(); }))
     return;
   LayerRows rows;
   std::vector<Layers> layers;
-  for (const MaterialDescription* described : in.materials) {
-    const MaterialDescription& material = *described;
+  for (const MaterialDescription& material : in.materials) {
     const MaterialTextures& textures = material.textures;
     layers.push_back(material.layers ? make_layers(*material.layers, textures, rows) : Layers{});
     if (!material.layers) continue;

@@ -225,8 +225,7 @@ bool lacks_materials(const SceneDescription& scene) {
 u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
   const std::vector<u32> media = add_media(in, out);
   const bool bends = bends_light(out.media);
-  for (const MaterialDescription* described : in.materials) {
-    const MaterialDescription& material = *described;
+  for (const MaterialDescription& material : in.materials) {
     Material packed = make_material(material, media);
     if (is_frosted(in, material)) packed.flags |= MATERIAL_FROSTED;
     const bool of_world = !differs_in_index(out.media.rows()[packed.medium], out.media.rows()[0]);

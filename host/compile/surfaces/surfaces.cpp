@@ -7,7 +7,6 @@
 #include "compile/surfaces/materials.h"
 #include "compile/surfaces/textures.h"
 #include "scene/integrators.h"
-#include "scene/materials/by_integrator.h"
 
 namespace sundog {
 namespace {
@@ -35,17 +34,15 @@ bool fog_scatters(const SceneDescription& scene) {
 }
 
 SurfaceInputs surface_inputs(const SceneDescription& scene) {
-  SurfaceInputs in{.file = file_of(scene),
-                   .paths = integrator_of(scene.render.integrator).own_materials,
-                   .caustics = scene.render.caustics,
-                   .lacks_materials = lacks_materials(scene),
-                   .media = scene.media,
-                   .images = scene.images,
-                   .textures = scene.textures,
-                   .fog = fog_scatters(scene) ? &scene.fog : nullptr};
-  for (const MaterialDescription& material : scene.materials)
-    in.materials.push_back(&surface_for(in.paths, material));
-  return in;
+  return {.file = file_of(scene),
+          .paths = integrator_of(scene.render.integrator).own_materials,
+          .caustics = scene.render.caustics,
+          .lacks_materials = lacks_materials(scene),
+          .media = scene.media,
+          .materials = scene.materials,
+          .images = scene.images,
+          .textures = scene.textures,
+          .fog = fog_scatters(scene) ? &scene.fog : nullptr};
 }
 
 Surfaces compile_surfaces(const SurfaceInputs& in) {

@@ -41,7 +41,7 @@ class TextureCompiler {
   void compile() {
     out_.material_maps.push_back({});  // entry 0 means none
     for (std::size_t i = 0; i < in_.materials.size(); ++i)
-      if (const MaterialDescription& material = *in_.materials[i]; has_maps(material)) {
+      if (const MaterialDescription& material = in_.materials[i]; has_maps(material)) {
         cut_images_.clear();
         find_cut_images(material.textures.opacity, material);
         out_.materials.edit()[i].maps = static_cast<u32>(out_.material_maps.size());

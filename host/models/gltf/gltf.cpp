@@ -73,16 +73,19 @@ bool is_singular(const dmat4& m) {
 
 class GltfReader {
  public:
-  GltfReader(const Source& source, const GltfContainer& container, const JsonAt& root, double crease_degrees)
+  GltfReader(const Source& source, const GltfContainer& container, const JsonAt& root,
+             const ModelOptions& options)
       : root_(root),
         accessors_(source, container, root),
         textures_(root, accessors_),
-        materials_(root, textures_),
-        meshes_(root, accessors_, materials_, crease_degrees) {}
+        for_paths_(options.for_paths.value_or(!root.extension("KHR_lights_punctual"))),
+        materials_(root, textures_, for_paths_),
+        meshes_(root, accessors_, materials_, options.crease_angle.value_or(0)) {}
 
   /// The nodes as they stand.
   Model read() {
     Model model;
+    model.for_paths = for_paths_;
     model_ = &model;
     for (const JsonAt& at : root_.list("cameras")) cameras_.push_back(read_gltf_camera(at));
     if (const auto extension = root_.extension("KHR_lights_punctual"))
@@ -312,6 +315,7 @@ class GltfReader {
   JsonAt root_;
   GltfAccessors accessors_;
   GltfTextures textures_;
+  bool for_paths_;
   GltfMaterials materials_;
   GltfMeshes meshes_;
   std::vector<GltfCamera> cameras_;
@@ -364,7 +368,7 @@ Model load_gltf(Source from, const ModelOptions& options) {
     if (least->text() != "2.0") least->fail(fmt::format("glTF {} at least; 2.0 is read", least->text()));
   check_extensions(root);
   convert_specular_glossiness(source, file->json);
-  file->reader.emplace(source, file->container, root, options.crease_angle.value_or(0));
+  file->reader.emplace(source, file->container, root, options);
   Model model = file->reader->read();
   find_unread(file->json, model);
   name_unread_extensions(root, model);

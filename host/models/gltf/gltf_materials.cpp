@@ -87,8 +87,8 @@ void make_wall(OpenPbr& values, MaterialDescription& material, double mirrored) 
 
 }  // namespace
 
-GltfMaterials::GltfMaterials(const JsonAt& root, TextureSource& textures)
-    : textures_(textures), document_(root.list("materials")) {
+GltfMaterials::GltfMaterials(const JsonAt& root, TextureSource& textures, bool for_paths)
+    : textures_(textures), for_paths_(for_paths), document_(root.list("materials")) {
   for (const JsonAt& at : document_) materials_.push_back(read(at, VertexColors::none));
   const nlohmann::json empty = nlohmann::json::object();
   materials_.push_back(read(JsonAt(Source{}, empty, ""), VertexColors::none));

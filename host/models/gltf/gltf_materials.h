@@ -26,7 +26,7 @@ enum class VertexColors { none, opaque, with_alpha };
 /// whose alpha multiplies the opacity. Path tracing uses OpenPBR layers for most materials (gltf_layers.h).
 class GltfMaterials {
  public:
-  GltfMaterials(const JsonAt& root, TextureSource& textures);
+  GltfMaterials(const JsonAt& root, TextureSource& textures, bool for_paths);
 
   std::size_t count() const { return materials_.size(); }
   /// The index in `model` of material `index` (`count()`: the default one) on primitives with such vertex
@@ -36,7 +36,7 @@ class GltfMaterials {
  private:
   struct Entry {
     MaterialDescription material;
-    std::optional<MaterialDescription> by_paths;  // without textures
+    std::optional<MaterialDescription> by_paths;  // replaces `material` along paths; without textures
     MediumDescription medium;
     bool has_medium = false;
     std::optional<TextureDescription> base, opacity, emission, metal_rough, normal, occlusion;
@@ -61,13 +61,14 @@ class GltfMaterials {
   void add_specular_textures(const JsonAt& at, Entry& entry) const;
   void use_textures(const Entry& entry, MaterialDescription& material, Model& model);
   void use_transmission(const Entry& entry, MaterialDescription& material, Model& model);
-  void use_by_paths(const Entry& entry, MaterialDescription& material, Model& model);
+  MaterialDescription use_by_paths(const Entry& entry, const MaterialDescription& material, Model& model);
   void use_specular(const Entry& entry, MaterialDescription& material, Model& model);
   void transmit(const JsonAt& at, Entry& entry, glm::dvec3 base, double ior) const;
   static void use_vertex_colors(const Entry& entry, MaterialDescription& material, Model& model);
   static void blend(const JsonAt& at, Entry& entry, double alpha);
 
   TextureSource& textures_;
+  bool for_paths_;
   std::vector<JsonAt> document_;
   std::vector<Entry> materials_;  // the default one is last
   std::map<std::pair<std::size_t, VertexColors>, int> used_;

@@ -69,18 +69,18 @@ void GltfMaterials::use_transmission(const Entry& entry, MaterialDescription& ma
 }
 
 /// The material for path tracing: its layers, and the shared properties.
-void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& material, Model& model) {
-  if (!entry.by_paths) return;
-  auto other = std::make_shared<MaterialDescription>(*entry.by_paths);
-  other->name = material.name;
-  other->medium = material.medium;
+MaterialDescription GltfMaterials::use_by_paths(const Entry& entry, const MaterialDescription& material,
+                                                Model& model) {
+  MaterialDescription other = *entry.by_paths;
+  other.name = material.name;
+  other.medium = material.medium;
   if (entry.paths_have_medium) {
-    other->medium = static_cast<int>(model.media.size());
+    other.medium = static_cast<int>(model.media.size());
     model.media.push_back(entry.medium);
   }
-  other->one_sided = material.one_sided && other->transmission == glm::dvec3(0);
-  other->vertex_color = material.vertex_color;
-  MaterialTextures& to = other->textures;
+  other.one_sided = material.one_sided && other.transmission == glm::dvec3(0);
+  other.vertex_color = material.vertex_color;
+  MaterialTextures& to = other.textures;
   to = {};
   to.emission = material.textures.emission, to.opacity = material.textures.opacity;
   to.normal = material.textures.normal, to.occlusion = material.textures.occlusion;
@@ -91,10 +91,10 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
     to.glass = textures_.use(*glass, false, model);
   if (entry.sheen) to.fuzz = textures_.use(*entry.sheen, true, model);
   if (entry.coat_weight) to.coat = textures_.use(*entry.coat_weight, false, model);
-  use_specular(entry, *other, model);
+  use_specular(entry, other, model);
   to.ambient = to.diffuse;
-  if (other->transmission != dvec3(0)) to.transmission = to.diffuse;
-  if (other->vertex_color) use_vertex_colors(entry, *other, model);
+  if (other.transmission != dvec3(0)) to.transmission = to.diffuse;
+  if (other.vertex_color) use_vertex_colors(entry, other, model);
   if (entry.metal_rough) {
     TextureDescription packed = *entry.metal_rough;
     if (packed.channel < 0) packed.channel = 1;
@@ -102,7 +102,7 @@ void GltfMaterials::use_by_paths(const Entry& entry, MaterialDescription& materi
     packed.channel = 2;
     if (entry.values.metalness > 0) to.metalness = textures_.use(packed, false, model);
   }
-  material.by_paths = std::move(other);
+  return other;
 }
 
 void GltfMaterials::use_specular(const Entry& entry, MaterialDescription& material, Model& model) {
@@ -134,7 +134,8 @@ int GltfMaterials::use(std::size_t index, VertexColors colors, Model& model) {
       model.materials.back().medium = static_cast<int>(model.media.size());
       model.media.push_back(entry.medium);
     }
-    use_by_paths(entry, model.materials.back(), model);
+    if (for_paths_ && entry.by_paths)
+      model.materials.back() = use_by_paths(entry, model.materials.back(), model);
   }
   return found->second;
 }

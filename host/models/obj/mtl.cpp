@@ -207,13 +207,12 @@ int add_pbr_material(const MtlStatements& m, const Source& obj, MtlTextures& tex
   add_relief_maps(m, obj, textures, mapped);
   add_displacement(m, obj, textures, mapped);
   add_opacity_map(m, obj, textures, mapped);
-  change_all(model.materials[static_cast<std::size_t>(index)], [&](MaterialDescription& to) {
-    to.textures.normal = mapped.textures.normal, to.normal_scale = mapped.normal_scale;
-    to.textures.height = mapped.textures.height, to.bump = mapped.bump, to.bump_uv = mapped.bump_uv;
-    to.displaced_by = mapped.displaced_by, to.displacement = mapped.displacement;
-    to.textures.opacity = mapped.textures.opacity;
-    if (m.has_map("map_d")) to.opacity = opacity;
-  });
+  MaterialDescription& to = model.materials[static_cast<std::size_t>(index)];
+  to.textures.normal = mapped.textures.normal, to.normal_scale = mapped.normal_scale;
+  to.textures.height = mapped.textures.height, to.bump = mapped.bump, to.bump_uv = mapped.bump_uv;
+  to.displaced_by = mapped.displaced_by, to.displacement = mapped.displacement;
+  to.textures.opacity = mapped.textures.opacity;
+  if (m.has_map("map_d")) to.opacity = opacity;
   return index;
 }
 

@@ -126,7 +126,7 @@ int add_pbr(const MtlStatements& m, double opacity, const Source& obj, MtlTextur
   PbrTextures source(m, obj, textures);
   const json document = {{"materials", json::array({gltf_material(m, opacity)})}};
   find_unread(document, model);
-  return GltfMaterials(JsonAt(obj, document, ""), source).use(0, VertexColors::none, model);
+  return GltfMaterials(JsonAt(obj, document, ""), source, model.for_paths).use(0, VertexColors::none, model);
 }
 
 }  // namespace sundog::models

@@ -260,8 +260,7 @@ class ObjReader {
     }
     if (wanted) model_.materials.emplace_back().name = "default";
     if (any_color_)
-      for (MaterialDescription& material : model_.materials)
-        change_all(material, [](MaterialDescription& m) { m.vertex_color = true; });
+      for (MaterialDescription& material : model_.materials) material.vertex_color = true;
   }
 
   TextReader text_;
@@ -296,6 +295,7 @@ class ObjReader {
 // All readers have this signature: NOLINTNEXTLINE(performance-unnecessary-value-param)
 Model load_obj(Source source, const ModelOptions& options) {
   Model model;
+  model.for_paths = options.for_paths.value_or(true);
   ObjReader reader(source, model);
   reader.read();
   Mesh mesh = reader.take_mesh(options.crease_angle);

@@ -1,7 +1,6 @@
 // Materials and media, as a scene file or a model has them.
 #pragma once
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -66,18 +65,6 @@ struct MaterialDescription {
   double coat = 0;                          // reflectance of a clear layer on top, [0, 1], times its texture
   std::string group{};                      // of lights, that its emission belongs to; empty: none
   std::optional<OpenPbr> layers{};          // layers over these terms, and their base: set_openpbr()
-  /// The variant for path tracing, if it differs: surface_for().
-  std::shared_ptr<const MaterialDescription> by_paths{};
 };
-
-/// Calls change(material) for every variant of a material.
-template <class Change>
-void change_all(MaterialDescription& material, const Change& change) {
-  change(material);
-  if (!material.by_paths) return;
-  auto other = std::make_shared<MaterialDescription>(*material.by_paths);
-  change(*other);
-  material.by_paths = std::move(other);
-}
 
 }  // namespace sundog

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "scene/materials/by_integrator.h"
+#include "scene/materials/conserve_light.h"
 #include "scene/read/frame_cache.h"
 
 namespace sundog {
@@ -45,10 +45,8 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
   const int first_medium = static_cast<int>(scene_.media.size());
   for (MediumDescription& medium : model.media) medium.name = fmt::format("{}: {}", name, medium.name);
   for (MaterialDescription& material : model.materials) {
-    change_all(material, [&](MaterialDescription& m) {
-      m.name = fmt::format("{}: {}", name, m.name);
-      if (m.medium >= 0) m.medium += first_medium;
-    });
+    material.name = fmt::format("{}: {}", name, material.name);
+    if (material.medium >= 0) material.medium += first_medium;
   }
   for (Mesh& mesh : model.meshes)
     for (int& material : mesh.materials) material += first_material;
@@ -61,8 +59,7 @@ ModelLibrary::Parts ModelLibrary::add(Model model, const std::string& name) {
     shift(texture.image, first_image);
     for (int& other : texture.of) shift(other, first_texture);
   }
-  for (MaterialDescription& material : model.materials)
-    change_all(material, [&](MaterialDescription& m) { shift_textures(m, first_texture); });
+  for (MaterialDescription& material : model.materials) shift_textures(material, first_texture);
   append(scene_.images, model.images);
   append(scene_.textures, model.textures);
   append(scene_.media, model.media);
@@ -84,7 +81,9 @@ Model ModelLibrary::read(const std::string& key, const fs::path& file, const Mod
   if (const auto kept = kept_.find(key); kept != kept_.end() && !options.crease_angle) return kept->second;
   const auto read = [&] { return load_model(file, options); };
   if (!cache_) return read();
-  return cache_->model(fmt::format("{} {}", key, options.crease_angle.value_or(-1)), place, read);
+  return cache_->model(
+      fmt::format("{} {} {}", key, options.crease_angle.value_or(-1), options.for_paths.value_or(true)),
+      place, read);
 }
 
 const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValue& from, const fs::path& file,
@@ -95,7 +94,7 @@ const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValu
   const std::tuple key(file_key(file), options.crease_angle, playing.animation, playing.cycle, conserve);
   if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
   Model model = read(std::get<0>(key), file, options, from.pointer());
-  if (conserve) std::ranges::for_each(model.materials, conserve_light);
+  if (conserve && model.for_paths) std::ranges::for_each(model.materials, conserve_light);
   const std::vector<std::string>& known = model.animations;
   if (const auto& asked = name ? name : cycle; asked && known.empty() && (name || playing.cycle))
     asked->fail(fmt::format("{} has no animations", file.filename().string()));
@@ -115,7 +114,7 @@ void ModelLibrary::keep(const fs::path& file, Model model) {
     kept_.emplace(key, std::move(model));
     return;
   }
-  std::ranges::for_each(model.materials, conserve_light);
+  if (model.for_paths) std::ranges::for_each(model.materials, conserve_light);
   loaded_.emplace(std::tuple(key, std::nullopt, "", false, true),
                   add(std::move(model), file.filename().string()));
 }

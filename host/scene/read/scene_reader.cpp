@@ -16,6 +16,7 @@
 #include "scene/dark_world.h"
 #include "scene/decode_images.h"
 #include "scene/displace.h"
+#include "scene/integrators.h"
 #include "scene/json/parse.h"
 #include "scene/lamps.h"
 #include "scene/light_groups.h"
@@ -128,7 +129,10 @@ class SceneReader {
     return image;
   }
 
-  ModelOptions model_options() const { return {.outside_files = root_.context().outside_files}; }
+  ModelOptions model_options() const {
+    return {.outside_files = root_.context().outside_files,
+            .for_paths = integrator_of(scene_.render.integrator).own_materials};
+  }
 
   ModelLibrary::Parts read_mesh(const JsonValue& value, const std::string& name, const JsonValue& meshes) {
     return value.object("mesh", [&](JsonObject& object) {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "scene/materials/by_integrator.h"
 #include "scene/materials/presets.h"
 #include "scene/read/textures.h"
 
@@ -81,13 +80,12 @@ void shift_rest(SceneDescription& scene, const SceneDescription& from, const Sce
     for (int& other : scene.textures[i].of) shift(other, from.textures.size(), to.textures.size());
   }
   for (std::size_t i = from.materials.size(); i < scene.materials.size(); ++i) {
-    change_all(scene.materials[i], [&](MaterialDescription& material) {
-      shift(material.medium, from.media.size(), to.media.size());
+    MaterialDescription& material = scene.materials[i];
+    shift(material.medium, from.media.size(), to.media.size());
 #define SUNDOG_SHIFT_MAP(constant, name) \
   shift(material.textures.name, from.textures.size(), to.textures.size());
-      MAP_SLOTS(SUNDOG_SHIFT_MAP)
+    MAP_SLOTS(SUNDOG_SHIFT_MAP)
 #undef SUNDOG_SHIFT_MAP
-    });
   }
 }
 

@@ -9,13 +9,16 @@ using namespace sundog;
 
 namespace {
 
-MaterialDescription material_of(const std::string& material, Model* model = nullptr) {
+MaterialDescription material_of(const std::string& material, Model* model = nullptr, bool for_paths = false) {
   const Model loaded =
-      load_text("a.gltf", quad(one_node + R"(,"materials":[)" + material + "]", R"(,"material":0)"));
+      load_text("a.gltf", quad(one_node + R"(,"materials":[)" + material + "]", R"(,"material":0)"),
+                {.for_paths = for_paths});
   if (model) *model = loaded;
   REQUIRE(loaded.materials.size() == 1);
   return loaded.materials[0];
 }
+
+MaterialDescription for_paths(const std::string& material) { return material_of(material, nullptr, true); }
 
 bool near(dvec3 a, dvec3 b) { return glm::length(a - b) < 1e-6; }
 
@@ -72,28 +75,28 @@ TEST_CASE("sheen, iridescence, anisotropy and clearcoat become layers by OpenPBR
 }
 
 TEST_CASE("integrators that follow paths have metallic-roughness materials as OpenPBR's", "[models]") {
-  const MaterialDescription plain = material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0.5,
+  const std::string grey = R"({"pbrMetallicRoughness":{"metallicFactor":0.5,
     "roughnessFactor":0.4,"baseColorFactor":[0.2,0.4,0.6,1]},"emissiveFactor":[0,1,0],
-    "extensions":{"KHR_materials_ior":{"ior":1.7}}})");
-  CHECK_FALSE(plain.layers);
-  REQUIRE(plain.by_paths);
-  const OpenPbr& values = plain.by_paths->layers.value();
+    "extensions":{"KHR_materials_ior":{"ior":1.7}}})";
+  CHECK_FALSE(material_of(grey).layers);
+  const MaterialDescription m = for_paths(grey);
+  const OpenPbr& values = m.layers.value();
   CHECK(near(values.base_color, {0.2, 0.4, 0.6}));
   CHECK(values.base_metalness == 0.5);
   CHECK(values.specular_roughness == 0.4);
   CHECK(values.specular_ior == 1.7);
-  CHECK(near(plain.by_paths->diffuse, {0.2, 0.4, 0.6}));
-  CHECK(near(plain.by_paths->specular, dvec3(0)));
-  CHECK(near(plain.by_paths->emission, {0, 1, 0}));
-  CHECK_FALSE(material_of(R"({"extensions":{"KHR_materials_unlit":{}}})").by_paths);
+  CHECK(near(m.diffuse, {0.2, 0.4, 0.6}));
+  CHECK(near(m.specular, dvec3(0)));
+  CHECK(near(m.emission, {0, 1, 0}));
+  CHECK_FALSE(for_paths(R"({"extensions":{"KHR_materials_unlit":{}}})").layers);
 }
 
 TEST_CASE("KHR_materials_specular leaves metals alone", "[models]") {
   const auto values_of = [](const std::string& metalness) {
-    return *material_of(R"({"pbrMetallicRoughness":{"metallicFactor":)" + metalness +
-                        R"(},"extensions":{"KHR_materials_specular":{"specularFactor":0.25,
+    return *for_paths(R"({"pbrMetallicRoughness":{"metallicFactor":)" + metalness +
+                      R"(},"extensions":{"KHR_materials_specular":{"specularFactor":0.25,
       "specularColorFactor":[2,1,0]}}})")
-                .by_paths->layers;
+                .layers;
   };
   CHECK(values_of("0").specular_weight == 0.5);
   CHECK(near(values_of("0").specular_color, {1, 0.5, 0}));
@@ -106,32 +109,29 @@ TEST_CASE("KHR_materials_specular leaves metals alone", "[models]") {
 }
 
 TEST_CASE("glass of a glTF is as rough as it says for integrators that follow paths", "[models]") {
-  const MaterialDescription frosted = material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,
+  const MaterialDescription frosted = for_paths(R"({"pbrMetallicRoughness":{"metallicFactor":0,
     "roughnessFactor":0.5,"baseColorFactor":[0.5,1,1,1]},"extensions":{
     "KHR_materials_transmission":{"transmissionFactor":0.8},"KHR_materials_volume":{"thicknessFactor":1}}})");
-  REQUIRE(frosted.by_paths);
-  CHECK(frosted.by_paths->type == MaterialType::dielectric);
-  CHECK(frosted.by_paths->medium == frosted.medium);
-  CHECK(frosted.by_paths->roughness == 0.5);
-  CHECK(frosted.by_paths->reflection == dvec3(0.8));
-  CHECK(near(frosted.by_paths->transmission, {0.4, 0.8, 0.8}));
+  CHECK(frosted.type == MaterialType::dielectric);
+  CHECK(frosted.medium == 0);
+  CHECK(frosted.roughness == 0.5);
+  CHECK(frosted.reflection == dvec3(0.8));
+  CHECK(near(frosted.transmission, {0.4, 0.8, 0.8}));
 }
 
 TEST_CASE("a pane of a glTF is a thin wall for integrators that follow paths, others have fixed shares",
           "[models]") {
   const auto pane = [](const std::string& roughness, const std::string& more = "",
                        const std::string& alpha = "") {
-    return material_of(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":)" + roughness +
-                       R"(,"baseColorFactor":[0.5,1,1,1]})" + alpha +
-                       R"(,"extensions":{"KHR_materials_ior":{"ior":1.4},
-                       "KHR_materials_transmission":{"transmissionFactor":0.8})" +
-                       more + "}}");
+    return R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":)" + roughness +
+           R"(,"baseColorFactor":[0.5,1,1,1]})" + alpha + R"(,"extensions":{"KHR_materials_ior":{"ior":1.4},
+           "KHR_materials_transmission":{"transmissionFactor":0.8})" +
+           more + "}}";
   };
   const char* const sheen = R"(,"KHR_materials_sheen":{"sheenColorFactor":[0.2,0.2,0.2]})";
   for (const auto& [roughness, more] : {std::pair{"0", ""}, {"0.5", ""}, {"0", sheen}, {"0.5", sheen}}) {
-    const MaterialDescription made = pane(roughness, more);
-    REQUIRE(made.by_paths);
-    const MaterialDescription& wall = *made.by_paths;
+    const std::string text = pane(roughness, more);
+    const MaterialDescription made = material_of(text), wall = for_paths(text);
     CHECK(wall.type == MaterialType::dielectric);
     CHECK(wall.medium == -1);
     CHECK(wall.wall_ior == 1.4);
@@ -143,24 +143,22 @@ TEST_CASE("a pane of a glTF is a thin wall for integrators that follow paths, ot
     CHECK(made.wall_ior == 0);
     CHECK(made.transmission.y == Approx(0.8 * (1 - 0.4 * 0.4 / (2.4 * 2.4))).epsilon(0.01));
   }
-  for (const MaterialDescription& other :
+  for (const std::string& other :
        {pane("0", "", R"(,"alphaMode":"BLEND")"), pane("0.5", "", R"(,"alphaMode":"MASK")"),
         pane("0.5", R"(,"KHR_materials_volume":{"thicknessFactor":1})")}) {
-    REQUIRE(other.by_paths);
-    CHECK(other.by_paths->wall_ior == 0);
+    CHECK(for_paths(other).wall_ior == 0);
   }
-  const MaterialDescription blended = pane("0", "", R"(,"alphaMode":"BLEND")");
-  CHECK(blended.by_paths->type == MaterialType::phong);
-  CHECK(blended.by_paths->reflection.x == Approx(0.8 * 0.4 * 0.4 / (2.4 * 2.4)));
+  const MaterialDescription blended = for_paths(pane("0", "", R"(,"alphaMode":"BLEND")"));
+  CHECK(blended.type == MaterialType::phong);
+  CHECK(blended.reflection.x == Approx(0.8 * 0.4 * 0.4 / (2.4 * 2.4)));
 }
 
 TEST_CASE("opacity of a glTF is the same for integrators that follow paths", "[models]") {
   const std::string pbr = R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.25]})";
-  const MaterialDescription blended = material_of(pbr + R"(,"alphaMode":"BLEND"})");
-  REQUIRE(blended.by_paths);
-  CHECK(blended.by_paths->opacity == 0.25);
-  CHECK(blended.by_paths->transmission == dvec3(0));
-  CHECK(blended.by_paths->diffuse == dvec3(1));
+  const MaterialDescription blended = for_paths(pbr + R"(,"alphaMode":"BLEND"})");
+  CHECK(blended.opacity == 0.25);
+  CHECK(blended.transmission == dvec3(0));
+  CHECK(blended.diffuse == dvec3(1));
 }
 
 TEST_CASE("transmission with a volume is a dielectric with an absorbing medium, without one a thin pane",

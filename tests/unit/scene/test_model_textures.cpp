@@ -27,23 +27,27 @@ std::string clear_and_red() {
 }
 
 /// The quad with a texture 0 and this material.
-SceneDescription quad_with(const std::string& material, const std::string& png = two_pixels()) {
+SceneDescription quad_with(const std::string& material, const std::string& png = two_pixels(),
+                           const char* integrator = "whitted") {
   const TemporaryFolder folder;
   const std::string image = R"("images":[{"uri":"data:image/png;base64,)" + base64(png) + R"("}])";
   return load_scene(
       folder.write("a.gltf", quad(one_node + "," + image + R"(,"textures":[{"source":0}],"materials":[)" +
                                       material + "]",
                                   R"(,"material":0)")),
-      {"/render/integrator=whitted"});
+      {std::string("/render/integrator=") + integrator});
 }
 
+SceneDescription paths_with(const std::string& material) { return quad_with(material, two_pixels(), "path"); }
+
 /// A quad with COLOR_0, a texture 0 and this material.
-SceneDescription quad_with_colors(const std::vector<glm::vec4>& colors, const std::string& material) {
+SceneDescription quad_with_colors(const std::vector<glm::vec4>& colors, const std::string& material,
+                                  const char* integrator = "whitted") {
   const TemporaryFolder folder;
   std::string bytes;
   put<float>(bytes, {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0});
   for (const glm::vec4& color : colors) put<float>(bytes, {color.x, color.y, color.z, color.w});
-  return load_scene(folder.write(
+  const auto file = folder.write(
       "a.gltf",
       document(one_node + R"(,"buffers":[{"byteLength":112,"uri":"data:application/octet-stream;base64,)" +
                base64(bytes) + R"("}],"bufferViews":[{"buffer":0,"byteLength":48},
@@ -52,7 +56,8 @@ SceneDescription quad_with_colors(const std::vector<glm::vec4>& colors, const st
       {"bufferView":1,"componentType":5126,"type":"VEC4","count":4}],
       "meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"mode":6,"material":0}]}],
       "images":[{"uri":"data:image/png;base64,)" +
-               base64(two_pixels()) + R"("}],"textures":[{"source":0}],"materials":[)" + material + "]")));
+               base64(two_pixels()) + R"("}],"textures":[{"source":0}],"materials":[)" + material + "]"));
+  return load_scene(file, {std::string("/render/integrator=") + integrator});
 }
 
 const TextureDescription& texture_of(const SceneDescription& scene, int index) {
@@ -97,20 +102,17 @@ TEST_CASE("a glTF's specular textures are factors on the highlight of what is no
 }
 
 TEST_CASE("a glTF's packed texture is roughness and metalness for integrators that follow paths") {
-  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,
-      "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}}})");
-  const MaterialDescription& m = scene.materials.at(0);
-  REQUIRE(m.by_paths);
-  const MaterialTextures& to = m.by_paths->textures;
+  const std::string material = R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,
+      "baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":0}}})";
+  const SceneDescription scene = paths_with(material);
+  const MaterialTextures& to = scene.materials.at(0).textures;
   CHECK(texture_of(scene, to.roughness).channel == 1);
   CHECK(texture_of(scene, to.metalness).channel == 2);
-  CHECK(texture_of(scene, to.roughness).image == texture_of(scene, m.textures.metal_rough).image);
-  CHECK(to.diffuse == m.textures.diffuse);
+  CHECK(texture_of(scene, to.roughness).image == texture_of(scene, to.metalness).image);
   CHECK(to.metal_rough == -1);
-  const CompiledScene whitted = compile(scene);
+  const CompiledScene whitted = compile(quad_with(material));
   CHECK_FALSE(whitted.features.layers);
   CHECK(whitted.features.metal_rough);
-  scene.render.integrator = "path";
   const CompiledScene path = compile(scene);
   CHECK(path.features.layer_maps);
   CHECK_FALSE(path.features.metal_rough);
@@ -120,17 +122,16 @@ TEST_CASE("a glTF's packed texture is roughness and metalness for integrators th
 }
 
 TEST_CASE("a glTF's transmission texture is that of OpenPBR's for integrators that follow paths") {
-  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.2,
+  const SceneDescription scene =
+      paths_with(R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.2,
       "baseColorTexture":{"index":0}},"extensions":{"KHR_materials_volume":{"thicknessFactor":1},
       "KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}}}})");
-  REQUIRE(scene.materials.at(0).by_paths);
-  const MaterialDescription& m = *scene.materials[0].by_paths;
+  const MaterialDescription& m = scene.materials.at(0);
   CHECK(texture_of(scene, m.textures.glass).channel == 0);
   CHECK(texture_of(scene, m.textures.diffuse).kind == TEXTURE_IMAGE);
   CHECK(m.textures.transmission == m.textures.diffuse);
   CHECK(m.layers->transmission_weight == 0.5);
   CHECK(m.transmission == dvec3(0.5));
-  scene.render.integrator = "path";
   CHECK(compile(scene).features.layer_maps);
 }
 
@@ -139,11 +140,11 @@ TEST_CASE("paths go through what a glTF's texture says is no metal, where its fa
       "KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}})",
                     volume =
                         R"(,"KHR_materials_ior":{"ior":1.7},"KHR_materials_volume":{"thicknessFactor":1})";
-  const SceneDescription solid = quad_with(metal + volume + "}}");
-  CHECK(solid.materials.at(0).transmission == dvec3(0));
-  CHECK(solid.materials[0].medium == -1);
-  REQUIRE(solid.materials[0].by_paths);
-  const MaterialDescription& m = *solid.materials[0].by_paths;
+  const MaterialDescription plain = quad_with(metal + volume + "}}").materials.at(0);
+  CHECK(plain.transmission == dvec3(0));
+  CHECK(plain.medium == -1);
+  const SceneDescription solid = paths_with(metal + volume + "}}");
+  const MaterialDescription& m = solid.materials.at(0);
   CHECK(m.type == MaterialType::dielectric);
   CHECK(m.transmission == dvec3(0.5));
   CHECK(solid.media.at(std::size_t(m.medium)).ior == 1.7);
@@ -151,23 +152,19 @@ TEST_CASE("paths go through what a glTF's texture says is no metal, where its fa
   CHECK(m.layers->transmission_weight == 0.5);
   CHECK(texture_of(solid, m.textures.metalness).channel == 2);
   CHECK(texture_of(solid, m.textures.glass).channel == 0);
-  const SceneDescription pane = quad_with(metal + "}}");
-  REQUIRE(pane.materials.at(0).by_paths);
-  CHECK(pane.materials[0].by_paths->medium == -1);
-  CHECK(pane.materials[0].by_paths->wall_ior == 1.5);
+  const MaterialDescription pane = paths_with(metal + "}}").materials.at(0);
+  CHECK(pane.medium == -1);
+  CHECK(pane.wall_ior == 1.5);
 }
 
 TEST_CASE("a glTF's specular textures are those of what a layered dielectric reflects") {
   const std::string start = R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{)",
                     specular = R"("KHR_materials_specular":{"specularTexture":{"index":0}}}})";
-  SceneDescription scene = quad_with(start + specular);
-  const MaterialDescription& plain = scene.materials.at(0);
-  CHECK_FALSE(plain.layers);
-  REQUIRE(plain.by_paths);
-  CHECK(plain.by_paths->layers);
-  CHECK(texture_of(scene, plain.by_paths->textures.specular).channel == 3);
-  CHECK_FALSE(compile(scene).features.specular_maps);
-  scene.render.integrator = "path";
+  const SceneDescription whitted = quad_with(start + specular), scene = paths_with(start + specular);
+  CHECK_FALSE(whitted.materials.at(0).layers);
+  CHECK_FALSE(compile(whitted).features.specular_maps);
+  CHECK(scene.materials.at(0).layers);
+  CHECK(texture_of(scene, scene.materials[0].textures.specular).channel == 3);
   CHECK(compile(scene).features.specular_maps);
   const SceneDescription cloth =
       quad_with(start + R"("KHR_materials_sheen":{"sheenColorFactor":[1,1,1]},)" + specular);
@@ -176,16 +173,15 @@ TEST_CASE("a glTF's specular textures are those of what a layered dielectric ref
 }
 
 TEST_CASE("a glTF's clearcoat texture is that of the coat's weight for integrators that follow paths") {
-  SceneDescription scene = quad_with(R"({"pbrMetallicRoughness":{"metallicFactor":0},
-      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.5,"clearcoatTexture":{"index":0}}}})");
+  const std::string material = R"({"pbrMetallicRoughness":{"metallicFactor":0},
+      "extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.5,"clearcoatTexture":{"index":0}}}})";
+  const SceneDescription whitted = quad_with(material), scene = paths_with(material);
+  CHECK_FALSE(whitted.materials.at(0).layers);
+  CHECK_FALSE(compile(whitted).features.coat_maps);
   const MaterialDescription& m = scene.materials.at(0);
-  CHECK_FALSE(m.layers);
-  REQUIRE(m.by_paths);
-  CHECK(m.by_paths->coat == 0);
-  CHECK(m.by_paths->layers.value().coat_weight == 0.5);
-  CHECK(texture_of(scene, m.by_paths->textures.coat).channel == 0);
-  CHECK_FALSE(compile(scene).features.coat_maps);
-  scene.render.integrator = "path";
+  CHECK(m.coat == 0);
+  CHECK(m.layers.value().coat_weight == 0.5);
+  CHECK(texture_of(scene, m.textures.coat).channel == 0);
   const CompiledScene path = compile(scene);
   CHECK(path.features.coat_maps);
   CHECK(path.layers[0].coat_grid == 0);
@@ -195,19 +191,19 @@ TEST_CASE("a glTF's clearcoat texture is that of the coat's weight for integrato
 TEST_CASE(
     "glass of a glTF keeps its clearcoat texture for integrators that follow paths, a coat of none has no "
     "use for it") {
-  const auto by_paths = [](const std::string& factor) {
+  const auto glass = [](const std::string& factor) {
     const SceneDescription scene =
-        quad_with(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
+        paths_with(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
         "KHR_materials_volume":{"thicknessFactor":1},
         "KHR_materials_clearcoat":{"clearcoatTexture":{"index":0},"clearcoatFactor":)" +
-                  factor +
-                  "}},"
-                  R"("pbrMetallicRoughness":{"metallicFactor":0}})");
-    return *scene.materials.at(0).by_paths;
+                   factor +
+                   "}},"
+                   R"("pbrMetallicRoughness":{"metallicFactor":0}})");
+    return scene.materials.at(0);
   };
-  CHECK(by_paths("1").type == MaterialType::dielectric);
-  CHECK(by_paths("1").textures.coat >= 0);
-  CHECK(by_paths("0").textures.coat == -1);
+  CHECK(glass("1").type == MaterialType::dielectric);
+  CHECK(glass("1").textures.coat >= 0);
+  CHECK(glass("0").textures.coat == -1);
 }
 
 TEST_CASE("a glTF's clearcoat texture is a factor on the mirror of its clear layer") {
@@ -244,9 +240,11 @@ TEST_CASE("the colour of vertices is a factor on what an unlit glTF material sho
 
 TEST_CASE("the alpha of vertices is a factor on the opacity of glTF's BLEND and MASK, and on no other") {
   const std::vector<glm::vec4> faded(4, {1, 1, 1, 0.25f});
+  const char* const integrator = GENERATE("whitted", "path");
   const auto scene_of = [&](const std::string& mode) {
     return quad_with_colors(
-        faded, R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,0,0,0.5]},)" + mode + "}");
+        faded, R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,0,0,0.5]},)" + mode + "}",
+        integrator);
   };
   for (const std::string mode : {"BLEND", "MASK"}) {
     const SceneDescription scene = scene_of(R"("alphaMode":")" + mode + "\"");
@@ -256,9 +254,6 @@ TEST_CASE("the alpha of vertices is a factor on the opacity of glTF's BLEND and 
     const TextureDescription& alpha = texture_of(scene, m.textures.opacity);
     CHECK(alpha.kind == TEXTURE_VERTEX_COLOR);
     CHECK(alpha.channel == 3);
-    REQUIRE(m.by_paths);
-    CHECK(m.by_paths->opacity == 0.5);
-    CHECK(m.by_paths->textures.opacity == m.textures.opacity);
     const CompiledScene flat = compile(scene);
     REQUIRE(flat.vertex_alphas.size() == flat.vertices.size());
     CHECK(flat.vertex_alphas[0] == 0.25f);
@@ -273,11 +268,14 @@ TEST_CASE("the colour of vertices is a factor on what glTF's metals reflect and 
       quad_with_colors(red, R"({"pbrMetallicRoughness":{"roughnessFactor":0}})").materials.at(0).textures;
   CHECK(metal.reflection >= 0);
   CHECK(metal.specular >= 0);
-  const SceneDescription panes = quad_with_colors(red, R"({"pbrMetallicRoughness":{"metallicFactor":0},
-      "extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})");
-  for (const MaterialDescription* m : {&panes.materials.at(0), panes.materials.at(0).by_paths.get()})
-    CHECK(texture_of(panes, m->textures.transmission).kind == TEXTURE_VERTEX_COLOR);
-  CHECK(panes.materials.at(0).textures.reflection == -1);
+  for (const char* const integrator : {"whitted", "path"}) {
+    const SceneDescription panes = quad_with_colors(red, R"({"pbrMetallicRoughness":{"metallicFactor":0},
+      "extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})",
+                                                    integrator);
+    const MaterialTextures& pane = panes.materials.at(0).textures;
+    CHECK(texture_of(panes, pane.transmission).kind == TEXTURE_VERTEX_COLOR);
+    CHECK(pane.reflection == -1);
+  }
 }
 
 TEST_CASE("an image's colours count by its alpha in materials alone that take their opacity from it") {

@@ -146,11 +146,13 @@ TEST_CASE("a change of what is placed, or of the names of materials, is left to 
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);
   const SceneDescription scene = load_scene_document(before, file);
-  json removed = before, added = before, unplaced = before;
+  json removed = before, added = before, unplaced = before, other_materials = before;
   removed.erase("materials");
   added["meshes"] = json::object();
   unplaced["camera"] = {{"fov", 30}};
-  for (const json& after : {removed, added, unplaced}) CHECK_FALSE(change_scene(scene, before, after));
+  other_materials["render"]["integrator"] = "path";  // of models
+  for (const json& after : {removed, added, unplaced, other_materials})
+    CHECK_FALSE(change_scene(scene, before, after));
   json wrong = before;
   wrong["camera"]["fov"] = 200;
   try {

@@ -7,7 +7,7 @@
 #include "catch.h"
 #include "scene/bounds.h"
 #include "scene/load.h"
-#include "scene/materials/by_integrator.h"
+#include "scene/materials/conserve_light.h"
 #include "scene/model_scene.h"
 #include "scene/read/scene_reader.h"
 #include "scene_text.h"
@@ -87,8 +87,7 @@ double brightest(const SceneDescription& scene) {
   const double light = scene.lights.at(0).intensity + std::max({sky.x, sky.y, sky.z});
   double most = 0;
   for (std::size_t i = 0; i < 2; ++i) {
-    const MaterialDescription& m =
-        surface_for(true, scene.materials.at(static_cast<std::size_t>(scene.objects[i].material)));
+    const MaterialDescription& m = scene.materials.at(static_cast<std::size_t>(scene.objects[i].material));
     const dvec3 sum = light * (m.exponent < 20 ? m.diffuse + m.specular : m.diffuse);
     most = std::max({most, sum.x, sum.y, sum.z});
   }
@@ -113,17 +112,15 @@ TEST_CASE("for paths a bare model's materials return no more light than they get
     CHECK(scene.render.integrator == "path");
     return scene.materials.at(static_cast<std::size_t>(scene.objects[0].material));
   };
-  CHECK(!material_of(0.8, 0.2, 32).by_paths);
-  CHECK(!material_of(0.8, 0.5, 96).by_paths);  // as Blender's usual MTL: a narrow highlight takes little
-  CHECK(!material_of(0.4, 0.6, 1).by_paths);
+  CHECK(material_of(0.8, 0.2, 32).diffuse.x == 0.8);
+  CHECK(material_of(0.8, 0.5, 96).diffuse.x ==
+        0.8);  // as Blender's usual MTL: a narrow highlight takes little
+  CHECK(material_of(0.4, 0.6, 1).specular.x == 0.6);
   // Phong's max(r.v, 0)^e returns 2 / (e + 1) of uniform light: its integral over the hemisphere, over pi.
   const MaterialDescription broad = material_of(0.8, 0.5, 1), uniform = material_of(0.2, 0.9, 0);
-  CHECK(broad.diffuse.x == 0.8);
-  REQUIRE(broad.by_paths);
-  CHECK(broad.by_paths->diffuse.x == Approx(0.8 / 1.3));
-  CHECK(broad.by_paths->specular.x == Approx(0.5 / 1.3));
-  REQUIRE(uniform.by_paths);
-  CHECK(uniform.by_paths->diffuse.x == Approx(0.2 / 2));
+  CHECK(broad.diffuse.x == Approx(0.8 / 1.3));
+  CHECK(broad.specular.x == Approx(0.5 / 1.3));
+  CHECK(uniform.diffuse.x == Approx(0.2 / 2));
 }
 
 TEST_CASE("a model without camera and lights stands on a matte ground of the horizon's colour") {
