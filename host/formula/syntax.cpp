@@ -218,6 +218,8 @@ class Parser {
       return value;
     }
     if (token.kind != Token::Kind::name) fail(token, "expected a value, " + found());
+    for (const std::string_view word : {"if", "else", "for", "while", "do", "return"})
+      if (token.text == word) refuse_reserved();
     ++at_;
     if (!accept("(")) return make(Expression::Kind::name, token.place, token.text, {});
     std::vector<Expression> operands;

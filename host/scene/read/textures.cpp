@@ -2,6 +2,7 @@
 #include "scene/read/textures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -75,16 +76,22 @@ std::string TextureLibrary::refer(const JsonValue& name) {
 
 void TextureLibrary::check_names() const {
   for (const JsonValue& name : references_) named(name);
-  for (const auto& [name, entry] : entries_) check_depth(name, 0);
+  for (const auto& [name, entry] : entries_) check_depth(name, {});
 }
 
-void TextureLibrary::check_depth(const std::string& name, unsigned depth) const {
-  const Entry& entry = entries_.find(name)->second;
-  if (depth + 2 > MOST_TEXTURE_STACK)
-    throw SceneError(scene_.file.string(), join_pointer("/textures", name),
-                     "the texture is made of too many others inside each other, or of itself");
-  for (const std::string& of : entry.of)
-    if (!of.empty()) check_depth(of, depth + 1);
+/// `inside`: the textures that are made of this one, outermost first.
+void TextureLibrary::check_depth(const std::string& name, std::vector<std::string> inside) const {
+  const auto fail = [&](const std::string& what) {
+    throw SceneError(scene_.file.string(), join_pointer("/textures", name), what);
+  };
+  const bool circle = std::ranges::count(inside, name) > 0;
+  inside.push_back(name);
+  if (circle) fail(fmt::format("the texture is made of itself: {}", fmt::join(inside, " of ")));
+  if (inside.size() + 1 > MOST_TEXTURE_STACK)
+    fail(fmt::format("the texture is inside {} others; wanted at most {}", inside.size() - 1,
+                     MOST_TEXTURE_STACK - 2));
+  for (const std::string& of : entries_.find(name)->second.of)
+    if (!of.empty()) check_depth(of, inside);
 }
 
 std::string TextureLibrary::named(const JsonValue& name) const {

@@ -48,7 +48,7 @@ class TextureLibrary {
   Entry read_product(JsonObject& object);
   /// A texture name inside a texture, checked later.
   std::string refer(const JsonValue& name);
-  void check_depth(const std::string& name, unsigned depth) const;
+  void check_depth(const std::string& name, std::vector<std::string> inside) const;
   /// The name of a texture that has been read.
   std::string named(const JsonValue& name) const;
   /// The name of a generated single-colour texture.

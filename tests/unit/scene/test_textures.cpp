@@ -143,6 +143,21 @@ TEST_CASE("bad textures are errors with file and place") {
              ContainsSubstring("/materials/m/opacity"));
 }
 
+TEST_CASE("textures that are made of themselves are named, those inside too many others counted") {
+  const auto product = [](const std::string& name, const std::string& a, const std::string& b) {
+    return "\"" + name + R"(": {"type": "product", "of": [")" + a + R"(", ")" + b + "\"]}";
+  };
+  const Folder folder;
+  const std::string end = R"(, "c": {"type": "checker"}}, "materials": {"m": {}})";
+  CHECK_THAT(folder.error(R"("textures": {)" + product("a", "c", "b") + "," + product("b", "c", "a") + end),
+             ContainsSubstring("/textures/a: the texture is made of itself: a of b of a"));
+  std::string chain = product("t10", "c", "c");
+  for (int i = 11; i < 30; ++i)
+    chain += "," + product("t" + std::to_string(i), "c", "t" + std::to_string(i - 1));
+  CHECK_THAT(folder.error(R"("textures": {)" + chain + end),
+             ContainsSubstring("the texture is inside 15 others; wanted at most 14"));
+}
+
 TEST_CASE("a formula's pattern becomes kernel code, and what is wrong with it has its place") {
   const Folder folder;
   const auto with = [](const std::string& rest) {

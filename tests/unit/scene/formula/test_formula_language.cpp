@@ -125,6 +125,7 @@ TEST_CASE("a place in the text is given by line and column") {
   check_failure("float d = length(z)", 1, 1, "variables are named without their type");
   check_failure("for (i = 0; i < 3; i = i + 1) z = z * z", 1, 1, "no text has loops");
   check_failure("if (z.x > 0) z = -z", 1, 1, "a ? b : c chooses a value");
+  check_failure("z = if (z.x > 0) z", 1, 5, "a ? b : c chooses a value");
   check_failure("z += c", 1, 3, "found '+=': write z = z + ...");
   check_failure("z.x += 1", 1, 5, "write z.x = z.x + ...");
   check_failure("z = z ** 2 + c", 1, 8, "powers are written a ^ n");
