@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "formula/lower.h"
+
 namespace sundog {
 namespace {
 
@@ -37,28 +39,46 @@ FieldOp field_op(Op op) {
 }  // namespace
 
 GraphWriter::GraphWriter(FieldCode& code, const Graph& graph, std::vector<NodeId> outputs, std::string prefix,
-                         std::function<Operand(int)> input)
+                         std::function<Operand(int)> input, std::function<Operand(NodeId)> known)
     : code_(code),
       graph_(graph),
       outputs_(std::move(outputs)),
       prefix_(std::move(prefix)),
       input_(std::move(input)),
+      known_(std::move(known)),
       uses_(graph.size(), 0),
-      is_fused_(graph.size(), false) {
+      is_fused_(graph.size(), false),
+      is_known_(graph.size(), false) {
+  if (known_) find_known();
   count_uses();
+}
+
+/// Numbers of parameters alone. Conditions have no place in a table.
+void GraphWriter::find_known() {
+  std::vector<bool> fixed(graph_.size(), false);
+  for (NodeId id = 0; id < graph_.size(); ++id) {
+    const Node& node = graph_[id];
+    fixed[id] = node.op != Op::input || node.value >= formula_input::parameter;
+    for (const NodeId operand : {node.a, node.b, node.c})
+      if (operand != no_node && !fixed[operand]) fixed[id] = false;
+    const bool computed = node.op != Op::constant && node.op != Op::input;
+    is_known_[id] = fixed[id] && computed && !(node.op >= Op::less && node.op <= Op::opposite);
+  }
 }
 
 void GraphWriter::count_uses() {
   for (const NodeId id : outputs_) uses_[id] += 2;  // an output keeps its own name
   for (NodeId id = static_cast<NodeId>(graph_.size()); id-- > 0;) {
-    if (uses_[id] == 0) continue;
+    if (uses_[id] == 0 || is_known_[id]) continue;
     for (const NodeId operand : {graph_[id].a, graph_[id].b, graph_[id].c})
       if (operand != no_node) ++uses_[operand];
   }
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Node& node = graph_[id];
     if (uses_[id] == 0 || (node.op != Op::add && node.op != Op::subtract)) continue;
-    const auto product = [&](NodeId x) { return graph_[x].op == Op::multiply && uses_[x] == 1; };
+    const auto product = [&](NodeId x) {
+      return graph_[x].op == Op::multiply && uses_[x] == 1 && !is_known_[x];
+    };
     // The second operand of a sum, the first of a difference: the order of lib/core/lanes.h.
     const bool first = node.op == Op::subtract;
     if (product(first ? node.a : node.b))
@@ -72,6 +92,7 @@ Operand GraphWriter::value(NodeId id) {
   const Node& node = graph_[id];
   if (node.op == Op::constant) return Operand::literal(node.value);
   if (const auto found = values_.find(id); found != values_.end()) return found->second;
+  if (is_known_[id]) return values_[id] = known_(id);
   return values_[id] = input_(static_cast<int>(node.value));
 }
 
@@ -123,14 +144,15 @@ void GraphWriter::write_invariants(const std::function<bool(int)>& changes) {
     }
     for (const NodeId operand : {node.a, node.b, node.c})
       if (operand != no_node && varies[operand]) varies[id] = true;
-    if (!varies[id] && uses_[id] > 0 && !fused(id)) write(id);
+    if (!varies[id] && uses_[id] > 0 && !fused(id) && !is_known_[id]) write(id);
   }
 }
 
 void GraphWriter::write_rest() {
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Op op = graph_[id].op;
-    if (uses_[id] == 0 || fused(id) || values_.contains(id) || op == Op::constant || op == Op::input)
+    if (uses_[id] == 0 || fused(id) || is_known_[id] || values_.contains(id) || op == Op::constant ||
+        op == Op::input)
       continue;
     write(id);
   }

@@ -128,21 +128,22 @@ LeafCode leaf_code(const FormulaField& field) {
   check(field);
   FormulaField held = field;
   held.bailout = held_bailout(field);
-  LeafCode code;
-  using Variant = LeafEmitter::Variant;
-  for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
-    code.functions[static_cast<std::size_t>(variant)] =
-        std::make_shared<const FieldCode>(LeafEmitter(held, variant).function());
   const double inside = std::min(held.bailout, field.steps.back().definition.inside_radius);
   const FormulaDefinition& last = field.steps.back().definition;
   const double level = last.estimate == EscapeEstimate::logarithmic
                            ? 2 * std::log(std::max(held.bailout, 1e-3))
                            : held.bailout;
-  for (const double value : {double(field.iterations), held.bailout * held.bailout, inside, field.safety,
-                             last.inside_safety, level})
-    code.parameters.push_back(value);
+  LeafTable table{{double(field.iterations), held.bailout * held.bailout, inside, field.safety,
+                   last.inside_safety, level},
+                  {}};
   for (const FormulaStep& step : field.steps)
-    for (const double value : step.values) code.parameters.push_back(value);
+    table.values.insert(table.values.end(), step.values.begin(), step.values.end());
+  LeafCode code;
+  using Variant = LeafEmitter::Variant;
+  for (const Variant variant : {Variant::distance, Variant::two_sided, Variant::sample})
+    code.functions[static_cast<std::size_t>(variant)] =
+        std::make_shared<const FieldCode>(LeafEmitter(held, variant, table).function());
+  code.parameters = std::move(table.values);
   return code;
 }
 

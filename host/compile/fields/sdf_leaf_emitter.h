@@ -1,6 +1,8 @@
 // Emits one function of a leaf. Internal to leaf_code().
 #pragma once
 #include <array>
+#include <map>
+#include <tuple>
 #include <vector>
 
 #include "compile/fields/sdf_emit.h"
@@ -9,18 +11,23 @@
 
 namespace sundog {
 
-// A leaf's table: these entries, then the steps' parameters in order.
+// A leaf's table: these entries, the steps' parameters in order, and the numbers that follow from them alone.
 namespace leaf_slot {
 constexpr int iterations = 0, bailout = 1, inside = 2, safety = 3, inside_safety = 4, level = 5,
               first_parameter = 6;
 }
 
+struct LeafTable {
+  std::vector<double> values;
+  std::map<std::tuple<std::size_t, char, NodeId>, std::size_t> places;  // of numbers, by step and section
+};
+
 class LeafEmitter {
  public:
   enum class Variant { distance, two_sided, sample };
 
-  /// `field` must outlive this.
-  LeafEmitter(const FormulaField& field, Variant variant);
+  /// `field` and `table`, to which numbers are added, must outlive this.
+  LeafEmitter(const FormulaField& field, Variant variant, LeafTable& table);
 
   FieldCode function();
 
@@ -34,6 +41,7 @@ class LeafEmitter {
   std::size_t components() const { return static_cast<std::size_t>(size_); }
 
   Operand input(std::size_t step, int index);
+  Operand known(std::size_t step, char section, const Graph& graph, NodeId id);
   GraphWriter writer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
                      const char* prefix);
   static Operand slot(int index) { return Operand::table(static_cast<std::size_t>(index)); }
@@ -68,6 +76,7 @@ class LeafEmitter {
 
   const FormulaField& field_;
   Variant variant_;
+  LeafTable& table_;
   std::vector<LoweredFormula> lowered_;
   std::vector<int> slots_;
   const FormulaDefinition* last_ = nullptr;

@@ -1,6 +1,9 @@
 // Emits a leaf's orbit: before the first iteration, one iteration, the loop. See sdf_leaf_emitter.h.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "compile/fields/sdf_leaf_emitter.h"
 
 namespace sundog {
@@ -18,7 +21,8 @@ bool changes_in_orbit(int index) {
 
 }  // namespace
 
-LeafEmitter::LeafEmitter(const FormulaField& field, Variant variant) : field_(field), variant_(variant) {
+LeafEmitter::LeafEmitter(const FormulaField& field, Variant variant, LeafTable& table)
+    : field_(field), variant_(variant), table_(table) {
   int slot = leaf_slot::first_parameter;
   for (const FormulaStep& step : field.steps) {
     lowered_.push_back(lower(step.definition, step.values, lowered_.empty() ? nullptr : &lowered_[0].start));
@@ -54,10 +58,28 @@ Operand LeafEmitter::input(std::size_t step, int index) {
   }
 }
 
+/// A number that depends on the step's parameters alone, computed here.
+Operand LeafEmitter::known(std::size_t step, char section, const Graph& graph, NodeId id) {
+  const auto [place, is_new] = table_.places.try_emplace({step, section, id}, table_.values.size());
+  if (is_new) {
+    const auto parameter = [&](int index) {
+      return field_.steps[step].values[static_cast<std::size_t>(index - in::parameter)];
+    };
+    const double value = evaluate(graph, std::array{id}, parameter)[0],
+                 most = std::numeric_limits<float>::max();
+    table_.values.push_back(std::clamp(value, -most, most));
+  }
+  return Operand::table(place->second);
+}
+
 GraphWriter LeafEmitter::writer(std::size_t step, const Section& section, std::vector<NodeId> outputs,
                                 const char* prefix) {
-  return {code_, section.graph, std::move(outputs), fmt::format("{}{}_", prefix, step),
-          [this, step](int index) { return input(step, index); }};
+  return {code_,
+          section.graph,
+          std::move(outputs),
+          fmt::format("{}{}_", prefix, step),
+          [this, step](int index) { return input(step, index); },
+          [this, step, prefix, &section](NodeId id) { return known(step, *prefix, section.graph, id); }};
 }
 
 void LeafEmitter::square(const Operand& r2) {
