@@ -11,6 +11,9 @@ static inline float polynomial(const float* c, float x) {
   return fma(fma(fma(fma(c[4], x, c[3]), x, c[2]), x, c[1]), x, c[0]);
 }
 
+// Newton steps no longer than this end a search: rounding moves roots as far, and bisection would go far off.
+#define ROOT_ERROR 1e-6f
+
 // The root in [low, high], where the polynomial is monotone and changes sign: bisection with Newton steps.
 static inline float bracketed_root(const float* c, const float* derivative, float low, float high) {
   const bool rising = polynomial(c, high) > polynomial(c, low);
@@ -25,9 +28,8 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
       low = x;
     const float slope = polynomial(derivative, x);
     const float newton = slope != 0.0f ? x - f / slope : low;
-    const float next = newton > low && newton < high ? newton : 0.5f * (low + high);
-    if (next == x) break;
-    x = next;
+    if (fabs(newton - x) <= ROOT_ERROR) break;
+    x = newton > low && newton < high ? newton : 0.5f * (low + high);
   }
   return x;
 }
