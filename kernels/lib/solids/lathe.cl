@@ -114,10 +114,14 @@ static inline ArcPlace arc_place(const LatheRay* ray, const ProfileArc* arc, flo
 }
 static inline float value_at(const ArcPlace* place, float g) { return place->up - g * place->q; }
 
-// Newton's step from t if it stays between the bounds, else their middle.
-static inline float newton_step(float t, float off, float slope, float low, float high) {
-  const float next = slope != 0.0f ? t - off / slope : low;
-  return next > low && next < high ? next : 0.5f * (low + high);
+// Takes Newton's step from t if it stays between the bounds, else to their middle. False: t is found, as the
+// step would be within rounding; bisection would then go far off.
+static inline bool newton_step(float* t, float off, float slope, float low, float high) {
+  if (fabs(off) <= 0x1p-23f * fabs(slope)) return false;
+  const float next = slope != 0.0f ? *t - off / slope : low;
+  const float before = *t;
+  *t = next > low && next < high ? next : 0.5f * (low + high);
+  return fabs(*t - before) > 0x1p-24f;
 }
 
 // Where the radius becomes m on an arc of which an end, the first or the last, is inside. There both halves
@@ -131,9 +135,7 @@ static inline ArcPlace outer_end(const LatheRay* ray, const ProfileArc* arc, boo
       low = t;
     else
       high = t;
-    const float next = newton_step(t, off, 2.0f * r * arc_slope(arc, t).x, low, high);
-    if (fabs(next - t) <= 0x1p-25f) break;
-    t = next;
+    if (!newton_step(&t, off, 2.0f * r * arc_slope(arc, t).x, low, high)) break;
   }
   ArcPlace end = arc_place(ray, arc, t);
   end.q = 0.0f;
@@ -155,10 +157,8 @@ static inline float arc_root(const LatheRay* ray, const ProfileArc* arc, float g
     else
       high = t;
     const float2 slope = arc_slope(arc, t);
-    const float next =
-        newton_step(t, off * place.q, fma(ray->sine * slope.y, place.q, -(g * place.r * slope.x)), low, high);
-    if (fabs(next - t) <= 0x1p-24f) break;
-    t = next;
+    const float rise = fma(ray->sine * slope.y, place.q, -(g * place.r * slope.x));
+    if (!newton_step(&t, off * place.q, rise, low, high)) break;
   }
   return t;
 }
@@ -337,9 +337,7 @@ static inline float find_on_arc(const Scene* scene, float4 parameters, float3 p,
       low = t;
     else
       high = t;
-    const float next = newton_step(t, value, by_radius ? slope.x : slope.y, low, high);
-    if (fabs(next - t) <= 0x1p-24f) break;
-    t = next;
+    if (!newton_step(&t, value, by_radius ? slope.x : slope.y, low, high)) break;
   }
   return t;
 }
@@ -348,8 +346,9 @@ static inline float find_on_arc(const Scene* scene, float4 parameters, float3 p,
 static inline SurfacePoints points_on_lathe(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   SurfacePoints at;
   at.u = turns(p.x, -p.z);
-  at.dpdu = round_tangents(p);
-  EACH_LANE(i, ALL_LANES) {
+  at.v = (REAL)(0.0f);
+  at.dpdu = at.dpdv = round_tangents(p);
+  EACH_LANE(i, MASK_OF(part >= 0)) {
     ProfileArc arc;
     float2 place;
     const float3 q = get3(&p, i);
@@ -367,7 +366,7 @@ static inline SurfacePoints points_on_lathe(const Scene* scene, float4 parameter
 
 static inline REAL curvature_of_lathe(const Scene* scene, float4 parameters, REAL3 p, MASK part) {
   REAL curvature = (REAL)(0.0f);
-  EACH_LANE(i, ALL_LANES) {
+  EACH_LANE(i, MASK_OF(part >= 0)) {
     ProfileArc arc;
     float2 place;
     const float t = find_on_arc(scene, parameters, get3(&p, i), MASK_LANE(part, i), &arc, &place);

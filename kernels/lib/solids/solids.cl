@@ -24,9 +24,11 @@ ALWAYS_INLINE void closest_in_solid(u32 shape, float4 parameters, REAL3 o, REAL3
 #undef CLOSEST
 }
 
-// Coordinates of points p on the `part`s of a solid; `at` is unchanged for other shapes.
+// Coordinates of points p on the `part`s of a solid; `at` is unchanged for other shapes. The part of lanes
+// that are off is negative.
 static inline void points_on_solid(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part,
-                                   SurfacePoints* at) {
+                                   MASK lanes, SurfacePoints* at) {
+  part = select((MASK)(-1), part, lanes);
 #define POINTS(constant, type, name, effect) \
   HAVING(                                    \
       HAS_##constant,                        \
@@ -36,7 +38,9 @@ static inline void points_on_solid(const Scene* scene, u32 shape, float4 paramet
 }
 
 // Mean curvature of unit shapes at points p.
-static inline REAL solid_curvatures(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part) {
+static inline REAL solid_curvatures(const Scene* scene, u32 shape, float4 parameters, REAL3 p, MASK part,
+                                    MASK lanes) {
+  part = select((MASK)(-1), part, lanes);
 #define CURVATURES(constant, type, name, effect) \
   HAVING(HAS_##constant,                         \
          if (shape == SHAPE_##constant) return curvature_of_##name(scene, parameters, p, part);)

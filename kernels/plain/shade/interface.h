@@ -26,9 +26,9 @@ typedef struct LANES(SurfacePoints) {
   float3 dpdu, dpdv;
 } SolidPoint;
 void points_on_solid(UNIFORM const Scene* scene, UNIFORM u32 shape, UNIFORM float4 parameters, float3 p,
-                     int part, SolidPoint* at);
+                     int part, HERE, SolidPoint* at);
 float solid_curvatures(UNIFORM const Scene* scene, UNIFORM u32 shape, UNIFORM float4 parameters, float3 p,
-                       int part);
+                       int part, HERE);
 float3 still_origins(const SurfaceHit* hit, UNIFORM u32 index, float3 o);
 float3 still_directions(const SurfaceHit* hit, UNIFORM u32 index, float3 d);
 float3 field_points(UNIFORM __global const Instance* instance, float3 p);

@@ -88,7 +88,7 @@ __kernel void locate(__global const float4* points, __global float* out, u32 sha
   const u32 i = get_global_id(0);
   if (i >= count) return;
   SurfacePoints at;
-  points_on_solid(0, shape, parameters, all3(points[i].xyz), (int)part, &at);
+  points_on_solid(0, shape, parameters, all3(points[i].xyz), (int)part, ALL_LANES, &at);
   __global float* to = out + 5u * i;
   to[0] = at.u; to[1] = at.v; to[2] = at.dpdu.x; to[3] = at.dpdu.y; to[4] = at.dpdu.z;
 }
