@@ -90,10 +90,11 @@ static float3 field_color(UNIFORM const Scene* scene, UNIFORM u32 index, float3 
                    along(from, hit->t, object_vectors(instance, still_directions(hit, index, d))));
 }
 
-// Sets the point of a hit and its texture data.
+// Sets the point of a hit, its time and its texture data.
 ENTRY static inline void locate(UNIFORM const Scene* scene, const SurfaceHit* hit, float3 p,
                                 OUT SurfaceInteraction* s) {
   s->p = p;
+  if (HAS_OBJECT_MOTION) s->time = time_of_hits(hit);
   if (HAS_UV) s->at = find_coordinates(scene, hit, p);
   if (HAS_MAPS) {
     s->prim = hit->prim;
@@ -146,7 +147,6 @@ ENTRY static inline void interact(UNIFORM const Scene* scene, float3 o, float3 d
   s->flags = face->flags;
   s->medium = face->medium;
   s->entering = face->entering;
-  if (HAS_OBJECT_MOTION) s->time = time_of_hits(hit);
   s->color = colored ? color : (float3)(1.0f);
   s->offset = real_max(rounding_offset(rounding, face->outward), offset_distance(o, p, turned));
   locate(scene, hit, p, s);

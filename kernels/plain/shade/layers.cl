@@ -90,9 +90,10 @@ static inline float3 coat_darkening(UNIFORM __global const Layers* m, const Laye
 }
 
 // The reflected colour of the base's interface at the cosine c: of the dielectric's opaque share, with
-// components of at most `most`, and of the metal.
+// components of at most `most`, and of the metal. Light scatters again, by `more`, between facets of the same
+// kind, so the shares of both count once.
 static inline float3 shine_color(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
-                                 const LayerBase* base, float3 color, float c, float most) {
+                                 const LayerBase* base, float3 color, float c, float most, float more) {
   const float opaque = (1.0f - base->metal) * (1.0f - base->glass);
   const float f = base_reflectance(m, base, c);
   float3 of_glass = (float3)(f, f, f), of_metal = metal_shares(c, color, m->specular);
@@ -102,7 +103,7 @@ static inline float3 shine_color(UNIFORM const Scene* scene, UNIFORM __global co
   }
   of_glass = (float3)(real_min(of_glass.x, most), real_min(of_glass.y, most), real_min(of_glass.z, most)) *
              interface_tint(m, base);
-  return along(of_glass * opaque, base->metal * m->metal, of_metal);
+  return along(mend_shares(of_glass, more) * opaque, base->metal, mend_shares(of_metal * m->metal, more));
 }
 
 // The light that fuzz and coat transmit between the cosines c_o, on the viewer's side, and c_i, which is
@@ -169,7 +170,7 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
   const float gains = shine_gain(scene, m, &base, wo) * shine_gain(scene, m, &base, wi);
   const FacetLobe shine = facet_lobe(wo, wi, h, base.alpha_x, base.alpha_y, gains);
   chance += shares->shine * shine.pdf;
-  const float3 color = mend_shares(shine_color(scene, m, &base, bsdf->base, wo_h, 1.0f), shine.more);
+  const float3 color = shine_color(scene, m, &base, bsdf->base, wo_h, 1.0f, shine.more);
   const float left = share_left(shares, base.alpha_x, base.alpha_y, mirrored);
   float3 own = color * (shine.value * (left * base.shine_scale) * kept);
   const float ground = diffuse * (1.0f - base.metal) * (1.0f - base.glass);
@@ -217,7 +218,7 @@ static inline float3 mirrored_by_layers(UNIFORM const Scene* scene, UNIFORM __gl
                                         const Bsdf* bsdf, float c) {
   const LayerBase base = base_of(scene, m, bsdf);
   const float taken = 1.0f - past_shine(scene, m, &base, c);
-  float3 below = shine_color(scene, m, &base, bsdf->base, c, taken);
+  float3 below = shine_color(scene, m, &base, bsdf->base, c, taken, 0.0f);
   float share = mirror_share(base.alpha_x, base.alpha_y), coat = 0.0f;
   if (bsdf->coated) {
     const float by_fuzz = past_fuzz(scene, m, &base, c), by_both = past_layers(scene, m, &base, c);

@@ -13,6 +13,7 @@
 #include "same_bits.h"
 #include "scene/load.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 using glm::dvec3;
@@ -219,4 +220,23 @@ TEST_CASE("groups add their moves to those of their objects, and bounds hold the
   SceneDescription too_far = scene;
   too_far.objects[1].moves_by = {1e300, 0, 0};
   CHECK_THROWS_AS(compile(too_far), SceneError);
+}
+
+TEST_CASE("the pattern of a thing's opacity moves with it for the lamps' light, too") {
+  const TemporaryFolder folder;
+  const SceneDescription scene = load_scene(folder.write("holes.json", R"({
+    "camera": {"position": [-0.2, 1.4, 4], "target": [-0.4, -0.2, 0.5], "fov": 20},
+    "image": {"width": 16, "height": 16},
+    "render": {"integrator": "path", "samples": 64, "max_depth": 64, "path": {"lights": "lights"}},
+    "environment": {"type": "gradient", "top": [1, 1, 1], "bottom": [1, 1, 1]},
+    "textures": {"holes": {"type": "checker", "size": 0.3, "colors": [[1, 1, 1], [0.2, 0.2, 0.2]]}},
+    "materials": {"paper": {"diffuse": 1, "ambient": 0, "opacity": "holes"}},
+    "objects": [{"type": "box", "material": "paper", "moves_by": [0.2, 0, 0],
+                 "transform": [{"scale": 0.7}, {"translate": [-0.36, -0.25, 0.5]}]}]})"));
+  on_picture_devices([&](const DeviceInfo& device) {
+    const Image image = scenes::render_on(device, scene).image;
+    double sum = 0;
+    for (std::size_t i = 0; i < image.data.size(); i += 4) sum += double(image.data[i]);
+    CHECK(sum * 4 / double(image.data.size()) == Approx(1).epsilon(0.03));
+  });
 }

@@ -44,8 +44,9 @@ struct Named {
 inline std::vector<Named> white_materials(double roughness) {
   const dvec3 white(1);
   OpenPbr metal{.base_color = white, .base_metalness = 1, .specular_roughness = roughness};
-  OpenPbr brushed = metal, plastic{.base_color = white, .specular_roughness = roughness};
+  OpenPbr brushed = metal, half = metal, plastic{.base_color = white, .specular_roughness = roughness};
   brushed.specular_roughness_anisotropy = 0.8;
+  half.base_metalness = 0.5;
   OpenPbr clay = plastic, painted = plastic, lacquered = metal, grooved = metal, velvet = plastic,
           film = plastic, all = plastic;
   clay.base_diffuse_roughness = 1;
@@ -57,10 +58,10 @@ inline std::vector<Named> white_materials(double roughness) {
   film.thin_film_weight = 1;
   all.coat_weight = all.fuzz_weight = all.thin_film_weight = 0.7;
   all.base_metalness = 0.4, all.coat_roughness = 0.2, all.specular_roughness_anisotropy = 0.5;
-  return {{"metal", metal, 0.98},     {"brushed", brushed, 0.9},  {"plastic", plastic, 0.98},
-          {"clay", clay, 0.9},        {"painted", painted, 0.95}, {"lacquered", lacquered},
-          {"grooved", grooved, 0.77}, {"velvet", velvet, 0.9},    {"film", film, 0.95},
-          {"all", all, 0.82}};
+  return {{"metal", metal, 0.98},     {"half metal", half, 0.98}, {"brushed", brushed, 0.9},
+          {"plastic", plastic, 0.98}, {"clay", clay, 0.9},        {"painted", painted, 0.95},
+          {"lacquered", lacquered},   {"grooved", grooved, 0.77}, {"velvet", velvet, 0.9},
+          {"film", film, 0.95},       {"all", all, 0.82}};
 }
 
 inline OpenPbr colored() {

@@ -195,6 +195,23 @@ TEST_CASE("layers over a frosted wall stand on both of its sides") {
   }
 }
 
+TEST_CASE("a white wall that is frosted in part, and else metal or matte, returns all light and no more") {
+  Tester& tester = tester_on(picture_devices().front(), true);
+  for (const double metalness : {0.0, 0.5})
+    for (const double roughness : {0.3, 0.6, 1.0}) {
+      OpenPbr values{.base_color = dvec3(1), .base_metalness = metalness, .specular_roughness = roughness};
+      values.transmission_weight = 0.5, values.geometry_thin_walled = true;
+      tester.set_layers(values);
+      for (const double cosine : {1.0, 0.5, 0.2}) {
+        INFO(metalness << " metal of roughness " << roughness << " at " << cosine);
+        const double mean =
+            mean_weight(tester.draw(layered(values).material, no_medium, at_cosine(cosine), 4 * count));
+        CHECK(mean < 1.01);
+        CHECK(mean > 0.98);
+      }
+    }
+}
+
 namespace {
 
 using sundog::paths::add_matte, sundog::paths::check_mean, sundog::paths::lamp, sundog::paths::mean_on,

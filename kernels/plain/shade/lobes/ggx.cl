@@ -105,6 +105,19 @@ static inline void add_further(UNIFORM const Scene* scene, const Bsdf* bsdf, con
       fma(1.0f - facets->further.lost, sum->pdf, facets->further.lost * part * fabs(c) * (1.0f / M_PI_F));
 }
 
+// The fraction of the surface that is a frosted wall: layered materials have metal and matte ground beside
+// it.
+HAVING(HAS_THIN_WALLS)
+static inline float frosted_part(UNIFORM const Scene* scene, const Bsdf* bsdf) {
+  float part = 1.0f;
+  if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material) {
+      __global const Layers* m = scene->layers + index;
+      part = (1.0f - m->specular.w) * m->glass;
+      if (HAS_LAYER_MAPS) part = (1.0f - bsdf->metalness) * bsdf->glass;
+    }
+  return real_max(part, 1e-6f);
+}
+
 // Single reflection and refraction by facets with normals h. `below`: of transmission. For frosted walls wi
 // is mirrored, for which refraction's Jacobian with eta 1 equals reflection's.
 static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, const Microfacet* facets,
@@ -124,7 +137,9 @@ static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   if (facets->mends) {
     const float more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha), -1.0f);
     // Multiply scattered light of a frosted wall may leave on either side.
-    const float3 kept = is_frosted(facets) ? interface.kr + interface.kt : own_color(bsdf, color);
+    float3 kept = own_color(bsdf, color);
+    if (HAS_THIN_WALLS && is_frosted(facets))
+      kept = (interface.kr + interface.kt) * (1.0f / frosted_part(scene, bsdf));
     color = (float3)(color.x * fma(kept.x, more, 1.0f), color.y * fma(kept.y, more, 1.0f),
                      color.z * fma(kept.z, more, 1.0f));
   }
