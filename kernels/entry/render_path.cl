@@ -167,10 +167,10 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their number to weights, as
 // render_whitted does; adds to counters and ray_counts.
-__kernel FOR_WAVES void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_media,
-                                    __global const u32* restrict pixels, __global float4* restrict film,
-                                    __global float* restrict weights, __global u32* restrict counters,
-                                    __global u32* restrict ray_counts, const Launch launch) {
+__kernel FOR_WAVES(0) void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_media,
+                                       __global const u32* restrict pixels, __global float4* restrict film,
+                                       __global float* restrict weights, __global u32* restrict counters,
+                                       __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 place = get_global_id(1) * launch.row_items + get_global_id(0),
             first = launch.first_item + place * launch.run;
