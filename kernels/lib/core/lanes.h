@@ -93,9 +93,10 @@ static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
   for (u32 i, i##_left = lane_bits(lanes); i##_left && (i = lowest_bit(i##_left), true); \
        i##_left &= i##_left - 1u)
 
-// Lane i of a private REAL or MASK variable, as an lvalue.
-#define REAL_LANE(variable, i) (((float*)&(variable))[i])
-#define MASK_LANE(variable, i) (((int*)&(variable))[i])
+// Lane i of a private REAL or MASK variable, as an lvalue. Not all compilers see that i is 0 where there is
+// one lane: they would keep the variable in memory.
+#define REAL_LANE(variable, i) (((float*)&(variable))[(i) * (LANES > 1)])
+#define MASK_LANE(variable, i) (((int*)&(variable))[(i) * (LANES > 1)])
 
 // Removes from `left`, a nonzero set of lanes, those with the same index as its first lane, so that a table's
 // entry is read once for all of them.
