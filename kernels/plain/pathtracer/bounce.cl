@@ -161,7 +161,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   if (!deep || cut_out) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
   if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
-  if (HAS_CAUSTICS) *light += by_photons;
+  *light += by_photons;
   return going;
 }
 
