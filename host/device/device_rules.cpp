@@ -24,11 +24,11 @@ constexpr std::array rules{
     DeviceRule{"amd", "Advanced Micro Devices", true, false,
                "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10"},
     // Intel's own driver. Its compiler gives programs that spill 256 registers instead of 128, for half the
-    // threads, where the GPU has them; render_path gets them always. GPUs without ignore both options.
-    // occluded_rays takes 16 rays a thread without spills, where the compiler chooses 8.
+    // threads, where the GPU has them; render_path and the tracer alone get them always, and the tracer then
+    // takes 16 rays a thread without spills, where the compiler chooses 8. GPUs without ignore both options.
     DeviceRule{"intel", "Intel(R) OpenCL", true, false,
                "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 -cl-intel-enable-auto-large-GRF-mode",
-               "", "-cl-intel-256-GRF-per-thread"},
+               "-cl-intel-256-GRF-per-thread", "-cl-intel-256-GRF-per-thread"},
     // By other drivers, which do not know these options.
     DeviceRule{"", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
     DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL"},

@@ -18,14 +18,18 @@
 // ended: Mesa's llvmpipe (22.3) runs groups in whole vectors, and where a group does not fill one, the
 // others loop by the zeros that they read here.
 typedef struct LaneWork {
-  u32 untaken, end;   // pixels that no lane has taken yet: BATCH an item
-  MASK place;         // 1 + the lanes' pixels in the rectangle, or NO_PLACE
-  float sign[BATCH];  // what the sample counts that the lane is at
-  PathStates paths;   // set where lanes begin, as `rays`; of others their samples alone are read
+  u32 untaken, end;                       // pixels that no lane has taken yet: BATCH an item
+  MASK place;                             // 1 + the lanes' pixels in the rectangle, or NO_PLACE
+  HAVING(HAS_FILTER, float sign[BATCH];)  // what the sample counts that the lane is at
+  PathStates paths;  // set where lanes begin, as `rays`; of others their samples alone are read
   SceneRays rays;
   HAVING(HAS_ROUGH, LampLights lamps;)  // registers are scarce where surfaces have many lobes
   u32 counts[ALL_COUNTS];
 } LaneWork;
+
+static inline float sign_of(const LaneWork* work, u32 lane) {
+  return EITHER(HAS_FILTER, work->sign[lane], 1.0f);
+}
 
 static inline void begin_work(u32 first, u32 end, LaneWork* work) {
   work->untaken = first * BATCH;
@@ -71,7 +75,7 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   const MediaStack around = read_media(camera_media);
   REAL sign;
   const SceneRays first = sample_ray(scene, &paths->at, scene->info->samples, &around, &sign, begun);
-  EACH_LANE(lane, begun) work->sign[lane] = REAL_LANE(sign, lane);
+  HAVING(HAS_FILTER, EACH_LANE(lane, begun) work->sign[lane] = REAL_LANE(sign, lane);)
   work->rays = select_SceneRay(work->rays, first, begun);
   *paths = select_PathState(*paths, start_path(scene, &paths->at, begun), begun);
   return begun;
@@ -85,7 +89,7 @@ static inline void add_mattes(const Scene* scene, const Launch* launch, const La
   EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f)) {
     add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane) - 1u),
               MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
-              work->sign[lane] * REAL_LANE(paths->matte, lane));
+              sign_of(work, lane) * REAL_LANE(paths->matte, lane));
   }
 }
 #endif
@@ -116,7 +120,7 @@ NEVER_INLINE void add_light_parts(const Scene* scene, const Launch* launch, cons
   float shares[BATCH];
   EACH_LANE(lane, lanes) {
     const float3 light = get3(all, lane);
-    shares[lane] = work->sign[lane] * limiting_share(light, scene->info->max_component);
+    shares[lane] = sign_of(work, lane) * limiting_share(light, scene->info->max_component);
     if (!all_finite(light)) MASK_LANE(lanes, lane) = 0;
   }
   u32 part = 0u;
@@ -153,7 +157,8 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
     EACH_LANE(lane, over) {
       const float4 radiance = (float4)(get3(&seen, lane), REAL_LANE(alpha, lane)),
                    limited = limit_components(radiance, scene->info->max_component);
-      store_sample((u32)MASK_LANE(work->place, lane) - 1u, limited, work->sign[lane], film, weights, counts);
+      store_sample((u32)MASK_LANE(work->place, lane) - 1u, limited, sign_of(work, lane), film, weights,
+                   counts);
     }
     HAVING(HAS_LIGHT_SUMS, add_light_parts(scene, launch, work, &seen, over, film);)
     paths->at.sample -= over;  // the mask is -1 in lanes whose path is over: on to their next sample
@@ -167,10 +172,10 @@ NEVER_INLINE void render_items(const Scene* scene, __global const u32* restrict 
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
 // for (`pixels`, where the launch is of a list), to film (rgb and coverage) and their number to weights, as
 // render_whitted does; adds to counters and ray_counts.
-__kernel FOR_WAVES void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_media,
-                                    __global const u32* restrict pixels, __global float4* restrict film,
-                                    __global float* restrict weights, __global u32* restrict counters,
-                                    __global u32* restrict ray_counts, const Launch launch) {
+__kernel FOR_WAVES(0) void render_path(SCENE_PARAMETERS, __global const u32* restrict camera_media,
+                                       __global const u32* restrict pixels, __global float4* restrict film,
+                                       __global float* restrict weights, __global u32* restrict counters,
+                                       __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 place = get_global_id(1) * launch.row_items + get_global_id(0),
             first = launch.first_item + place * launch.run;

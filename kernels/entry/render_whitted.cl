@@ -86,10 +86,10 @@ NEVER_INLINE void render_item(const Scene* scene, MediaStack around, const Launc
 // number to weights (a sample that is not finite counts for nothing, one in a filter's lobe below zero -1);
 // adds to counters, and where they are asked for the rays of pixels to ray_counts (lib/path/ray_counts.cl).
 // Where first_sample is 0, film, weights and ray_counts may hold anything before.
-__kernel FOR_WAVES void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
-                                       __global const u32* restrict pixels, __global float4* restrict film,
-                                       __global float* restrict weights, __global u32* restrict counters,
-                                       __global u32* restrict ray_counts, const Launch launch) {
+__kernel FOR_WAVES(0) void render_whitted(SCENE_PARAMETERS, __global const u32* restrict camera_media,
+                                          __global const u32* restrict pixels, __global float4* restrict film,
+                                          __global float* restrict weights, __global u32* restrict counters,
+                                          __global u32* restrict ray_counts, const Launch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   // Items count through the rectangle row by row; a launch in two dimensions takes whole rows of them.
   const u32 item = launch.first_item + get_global_id(1) * launch.row_items + get_global_id(0);

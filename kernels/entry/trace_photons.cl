@@ -27,7 +27,8 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
 #endif
   PhotonStarts starts;
   const MASK started = lanes & start_photon(scene, launch->targets, launch->count, &at, &starts, lanes);
-  KEEP_IN_MEMORY(Photons, photons);
+  // Touching faces take enough of the stack.
+  EITHER(HAS_TOUCHING, Photons kept; Photons* const photons = &kept;, KEEP_IN_MEMORY(Photons, photons);)
   *photons = begun_photon(scene, &at, &starts, started);
   const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, started);
   const MediaStack outside = {0, 0};
@@ -69,9 +70,9 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
 // opened, the direction that it came from, and its flux, and after those of all photons, in media that
 // scatter, three rows a photon: its beam, the third row 0 without one; to cells, its cell's number, or
 // NO_PHOTON.
-__kernel void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
-                            __global float4* restrict landed, __global u32* restrict cells,
-                            const PhotonLaunch launch) {
+__kernel FOR_WAVES(2) void trace_photons(SCENE_PARAMETERS, __global const u32* restrict light_media,
+                                         __global float4* restrict landed, __global u32* restrict cells,
+                                         const PhotonLaunch launch) {
   const Scene scene = SCENE_OF_PARAMETERS;
   const u32 first = launch.first + (u32)get_global_id(0) * BATCH;
   if (first < launch.last) trace_item(&scene, light_media, &launch, first, landed, cells);

@@ -107,8 +107,8 @@ NEVER_INLINE void occluded_rays_item(const Scene* scene, __global const Ray* res
     occluded[first + i] = (u32)MASK_LANE(found, i) & 1u;
 }
 // Reads ray_count rays; writes the nearest hit of each in (t_min, t_max].
-__kernel void trace_rays(SCENE_PARAMETERS, __global const Ray* restrict rays, __global Hit* restrict hits,
-                         u32 ray_count, u32 coherent) {
+__kernel FOR_SUBGROUP void trace_rays(SCENE_PARAMETERS, __global const Ray* restrict rays,
+                                      __global Hit* restrict hits, u32 ray_count, u32 coherent) {
   const Scene scene = SCENE_OF_PARAMETERS;
   trace_rays_item(&scene, rays, hits, ray_count, coherent, get_global_id(0));
 }

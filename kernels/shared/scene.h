@@ -148,14 +148,14 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNT_REFRACTION 2
 #define COUNT_SHADOW 3
 #define COUNT_PRIMARY_HIT 4
-#define COUNT_CUT_OFF 5      // rays not spawned because of low throughput
-#define COUNT_DEPTH_LIMIT 6  // rays not spawned because of max_depth
-#define COUNT_RAY_STACK_OVERFLOW 7
-#define COUNT_MEDIA_STACK_OVERFLOW 8
-#define COUNT_NON_FINITE 9           // samples dropped
-#define COUNT_STRAY_EXIT 10          // left a medium that had not been entered (an open mesh)
-#define COUNT_SHADOW_LIMIT 11        // shadow rays dropped after too many filters
-#define COUNT_CAMERA_DEPTH_LIMIT 12  // camera rays going straight on, of those ended by max_depth
+#define COUNT_DEPTH_LIMIT 5  // rays not spawned because of max_depth
+#define COUNT_MEDIA_STACK_OVERFLOW 6
+#define COUNT_NON_FINITE 7           // samples dropped
+#define COUNT_STRAY_EXIT 8           // left a medium that had not been entered (an open mesh)
+#define COUNT_SHADOW_LIMIT 9         // shadow rays dropped after too many filters
+#define COUNT_CAMERA_DEPTH_LIMIT 10  // camera rays going straight on, of those ended by max_depth
+#define COUNT_CUT_OFF 11             // rays not spawned because of low throughput; paths have none
+#define COUNT_RAY_STACK_OVERFLOW 12  // nor these
 #define COUNT_LOST_PIXEL 13          // pixels with such overflows or exits; the host counts them (LOST_PIXEL)
 // Of scenes with fields alone:
 #define COUNT_MARCH_STEPS 14

@@ -38,6 +38,19 @@ unsigned light_room(const CompiledScene& scene) {
   return (lights + step - 1) / step * step;
 }
 
+/// Faces that a ray may cross together (kernels/lib/trace/stretch.cl): up to four of each solid that touches
+/// others.
+unsigned touching_room(const CompiledScene& scene) {
+  constexpr unsigned of_solid = 4, most = 16;
+  unsigned faces = 0;
+  for (const Instance& instance : scene.instances) {
+    if (!(instance.touch > 0)) continue;
+    const bool many = instance.shape == SHAPE_MESH || instance.shape == SHAPE_SDF;
+    faces = std::min(faces + (many ? most : of_solid), most);
+  }
+  return std::max(faces, 1u);
+}
+
 /// Nodes on the longest way from `root` to a leaf.
 u32 levels(const std::vector<Bvh8Node>& nodes, u32 root) {
   u32 below = 0;
@@ -87,10 +100,10 @@ enum class Effect { same, unlayered, rounds, mask, room, alters };
 
 Effect effect_of(const std::string& definition) {
   static const std::map<std::string, Effect> effects = [] {
-    std::map<std::string, Effect> all{{"HAS_BVH", Effect::same},   {"HAS_MESH", Effect::rounds},
-                                      {"HAS_SDF", Effect::rounds}, {"BVH_LEVELS", Effect::room},
-                                      {"BVH_STACK", Effect::room}, {"LIGHT_ROOM", Effect::room},
-                                      {"RAY_STACK", Effect::room}};
+    std::map<std::string, Effect> all{{"HAS_BVH", Effect::same},       {"HAS_MESH", Effect::rounds},
+                                      {"HAS_SDF", Effect::rounds},     {"BVH_LEVELS", Effect::room},
+                                      {"BVH_STACK", Effect::room},     {"LIGHT_ROOM", Effect::room},
+                                      {"MOST_TOUCHING", Effect::room}, {"RAY_STACK", Effect::room}};
 #define SUNDOG_SOLID_EFFECT(constant, type, name, effect) all.emplace("HAS_" #constant, Effect::effect);
     SOLIDS(SUNDOG_SOLID_EFFECT)
 #undef SUNDOG_SOLID_EFFECT
@@ -278,6 +291,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   config.ray_stack = rays;
   if (batch == 1) {
     define("LIGHT_ROOM", light_room(scene));
+    define("MOST_TOUCHING", touching_room(scene));
     config.ray_stack += light_room(scene) + 1;
   }
   // Rounded up so that similar scenes share kernels.

@@ -44,9 +44,9 @@
 // Waves of a SIMD that the registers of both integrators leave room for, on GPUs where plain scenes need no
 // spills for that (host/device/device_rules.cpp).
 #if defined(DEVICE_WAVES) && (defined(__GFX11__) || defined(__GFX12__))
-#define FOR_WAVES __attribute__((amdgpu_waves_per_eu(DEVICE_WAVES)))
+#define FOR_WAVES(more) __attribute__((amdgpu_waves_per_eu(DEVICE_WAVES + more)))
 #else
-#define FOR_WAVES
+#define FOR_WAVES(more)
 #endif
 
 // Rays that a thread of Intel's GPUs takes at once, for kernels that need no spills for that.
@@ -132,6 +132,10 @@
 // Waiting groups of children on the compact tracer's way to a leaf (single.cl); the host computes the number.
 #ifndef BVH_LEVELS
 #define BVH_LEVELS 64
+#endif
+// Faces that a ray crosses together (lib/trace/stretch.cl); with one ray a lane the host computes the number.
+#ifndef MOST_TOUCHING
+#define MOST_TOUCHING 16u
 #endif
 // Maximum number of invisible interfaces (overruled by priority) between two visible ones.
 #ifndef MAX_CROSSINGS

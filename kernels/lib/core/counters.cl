@@ -14,12 +14,13 @@ static inline __global u32* counters_of(__global u32* counters, u32 item) {
   return counters + item / COUNTER_ITEMS % COUNTER_BLOCKS * COUNTER_BLOCK;
 }
 
-// The counters that a work-item keeps.
-#define OWN_COUNTERS (HAS_SDF ? COUNTERS : COUNT_MARCH_STEPS)
+// The counters that a work-item keeps, the first ones.
+#define COUNTERS_OF_RAYS (BATCH > 1 ? COUNT_MARCH_STEPS : HAS_PATHS ? COUNT_CUT_OFF : COUNT_LOST_PIXEL)
+#define OWN_COUNTERS (HAS_SDF ? COUNTERS : COUNTERS_OF_RAYS)
 
 static inline void add_counts(__global u32* restrict counters, u32* counts) {
   if (HAS_SDF) counts[COUNT_MARCH_LEFT] = 0u;
-  counts[COUNT_LOST_PIXEL] = 0u;
+  if (BATCH > 1) counts[COUNT_LOST_PIXEL] = 0u;
   for (u32 i = 0; i < OWN_COUNTERS; ++i)
     if (counts[i]) atomic_add(counters + i, counts[i]);
 }

@@ -51,8 +51,8 @@ typedef IN_LANES(uint, ) UINTS;
 
 // Whether any lane of the mask is set: a single instruction if available, because OpenCL's any() is a chain
 // of branches in PoCL. And its bits: bit i is set if lane i is. Of one lane both are by the same comparison,
-// so that compilers see that one follows from the other.
-#define any_of(m) (m)
+// so that compilers see that one follows from the other, and what the mask is where it holds.
+#define any_of(m) ((m) == ALL_LANES)
 static inline int any_of4(int4 m) {
 #if defined(__SSE__) && !defined(SUNDOG_PORTABLE)
   return __builtin_ia32_movmskps(as_float4(m)) != 0;
@@ -68,7 +68,7 @@ static inline int any_of8(int8 m) {
   return any_of4(m.lo | m.hi);
 #endif
 }
-#define bits_of(m) ((u32)((m) != 0))
+#define bits_of(m) ((u32)((m) == ALL_LANES))
 #define bits_of4(m) (lane_mask((int8)(m, m)) & 15u)
 #define bits_of8(m) lane_mask(m)
 #define mask_of_bits(bits) MASK_OF(((MASK)((int)(bits)) & LANE_BITS) != 0)
@@ -93,9 +93,10 @@ static inline u32 lane_count(MASK m) { return popcount(lane_bits(m)); }
   for (u32 i, i##_left = lane_bits(lanes); i##_left && (i = lowest_bit(i##_left), true); \
        i##_left &= i##_left - 1u)
 
-// Lane i of a private REAL or MASK variable, as an lvalue.
-#define REAL_LANE(variable, i) (((float*)&(variable))[i])
-#define MASK_LANE(variable, i) (((int*)&(variable))[i])
+// Lane i of a private REAL or MASK variable, as an lvalue. Not all compilers see that i is 0 where there is
+// one lane: they would keep the variable in memory.
+#define REAL_LANE(variable, i) (((float*)&(variable))[(i) * (LANES > 1)])
+#define MASK_LANE(variable, i) (((int*)&(variable))[(i) * (LANES > 1)])
 
 // Removes from `left`, a nonzero set of lanes, those with the same index as its first lane, so that a table's
 // entry is read once for all of them.

@@ -13,8 +13,7 @@
 typedef struct PhotonSearch {
   float3 p, n;  // of the surface as it stood when the shutter opened, where photons lie
   float flat;   // how far from the surface photons count
-  PhotonMap map;
-  int3 low;     // the cube of the lowest corner
+  __global const PhotonMap* map;
   u32 slice;    // of time
   int deepest;  // a photon was sent on at most so often
   u32 turn;     // by which some of many photons are chosen
@@ -37,10 +36,9 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
 #if HAS_TURNS
   search.n *= rsqrt(dot(search.n, search.n));
 #endif
-  search.map = *map_of_sample(scene, sample);
+  search.map = map_of_sample(scene, sample);
   const bool on_field = HAS_SDF && instance >= scene->info->instance_count;
-  search.flat = search.map.radius * (on_field ? 1.0f : PHOTON_FLAT);
-  search.low = photon_cube(search.p - search.map.radius, search.map.inverse_edge);
+  search.flat = search.map->radius * (on_field ? 1.0f : PHOTON_FLAT);
   search.slice = photon_slice(time);
   search.deepest = (int)scene->info->max_depth - (int)depth;
   search.turn = hash_pixel((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i), sample * 64u + depth);
@@ -49,13 +47,18 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
   return search;
 }
 
+// The cube of the lowest corner.
+static inline int3 lowest_cube(const PhotonSearch* search) {
+  return photon_cube(search->p - search->map->radius, search->map->inverse_edge);
+}
+
 // Goes to the next cube. False: there is none.
 static inline bool enter_next_cube(const Scene* scene, PhotonSearch* search) {
   if (search->cell == PHOTON_CELLS) return false;
   const u32 k = search->cell++;
-  const int3 cube = search->low + (int3)((int)(k & 1u), (int)(k >> 1 & 1u), (int)(k >> 2));
-  __global const u32* begins = scene->photon_cells + search->map.first_cell;
-  const u32 cell = photon_cell(cube, search->slice) & search->map.cell_mask, first = begins[cell];
+  const int3 cube = lowest_cube(search) + (int3)((int)(k & 1u), (int)(k >> 1 & 1u), (int)(k >> 2));
+  __global const u32* begins = scene->photon_cells + search->map->first_cell;
+  const u32 cell = photon_cell(cube, search->slice) & search->map->cell_mask, first = begins[cell];
   search->end = begins[cell + 1u];
   search->stride = (search->end - first + PHOTONS_A_CELL - 1u) / PHOTONS_A_CELL;
   search->at = first + (search->stride > 1u ? search->turn % search->stride : 0u);
@@ -64,7 +67,7 @@ static inline bool enter_next_cube(const Scene* scene, PhotonSearch* search) {
 
 // The next photon that counts. False: there is none.
 static inline bool find_photon(const Scene* scene, PhotonSearch* search, float3* wi, float3* flux) {
-  const float radius = search->map.radius;
+  const float radius = search->map->radius;
   for (;;) {
     while (search->at < search->end) {
       const u32 at = search->at;
@@ -74,7 +77,7 @@ static inline bool find_photon(const Scene* scene, PhotonSearch* search, float3*
       if (dot(to, to) > radius * radius || fabs(dot(to, search->n)) > search->flat) continue;
       // Other cubes and slices share the cell.
       const u32 k = search->cell - 1u;
-      const int3 cube = photon_cube(place.xyz, search->map.inverse_edge) - search->low;
+      const int3 cube = photon_cube(place.xyz, search->map->inverse_edge) - lowest_cube(search);
       if (cube.x != (int)(k & 1u) || cube.y != (int)(k >> 1 & 1u) || cube.z != (int)(k >> 2)) continue;
       if (PHOTON_SLICES > 1u && count_of(place.w) != search->slice) continue;
       const float4 light = scene->photons[2u * at + 1u];
@@ -100,7 +103,7 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
   EACH_LANE(i, lanes) {
     searches.of[i] = begin_search(scene, at, (u32)MASK_LANE(depth, i), REAL_LANE(time, i), s, i);
     const REAL size = moved_size(scene, (u32)MASK_LANE(s->instance, i), time);
-    const float radius = searches.of[i].map.radius * REAL_LANE(size, i);
+    const float radius = searches.of[i].map->radius * REAL_LANE(size, i);
     REAL_LANE(searches.area, i) = M_PI_F * radius * radius;
   }
   return searches;

@@ -7,8 +7,6 @@
 #include "lib/trace/nodes.cl"
 #include "lib/trace/traverse.cl"
 
-#define MOST_TOUCHING 16u
-
 // A hit as a GPU's small stack keeps it: of a triangle its place (finish_triangle()), u and v; else the
 // normal.
 typedef struct ListedFace {
@@ -17,9 +15,9 @@ typedef struct ListedFace {
   float x, y, z;
 } ListedFace;
 
-// A short interval of a ray, and all its hits in (from, to], unordered. Boxes are tested in a longer one,
-// because rounding may place a hit outside its box by more than boxes are widened. The faces are not in it,
-// so that it can stay in registers.
+// A short interval of a ray, and all its hits in (from, to] on what may touch others, unordered. Boxes are
+// tested in a longer one, because rounding may place a hit outside its box by more than boxes are widened.
+// The faces are not in it, so that it can stay in registers.
 typedef struct Stretch {
   float3 o, d;
   float from, to, box_from, box_to;
@@ -60,12 +58,13 @@ static inline Hit listed_hit(const Scene* scene, const Stretch* stretch, u32 i) 
   return hit;
 }
 
-// Whether the interval may touch the instance's bounding ball, if it has one.
+// Whether the instance may touch others, and the interval its bounding ball, if it has one.
 static inline bool comes_near(__global const Instance* restrict instance, const Stretch* stretch) {
   const float4 ball = instance->world_center;
   const float3 p = stretch->o + stretch->from * stretch->d;
   const float reach = ball.w + (stretch->box_to - stretch->from);
-  return ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p)));
+  return instance->touch > 0.0f &&
+         (ball.w == 0.0f || !(distance(p, ball.xyz) > reach + 1e-5f * (reach + length(p))));
 }
 
 // The first hit of the solid in (from, to]; NO_INSTANCE without one.
@@ -208,6 +207,7 @@ static inline void note_bounded(const Scene* scene, Stretch* stretch) {
     const u32 first = word & BVH_FIRST_MASK, last = first + ((word >> BVH_LEAF_SHIFT) & BVH_LEAF_COUNT_MASK);
     if (!(word & BVH_LEAF)) top = push_node(scene->nodes, word, &slabs, stretch, stack, top);
     for (u32 i = first; (word & BVH_LEAF) && i <= last; ++i) {
+      if (!(scene->instances[i].touch > 0.0f)) continue;
       if (HAS_MESH && scene->instances[i].shape == SHAPE_MESH)
         note_mesh(scene, i, stretch, stack + top);
       else if (HAS_SOLID)

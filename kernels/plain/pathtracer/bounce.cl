@@ -9,20 +9,19 @@
 #include "plain/pathtracer/scatter_media.cl"
 #include "plain/pathtracer/shadow_catcher.cl"
 
-// Light on its way to a surface: of a lamp that the surface has chosen, and of photons. The shadow ray waits
-// until the path has its next ray: then a GPU's registers hold that and no longer the surface.
+// Light on its way to a surface, of a lamp that the surface has chosen. The shadow ray waits until the path
+// has its next ray: then a GPU's registers hold that and no longer the surface.
 typedef struct LampLight {
-  bool some;
-  SceneRay ray;                                  // from the surface to the lamp
-  SampledSpectrum light;                         // what the surface makes of it, if all arrives
-  HAVING(HAS_CAUSTICS) SampledSpectrum photons;  // what it makes of theirs
+  SceneRay ray;           // from the surface to the lamp
+  SampledSpectrum light;  // what the surface makes of it, if all arrives
   HAVING(HAS_LIGHT_GROUPS) int chosen;
   HAVING(HAS_LIGHT_PARTS) LobeShares shares;  // of the lobes that scattered it last before the camera
   HAVING(HAS_LIGHT_PARTS) bool direct;        // those are the surface's
 } LampLight;
 
-// Chooses a lamp: the light that the surface returns of it if all arrives, and the shadow ray.
-static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
+// Chooses a lamp: the light that the surface returns of it if all arrives, and the shadow ray. Returns
+// whether there is any.
+static bool choose_lamp(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
                         const Encounter* met, const SurfaceShading* at, const LobeSet* lobes, LampLight* lamp,
                         UNIFORM u32* counts) {
   const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
@@ -46,7 +45,6 @@ static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
   }
   if (HAS_MEDIA && below) possible *= 1.0f / (lobes->interface.eta * lobes->interface.eta);
   possible *= path->throughput;
-  lamp->some = spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f;
   lamp->light = kept_hero(scene, at, &lobes->interface, path, possible);
   lamp->ray = ray_to_light(scene, ray, met, at, &light, below);
   if (HAS_LIGHT_GROUPS) lamp->chosen = chosen;
@@ -56,6 +54,7 @@ static void choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
     if (lamp->direct)
       lamp->shares = shares_of_lobes(scene, &path->wavelengths, &at->bsdf, lobes, -ray->d, light.wi, below);
   }
+  return spectrum_greatest(possible) >= FLT_MIN && light.distance > 0.0f;
 }
 
 // The part of the lamp's light that arrives.
@@ -152,17 +151,17 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
-  lamp->some = false;
-  if (HAS_CAUSTICS) lamp->photons = (SampledSpectrum)(0.0f);
+  bool lit = false;
+  SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
   if (!deep && scattered_share(&lobes) > 0.0f) {
-    if (scene->info->light_count > 0u) choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
-    if (HAS_CAUSTICS) lamp->photons = gather_photons(scene, path, ray, &at, &lobes);
+    if (scene->info->light_count > 0u) lit = choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
+    if (HAS_CAUSTICS) by_photons = gather_photons(scene, path, ray, &at, &lobes);
   }
   bool going = false;
   if (!deep || cut_out) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
-  if (lamp->some) *light += arriving_of_lamp(scene, path, lamp, counts);
-  if (HAS_CAUSTICS) *light += lamp->photons;
+  if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
+  *light += by_photons;
   return going;
 }
 

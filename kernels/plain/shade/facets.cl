@@ -52,10 +52,9 @@ typedef struct FurtherLight {
 typedef struct Microfacet {
   bool rough, bends;  // has facets; they also refract
   bool transmits;     // they refract, or are those of a frosted wall
-  bool mends;         // the lobe is scaled by gains: microfacet_gain()
   bool glass;         // refracting dielectrics with a separate multiple-scattering lobe
   float alpha, lambda_o;
-  float gain;                           // of the viewer's side
+  float gain;  // microfacet_gain() of the viewer's side; 0: the lobe is not scaled by gains
   HAVING(HAS_THIN_WALLS) bool frosted;  // thin walls with transmitting facets
   HAVING(HAS_ROUGH_GLASS) FurtherLight further;
 } Microfacet;

@@ -148,7 +148,7 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
   const LayerBase base = base_of(scene, m, bsdf);
   const float3 h = safe_unit3(wo + wi);
   const float wo_h = real_clamp(dot(wo, h), 0.0f, 1.0f);
-  float3 value = (float3)(0.0f), tint = (float3)(1.0f);
+  float3 value = (float3)(0.0f);
   float chance = shares->matte * wi.z * (1.0f / M_PI_F), kept = 1.0f;
   const float diffuse = diffuse_left(shares);
   if (m->fuzz.w > 0.0f && bsdf->coated) {
@@ -164,7 +164,6 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
     const float coat = coat_weight(m, &base) * part * lobe.value * kept * coat_left;
     value += (float3)(coat, coat, coat);
     kept = real_min(past_layers(scene, m, &base, wo.z), past_layers(scene, m, &base, wi.z));
-    tint = coat_tints(m, &base, wo.z) * coat_tints(m, &base, wi.z) * coat_darkening(m, &base, bsdf->base);
     chance += shares->coat * lobe.pdf;
   }
   const float gains = shine_gain(scene, m, &base, wo) * shine_gain(scene, m, &base, wi);
@@ -182,8 +181,10 @@ static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global 
       above = base.matte_scale * past_layers(scene, m, &base, wo.z) * past_layers(scene, m, &base, wi.z);
     own = along(own, through * above * ground, matte);
   }
+  if (m->coat.w > 0.0f && bsdf->coated)
+    own *= coat_tints(m, &base, wo.z) * coat_tints(m, &base, wi.z) * coat_darkening(m, &base, bsdf->base);
   *pdf = chance;
-  return value + own * tint;
+  return value + own;
 }
 
 // The shares of samples for the viewer in wo, proportional to the lobes' maximum reflectance; and the layers'

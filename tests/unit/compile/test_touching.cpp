@@ -6,6 +6,8 @@
 #include "compile/compiled_scene.h"
 #include "compile/touching/box_tree.h"
 #include "compile/touching/touching_triangles.h"
+#include "device/device_rules.h"
+#include "render/device/kernel_config.h"
 #include "scene/load.h"
 #include "scenes.h"
 #include "test_meshes.h"
@@ -54,6 +56,21 @@ TEST_CASE("solids with faces in one place are marked") {
   const dmat4 turned = glm::rotate(dmat4(1), 0.5, dvec3(1, 2, 3));
   CHECK(touch(box, turned, box, turned * at({2, 0, 0})));
   CHECK(touch(mesh, turned, mesh, turned));
+}
+
+TEST_CASE("a ray of a GPU has room for four faces of each solid that touches others, for 16 with a mesh") {
+  const auto room = [](const Shape& a, const Shape& b, double apart) {
+    SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
+    const int glass = scenes::add_dielectric(scene, 1.5);
+    scene.meshes.push_back(bumpy_sphere(12));
+    scenes::place(scene, a, glass, dmat4(1));
+    scenes::place(scene, b, glass, at({apart, 0, 0}));
+    scenes::place(scene, ball, glass, at({0, 9, 0}));
+    return make_kernel_config(compile(scene), typical_gpu("nvidia")).numbers.at("MOST_TOUCHING");
+  };
+  CHECK(room(box, box, 2) == 8);
+  CHECK(room(box, box, 3) == 1);
+  CHECK(room(mesh, mesh, 0) == 16);
 }
 
 TEST_CASE("solids that only cross or lie inside of each other are not marked") {

@@ -51,13 +51,12 @@ static inline Microfacet make_microfacets(UNIFORM const Scene* scene, const Bsdf
     facets.frosted = facets.rough && interface->transmits && (bsdf->flags & kind) == kind;
     facets.transmits = facets.bends || facets.frosted;
   }
-  facets.mends = facets.rough && !facets.bends && gives_back(bsdf);
   facets.glass = is_rough_glass(scene, bsdf, facets.bends);
-  facets.gain = 1.0f;
+  facets.gain = 0.0f;
   if (facets.rough) {
     const float cosine = dot(bsdf->ns, wo);
     facets.lambda_o = smith_lambda(cosine, facets.alpha);
-    if (facets.mends) facets.gain = microfacet_gain(scene, cosine, facets.alpha);
+    if (!facets.bends && gives_back(bsdf)) facets.gain = microfacet_gain(scene, cosine, facets.alpha);
     if (HAS_ROUGH_GLASS && facets.glass)
       facets.further = find_further(scene, interface->eta, cosine, facets.alpha);
   }
@@ -134,7 +133,7 @@ static inline LobeSum facet_light(UNIFORM const Scene* scene, const Bsdf* bsdf, 
   const float seen = facet_pdf(bsdf->ns, h, facets->alpha) * wo_h / cos_o * jacobian;
   const float lambda_i = smith_lambda(fabs(cos_i), facets->alpha);
   float3 color = below ? interface.kt : interface.kr;
-  if (facets->mends) {
+  if (facets->gain > 0.0f) {
     const float more = fma(facets->gain, microfacet_gain(scene, cos_i, facets->alpha), -1.0f);
     // Multiply scattered light of a frosted wall may leave on either side.
     float3 kept = own_color(bsdf, color);
