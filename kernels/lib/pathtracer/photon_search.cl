@@ -14,10 +14,11 @@ typedef struct PhotonSearch {
   float3 p, n;  // of the surface as it stood when the shutter opened, where photons lie
   float flat;   // how far from the surface photons count
   __global const PhotonMap* map;
-  u32 slice;    // of time
-  int deepest;  // a photon was sent on at most so often
-  u32 turn;     // by which some of many photons are chosen
-  u32 cell;     // the next of PHOTON_CELLS
+  HAVING(WIDE_VECTORS, int3 low;)  // lowest_cube(); GPUs have no registers for it
+  u32 slice;                       // of time
+  int deepest;                     // a photon was sent on at most so often
+  u32 turn;                        // by which some of many photons are chosen
+  u32 cell;                        // the next of PHOTON_CELLS
   u32 at, end, stride;
 } PhotonSearch;
 
@@ -39,6 +40,7 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
   search.map = map_of_sample(scene, sample);
   const bool on_field = HAS_SDF && instance >= scene->info->instance_count;
   search.flat = search.map->radius * (on_field ? 1.0f : PHOTON_FLAT);
+  HAVING(WIDE_VECTORS, search.low = photon_cube(search.p - search.map->radius, search.map->inverse_edge);)
   search.slice = photon_slice(time);
   search.deepest = (int)scene->info->max_depth - (int)depth;
   search.turn = hash_pixel((u32)MASK_LANE(at->x, i), (u32)MASK_LANE(at->y, i), sample * 64u + depth);
@@ -49,7 +51,8 @@ static inline PhotonSearch begin_search(const Scene* scene, const LaneSamples* a
 
 // The cube of the lowest corner.
 static inline int3 lowest_cube(const PhotonSearch* search) {
-  return photon_cube(search->p - search->map->radius, search->map->inverse_edge);
+  return EITHER(WIDE_VECTORS, search->low,
+                photon_cube(search->p - search->map->radius, search->map->inverse_edge));
 }
 
 // Goes to the next cube. False: there is none.
