@@ -18,7 +18,7 @@ SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
     if (spatial_splits) scene.render.spatial_splits = true;
     return scene;
   }
-  Model model = load_model(path);
+  Model model = load_model(path, {.for_paths = false});
   SceneDescription scene;
   scene.file = path;
   scene.media.resize(1);

@@ -124,7 +124,8 @@ struct SceneDescription {
   std::vector<std::string> warnings;  // one line each: features of model files that were ignored
   double unit = 0.1;                  // of length, in metres
   double frames_per_second = 24;
-  bool plays = false;  // a part changes with the frame by itself: a model's animation
+  bool has_models = false;  // of files, with materials for the integrator
+  bool plays = false;       // a part changes with the frame by itself: a model's animation
 };
 
 }  // namespace sundog

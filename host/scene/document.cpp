@@ -81,11 +81,11 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
     focus_on_point(*changed);
   }
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
-  // Models have materials for the other.
+  // Models' materials are for one of them.
   const auto own_materials = [](const SceneDescription& s) {
     return integrator_of(s.render.integrator).own_materials;
   };
-  if (own_materials(*changed) != own_materials(scene)) return nullptr;
+  if (scene.has_models && own_materials(*changed) != own_materials(scene)) return nullptr;
   // Images have been reduced to fit the old limit.
   if (changed->render.texture_memory != scene.render.texture_memory && !scene.images.empty()) return nullptr;
   const bool same_surfaces = std::ranges::all_of(

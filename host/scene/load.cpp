@@ -85,7 +85,10 @@ void read_model(SceneSource& source, const std::vector<std::string>& overrides, 
   source.document = make_scene(source.file, *source.model, overrides);
   apply_overrides(source.document, source.file, overrides);
   wanted = integrator_in(source.document);
-  if (wanted && wanted->own_materials != source.model->for_paths) read(wanted->own_materials);
+  if (!wanted || wanted->own_materials == source.model->for_paths) return;
+  if (source.model->pose) source.played = make_scene(source.file, *source.model, overrides, true);
+  source.model.reset();
+  read(wanted->own_materials);
 }
 
 SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,

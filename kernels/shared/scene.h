@@ -156,7 +156,7 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNT_CAMERA_DEPTH_LIMIT 10  // camera rays going straight on, of those ended by max_depth
 #define COUNT_CUT_OFF 11             // rays not spawned because of low throughput; paths have none
 #define COUNT_RAY_STACK_OVERFLOW 12  // nor these
-#define COUNT_LOST_PIXEL 13          // pixels with such overflows or exits; the host counts them (LOST_PIXEL)
+#define COUNT_LOST_PIXEL 13          // pixels with overflows of media or stray exits; the host counts them
 // Of scenes with fields alone:
 #define COUNT_MARCH_STEPS 14
 #define COUNT_MARCH_LIMIT 15   // marches stopped by their step limit

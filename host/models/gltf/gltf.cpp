@@ -71,6 +71,12 @@ bool is_singular(const dmat4& m) {
   return determinant == 0 || !std::isfinite(determinant) || !std::isfinite(glm::length(m[3]));
 }
 
+bool places_lights(const JsonAt& root) {
+  return std::ranges::any_of(root.list("nodes"), [](const JsonAt& node) {
+    return node.extension("KHR_lights_punctual").has_value();
+  });
+}
+
 class GltfReader {
  public:
   GltfReader(const Source& source, const GltfContainer& container, const JsonAt& root,
@@ -78,7 +84,7 @@ class GltfReader {
       : root_(root),
         accessors_(source, container, root),
         textures_(root, accessors_),
-        for_paths_(options.for_paths.value_or(!root.extension("KHR_lights_punctual"))),
+        for_paths_(options.for_paths.value_or(!places_lights(root))),
         materials_(root, textures_, for_paths_),
         meshes_(root, accessors_, materials_, options.crease_angle.value_or(0)) {}
 

@@ -25,6 +25,8 @@ constexpr const char* fields_file = "generated/sdf.cl";
 // A field's own flags apply within the kernel's.
 constexpr unsigned all_field_flags = SDF_SMOOTH | SDF_CUT_SPHERE;
 
+constexpr unsigned most_touching = 16;  // faces that a ray may cross together
+
 // General kernels have room for rays of this many levels and for the BVHs of most scenes; drafts for the
 // maximum depth and any BVH.
 constexpr unsigned general_depth = 12, general_bvh_stack = 64, general_bvh_levels = 32, draft_depth = 32,
@@ -41,12 +43,12 @@ unsigned light_room(const CompiledScene& scene) {
 /// Faces that a ray may cross together (kernels/lib/trace/stretch.cl): up to four of each solid that touches
 /// others.
 unsigned touching_room(const CompiledScene& scene) {
-  constexpr unsigned of_solid = 4, most = 16;
+  constexpr unsigned of_solid = 4;
   unsigned faces = 0;
   for (const Instance& instance : scene.instances) {
     if (!(instance.touch > 0)) continue;
     const bool many = instance.shape == SHAPE_MESH || instance.shape == SHAPE_SDF;
-    faces = std::min(faces + (many ? most : of_solid), most);
+    faces = std::min(faces + (many ? most_touching : of_solid), most_touching);
   }
   return std::max(faces, 1u);
 }
@@ -204,6 +206,7 @@ KernelConfig general_config(const CompiledScene& scene, const DeviceInfo& device
                            name == "SDF_TWO_SIDED";
     if (is_harmless(name, config.numbers) && (fields || !of_fields)) number = 1;
   }
+  widen(config, "MOST_TOUCHING", most_touching);
   widen(config, "BVH_STACK", general_bvh_stack);
   widen(config, "BVH_LEVELS", general_bvh_levels);
   return config;

@@ -100,6 +100,7 @@ const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValu
     asked->fail(fmt::format("{} has no animations", file.filename().string()));
   if (name && std::ranges::count(known, playing.animation) == 0)
     name->wanted(fmt::format("an animation of {}: {}", file.filename().string(), fmt::join(known, ", ")));
+  scene_.has_models = true;
   if (model.pose) scene_.plays = true;
   if (model.pose && seconds_) {
     playing.seconds = *seconds_;
@@ -109,6 +110,7 @@ const ModelLibrary::Parts& ModelLibrary::load(JsonObject& object, const JsonValu
 }
 
 void ModelLibrary::keep(const fs::path& file, Model model) {
+  scene_.has_models = true;
   const std::string key = file_key(file);
   if (model.pose) {
     kept_.emplace(key, std::move(model));

@@ -49,7 +49,8 @@
 #define FOR_WAVES(more)
 #endif
 
-// Rays that a thread of Intel's GPUs takes at once, for kernels that need no spills for that.
+// Rays that a thread of Intel's GPUs takes at once, for kernels that need no spills for that with 256
+// registers.
 #if defined(DEVICE_SUBGROUP) && defined(cl_intel_required_subgroup_size)
 #define FOR_SUBGROUP __attribute__((intel_reqd_sub_group_size(DEVICE_SUBGROUP)))
 #else

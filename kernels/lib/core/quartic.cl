@@ -21,14 +21,13 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
 #pragma unroll 1
   for (u32 i = 0; i < 40u && low < high; ++i) {
     const float f = polynomial(c, x);
-    if (f == 0.0f) break;
     if ((f > 0.0f) == rising)
       high = x;
     else
       low = x;
     const float slope = polynomial(derivative, x);
+    if (fabs(f) <= ROOT_ERROR * fabs(slope)) break;
     const float newton = slope != 0.0f ? x - f / slope : low;
-    if (fabs(newton - x) <= ROOT_ERROR) break;
     x = newton > low && newton < high ? newton : 0.5f * (low + high);
   }
   return x;

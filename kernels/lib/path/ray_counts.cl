@@ -31,8 +31,8 @@ static inline void note_own_rays(MASK lanes, u32* counts) {
 // one on.
 #define LOST_PIXELS 16u
 static inline void note_lost_pixels(MASK pixels, u32* counts) {
-  const u32 lost = counts[COUNT_LOST_PIXEL];
-  if (BATCH == 1 || !(lost & 0xffffu)) return;
+  const u32 lost = BATCH > 1 ? counts[COUNT_LOST_PIXEL] : 0u;
+  if (!(lost & 0xffffu)) return;
   u32 noted = lost & 0xffff0000u;
   for (u32 left = lost & 0xffffu; left; left &= left - 1u)
     noted |= 1u << LOST_PIXELS << MASK_LANE(pixels, lowest_bit(left));
@@ -55,7 +55,8 @@ static inline void add_ray_counts(const Launch* launch, __global const u32* rest
   const u32 all =
       counts[COUNT_PRIMARY] + counts[COUNT_REFLECTION] + counts[COUNT_REFRACTION] + counts[COUNT_SHADOW];
   if (BATCH > 1) counts[COUNT_LOST_PIXEL] >>= LOST_PIXELS;
-  for (u32 lane = 0; lane < (RAYS_BY_LANE || counts[COUNT_LOST_PIXEL] ? BATCH : 1u); ++lane) {
+  const bool lost = BATCH > 1 && counts[COUNT_LOST_PIXEL] != 0u;
+  for (u32 lane = 0; lane < (RAYS_BY_LANE || lost ? BATCH : 1u); ++lane) {
     const uint2 at = lane_pixel(launch, item, lane);
     uint2 pixel;
     if (!image_pixel(launch, pixels, at, &pixel)) continue;

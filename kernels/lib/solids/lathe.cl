@@ -158,7 +158,8 @@ static inline float arc_root(const LatheRay* ray, const ProfileArc* arc, float g
       high = t;
     const float2 slope = arc_slope(arc, t);
     const float rise = fma(ray->sine * slope.y, place.q, -(g * place.r * slope.x));
-    if (!newton_step(&t, off * place.q, rise, low, high)) break;
+    const bool ends = place.q == 0.0f;  // the slope of E is infinite
+    if (!newton_step(&t, ends ? off : off * place.q, ends ? 0.0f : rise, low, high)) break;
   }
   return t;
 }
@@ -320,7 +321,7 @@ static inline void closest_in_lathe(float4 parameters, REAL3 o, REAL3 d, REAL t_
   }
 }
 
-// The arc of a part, and its t at a point near it. Lanes that are not on the lathe get some arc of it.
+// The arc of a part, and its t at a point near it.
 static inline float find_on_arc(const Scene* scene, float4 parameters, float3 p, int part, ProfileArc* arc,
                                 float2* place) {
   const u32 index = min((u32)part >> ARC_SHIFT, (u32)parameters.y - 1u);

@@ -26,7 +26,7 @@ FormulaField turned(double degrees, double scale) {
 }  // namespace
 
 TEST_CASE("numbers that follow from a formula's parameters are computed once, not at each point") {
-  const LeafCode code = leaf_code(turned(30, 3)), other = leaf_code(turned(75, 2));
+  const LeafCode code = leaf_code(turned(30, 4.5)), other = leaf_code(turned(75, 2));
   for (std::size_t i = 0; i < code.functions.size(); ++i) {
     CHECK_THAT(code.functions[i]->text(), !ContainsSubstring("sin(") && !ContainsSubstring("cos("));
     CHECK(code.functions[i]->text() == other.functions[i]->text());
@@ -36,7 +36,7 @@ TEST_CASE("numbers that follow from a formula's parameters are computed once, no
   };
   CHECK(has(code, std::cos(30.0)));
   CHECK(has(code, std::sqrt(0.75)));  // cos 30
-  CHECK(has(code, 2));                // scale - 1
+  CHECK(has(code, 3.5));              // scale - 1
   CHECK(has(other, std::cos(75.0)));
   CHECK(code.parameters.size() == other.parameters.size());
 }

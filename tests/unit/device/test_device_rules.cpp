@@ -28,7 +28,8 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
   const std::string paths = options_of(own, "render_path");
   CHECK_THAT(paths, ContainsSubstring("-cl-intel-256-GRF-per-thread"));
   CHECK_THAT(options_of(own, "render_whitted"), !ContainsSubstring("-cl-intel-256-GRF-per-thread"));
-  CHECK_THAT(options_of(own, "trace_rays"), ContainsSubstring("-DDEVICE_SUBGROUP=16"));
+  CHECK_THAT(options_of(own, "trace_rays"),
+             ContainsSubstring("-DDEVICE_SUBGROUP=16") && ContainsSubstring("-cl-intel-256-GRF-per-thread"));
   for (const char* platform : {"rusticl", "Intel Gen OCL Driver", "Apple"}) {
     const std::string others = options_of(gpu("Intel", platform), "render_path");
     CHECK_THAT(others, ContainsSubstring("-DNODE_LOOP=2") && !ContainsSubstring("-cl-intel"));
