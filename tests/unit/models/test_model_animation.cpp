@@ -203,3 +203,14 @@ TEST_CASE("a glTF's animations are checked when frames are asked for", "[models]
   const TemporaryFolder folder;
   CHECK_THROWS_AS(load_scene(folder.write("a.gltf", quad(node)), {}, {.frame = 1}), SceneError);
 }
+
+TEST_CASE("lights made up around an animated model suit its materials for paths, whatever integrator renders",
+          "[models]") {
+  const Played moving(animated(node, {{slide()}}));
+  for (const std::optional<double> frame : {std::optional<double>(), std::optional(12.0)}) {
+    const SceneDescription whitted = moving.at(frame, {"/render/integrator=whitted"}),
+                           path = moving.at(frame, {"/render/integrator=path"});
+    CHECK(whitted.lights.at(0).intensity == path.lights.at(0).intensity);
+    CHECK(whitted.environment.intensity == path.environment.intensity);
+  }
+}
