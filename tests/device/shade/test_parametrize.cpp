@@ -87,8 +87,10 @@ const char* const chart_kernel = R"(
 __kernel void locate(__global const float4* points, __global float* out, u32 shape, u32 part, float4 parameters, u32 count) {
   const u32 i = get_global_id(0);
   if (i >= count) return;
+  Scene scene;
+  scene.profiles = (__global const ProfileArc*)points;  // no lathe is asked for; llvmpipe falls over a null pointer
   SurfacePoints at;
-  points_on_solid(0, shape, parameters, all3(points[i].xyz), (int)part, ALL_LANES, &at);
+  points_on_solid(&scene, shape, parameters, all3(points[i].xyz), (int)part, ALL_LANES, &at);
   __global float* to = out + 5u * i;
   to[0] = at.u; to[1] = at.v; to[2] = at.dpdu.x; to[3] = at.dpdu.y; to[4] = at.dpdu.z;
 }
