@@ -69,16 +69,15 @@ void GraphWriter::find_known() {
 void GraphWriter::count_uses() {
   for (const NodeId id : outputs_) uses_[id] += 2;  // an output keeps its own name
   for (NodeId id = static_cast<NodeId>(graph_.size()); id-- > 0;) {
-    if (uses_[id] == 0 || is_known_[id]) continue;
+    if (is_known_[id]) uses_[id] = 0;  // it is not emitted
+    if (uses_[id] == 0) continue;
     for (const NodeId operand : {graph_[id].a, graph_[id].b, graph_[id].c})
       if (operand != no_node) ++uses_[operand];
   }
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Node& node = graph_[id];
     if (uses_[id] == 0 || (node.op != Op::add && node.op != Op::subtract)) continue;
-    const auto product = [&](NodeId x) {
-      return graph_[x].op == Op::multiply && uses_[x] == 1 && !is_known_[x];
-    };
+    const auto product = [&](NodeId x) { return graph_[x].op == Op::multiply && uses_[x] == 1; };
     // The second operand of a sum, the first of a difference: the order of lib/core/lanes.h.
     const bool first = node.op == Op::subtract;
     if (product(first ? node.a : node.b))
@@ -144,15 +143,14 @@ void GraphWriter::write_invariants(const std::function<bool(int)>& changes) {
     }
     for (const NodeId operand : {node.a, node.b, node.c})
       if (operand != no_node && varies[operand]) varies[id] = true;
-    if (!varies[id] && uses_[id] > 0 && !fused(id) && !is_known_[id]) write(id);
+    if (!varies[id] && uses_[id] > 0 && !fused(id)) write(id);
   }
 }
 
 void GraphWriter::write_rest() {
   for (NodeId id = 0; id < graph_.size(); ++id) {
     const Op op = graph_[id].op;
-    if (uses_[id] == 0 || fused(id) || is_known_[id] || values_.contains(id) || op == Op::constant ||
-        op == Op::input)
+    if (uses_[id] == 0 || fused(id) || values_.contains(id) || op == Op::constant || op == Op::input)
       continue;
     write(id);
   }

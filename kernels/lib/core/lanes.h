@@ -51,7 +51,7 @@ typedef IN_LANES(uint, ) UINTS;
 
 // Whether any lane of the mask is set: a single instruction if available, because OpenCL's any() is a chain
 // of branches in PoCL. And its bits: bit i is set if lane i is. Of one lane both are by the same comparison,
-// so that compilers see that one follows from the other, and what the mask is where it holds.
+// so that compilers see that one follows from the other, and that a mask which is set is -1.
 #define any_of(m) ((m) == ALL_LANES)
 static inline int any_of4(int4 m) {
 #if defined(__SSE__) && !defined(SUNDOG_PORTABLE)
