@@ -19,13 +19,14 @@ typedef struct PhotonSearch {
 
 typedef struct PhotonSearches {
   PhotonSearch of[BATCH];
-  REAL3 p, n;    // of surfaces as they stood when the shutter opened, where photons lie
-  REAL flat;     // how far from the surface photons count
-  MASK x, y, z;  // the cube of the disk's lowest corner
-  MASK across;   // a bit for each axis along which the disk meets two cubes
+  REAL3 p, n;     // of surfaces as they stood when the shutter opened, where photons lie
+  REAL flat;      // how far from the surface photons count
+#if WIDE_VECTORS  // GPUs have no registers for the disk's bounds: they take the ball's, which meets all rows
+  MASK x, y, z;   // the cube of the disk's lowest corner
+  MASK across;    // a bit for each axis along which the disk meets two cubes
+#endif
   MASK slice;    // of time
   MASK deepest;  // a photon was sent on at most so often
-  UINTS turn;    // by which some of many photons are chosen
   REAL area;     // of each surface that photons are found on
 } PhotonSearches;
 
@@ -40,17 +41,19 @@ static inline MASK photon_slices_of(const SceneRays* rays) {
   return slices;
 }
 
+#if WIDE_VECTORS
 // The cubes that a disk meets along an axis: the lowest, and whether there is another.
 static inline MASK cubes_along(REAL p, REAL n, REAL flat, REAL radius, REAL scale, MASK* low) {
   const REAL reach = fmin(radius, radius * real_sqrt(real_max((REAL)(0.0f), 1.0f - n * n)) + flat * fabs(n));
   *low = IN_LANES(convert_int, _sat_rtn)((p - reach) * scale);
   return MASK_OF(IN_LANES(convert_int, _sat_rtn)((p + reach) * scale) > *low);
 }
+#endif
 
 static inline PhotonSearches search_photons(const Scene* scene, const LaneSamples* at, MASK depth,
                                             const SceneRays* rays, const SurfaceInteractions* s, MASK lanes) {
   PhotonSearches searches CLEARED_ON_GPUS;
-  REAL radius = (REAL)(1.0f), scale = radius, size = radius, flat = radius;
+  REAL radius = (REAL)(1.0f), size = radius, flat = radius, scale = radius;
   searches.p = s->p;
   searches.n = s->ng;
   EACH_LANE(i, lanes) {
@@ -75,27 +78,38 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
 #endif
   searches.flat = flat;
   searches.area = M_PI_F * (radius * size) * (radius * size);
+#if WIDE_VECTORS
   const REAL3 p = searches.p, n = searches.n;
   searches.across = (cubes_along(p.x, n.x, flat, radius, scale, &searches.x) & 1) |
                     (cubes_along(p.y, n.y, flat, radius, scale, &searches.y) & 2) |
                     (cubes_along(p.z, n.z, flat, radius, scale, &searches.z) & 4);
+#endif
   searches.slice = photon_slices_of(rays);
   searches.deepest = (MASK)((int)scene->info->max_depth) - depth;
-  const UINTS sample = AS_UINTS(at->sample * 64 + depth);
-  searches.turn = hash_lanes(AS_UINTS(at->x) + hash_lanes(AS_UINTS(at->y) + hash_lanes(sample)));
   return searches;
 }
 
 // The lowest cube of a row.
 static inline int3 cube_of_row(const PhotonSearches* searches, u32 i, u32 row) {
-  return (int3)(MASK_LANE(searches->x, i), MASK_LANE(searches->y, i) + (int)(row & 1u),
-                MASK_LANE(searches->z, i) + (int)(row >> 1));
+#if WIDE_VECTORS
+  const int3 low = (int3)(MASK_LANE(searches->x, i), MASK_LANE(searches->y, i), MASK_LANE(searches->z, i));
+#else
+  __global const PhotonMap* map = searches->of[i].map;
+  const int3 low = photon_cube(get3(&searches->p, i) - map->radius, map->inverse_edge);
+#endif
+  return low + (int3)(0, (int)(row & 1u), (int)(row >> 1));
+}
+
+// Neighbours choose other photons of many.
+static inline u32 hash_point(float3 p) {
+  const uint3 bits = as_uint3(p);
+  return hash_u32(bits.x + hash_u32(bits.y + hash_u32(bits.z)));
 }
 
 // Goes to the next row of cubes. False: there is none.
 static inline bool enter_next_row(const Scene* scene, PhotonSearches* searches, u32 i) {
   PhotonSearch* search = searches->of + i;
-  const u32 across = (u32)MASK_LANE(searches->across, i);
+  const u32 across = EITHER(WIDE_VECTORS, (u32)MASK_LANE(searches->across, i), 7u);
   for (u32 row = search->row; row < PHOTON_ROWS; ++row) {
     if ((row & ~(across >> 1)) != 0u) continue;
     search->row = row + 1u;
@@ -105,7 +119,7 @@ static inline bool enter_next_row(const Scene* scene, PhotonSearches* searches, 
     search->at = begins[cell];
     search->end = begins[cell + 1u + (across & 1u)];
     search->stride = (search->end - search->at + PHOTONS_A_ROW - 1u) / PHOTONS_A_ROW;
-    if (search->stride > 1u) search->at += (u32)MASK_LANE(searches->turn, i) % search->stride;
+    if (search->stride > 1u) search->at += hash_point(get3(&searches->p, i)) % search->stride;
     if (search->at < search->end) return true;
   }
   search->row = PHOTON_ROWS;
