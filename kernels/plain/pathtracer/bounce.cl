@@ -147,20 +147,20 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.interface);
   const bool cut_out = nothing && may_cross(ray);
   if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
+  const int kind = at.bsdf.flags & (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
+  const bool may_pass = cut_out || (HAS_SHADOW_FILTERS && kind == (int)MATERIAL_TRANSMITS);
+  if (deep && !may_pass && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
+    count(counts, COUNT_DEPTH_LIMIT);
+    if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
+  }
   bool lit = false;
   SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
   if (!deep && scattered_share(&lobes) > 0.0f) {
     if (scene->info->light_count > 0u) lit = choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
     if (HAS_CAUSTICS) by_photons = gather_photons(scene, path, ray, &at, &lobes);
   }
-  const bool straight = path->straight, lets_through = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0;
   bool going = false;
-  if (!deep || (HAS_SHADOW_FILTERS && lets_through))
-    going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
-  if (deep && !going && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
-    count(counts, COUNT_DEPTH_LIMIT);
-    if (straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
-  }
+  if (!deep || may_pass) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
   if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
   *light += by_photons;
