@@ -221,6 +221,16 @@ TEST_CASE("a checkerboard's odd cells hold their own colour, whatever the even o
   CHECK(own.checker_ambient == dvec3(0.1, 0, 0));
 }
 
+TEST_CASE("a surface's colour as bytes is a warning") {
+  const auto warnings = [](const char* color) {
+    return load_scene_text(scene_with(R"("materials": {"m": {"color": )" + std::string(color) + "}}"))
+        .warnings;
+  };
+  CHECK(warnings("[1, 0.5, 2]").empty());
+  REQUIRE(warnings("[0, 128, 255]").size() == 1);
+  CHECK(warnings("[0, 128, 255]")[0].find("/materials/m/color: ") != std::string::npos);
+}
+
 TEST_CASE("a dielectric has no local terms and clear rays unless it says so") {
   const MaterialDescription glass = material(R"({"type": "dielectric", "ior": 1.5})");
   CHECK(glass.type == MaterialType::dielectric);
