@@ -19,7 +19,7 @@ json material(double roughness, const json& extensions, const json& color = {0, 
           {"extensions", extensions}};
 }
 
-/// What the materials return along the normal, of a white surrounding.
+/// The light that the materials return along the normal in a white surrounding.
 std::vector<double> returned(const DeviceInfo& device, const std::vector<json>& materials,
                              const std::string& integrator) {
   GltfTiles tiles;
