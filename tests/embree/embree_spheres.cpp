@@ -1,4 +1,4 @@
-// Collects a scene's balls and copies them into a geometry of Embree.
+// Recognises balls among objects, and copies them into a geometry of Embree.
 #include "embree_spheres.h"
 
 #include <cmath>
