@@ -45,8 +45,8 @@ ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const Sample
   return photon;
 }
 
-// A light without extent falls off by its own rule up to the point p, where its photon is first bent, and
-// beyond it as the rays spread. So glass receives as much as any surface there.
+// A delta light falls off by its own rule up to the point p, where its photon is first bent, and beyond it as
+// the rays spread. So glass receives as much as any surface there.
 static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photon* photon) {
   if (photon->dimmed == NOT_DIMMED) return;
   EACH_ALIKE(int, index, photon->dimmed) {

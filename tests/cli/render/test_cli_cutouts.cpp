@@ -1,4 +1,4 @@
-// What the picture sees, every AOV sees: through what is cut away, and behind one-sided faces.
+// Every AOV shows the surfaces that the picture shows: through cutouts, and behind one-sided faces.
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -19,7 +19,7 @@ json material(double roughness, const json& extensions, const json& color = {0, 
           {"extensions", extensions}};
 }
 
-/// What the materials return along the normal, of a white surrounding and of lights. `depth`: of their
+/// The light that the materials return along the normal in a white surrounding and of lights. `depth`: of their
 /// squares along z, below 0 for mirrored ones.
 std::vector<double> returned(const DeviceInfo& device, const std::vector<json>& materials,
                              const std::string& integrator, double depth = 1,

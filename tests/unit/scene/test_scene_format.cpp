@@ -1,4 +1,4 @@
-// What a scene file says is what the SceneDescription holds.
+// The SceneDescription holds the values of the scene file.
 #include <fmt/format.h>
 
 #include <algorithm>
