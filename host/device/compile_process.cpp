@@ -41,7 +41,7 @@ std::string contents(int file) {
 
 cl::Device device_at(const EnvironmentPtr& environment, const std::string& place) {
   for (const DeviceInfo& info : enumerate_devices(environment))
-    if (info.usable() && place == fmt::format("{}:{}", info.platform, info.device))
+    if (info.usable() && place == info.place())
       return cl::Device(static_cast<cl_device_id>(info.handle), true);
   throw DeviceError(fmt::format("no device {} to compile for", place));
 }
@@ -89,9 +89,8 @@ std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, co
   try {
     in = memory_file(fmt::format("{}\n{}\n{}", options, launch ? to_line(*launch) : "", source));
     if (in >= 0 && out >= 0) {
-      const std::string place = fmt::format("{}:{}", device.platform, device.device);
       process.emplace(
-          CompileProcess(start_program({"compile", place},
+          CompileProcess(start_program({"compile", device.place()},
                                        {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}}),
                          out));
     }

@@ -25,8 +25,7 @@ constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::
 /// Memory budget of all maps on the device: a quarter of its memory, within these bounds, and at most one
 /// buffer's maximum.
 std::uint64_t room_on(const DeviceInfo& info) {
-  const auto kibibytes =
-      fault(value_of(info.environment).faults, "photons", fmt::format("{}:{}", info.platform, info.device));
+  const auto kibibytes = fault(value_of(info.environment).faults, "photons", info.place());
   if (kibibytes) return static_cast<std::uint64_t>(*kibibytes) << 10;
   const std::uint64_t room = std::clamp(info.global_memory / 4, least_room, most_room);
   return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;

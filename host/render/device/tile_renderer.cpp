@@ -209,8 +209,8 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
   }
   const auto wanted = static_cast<u32>(pixels * asked.sample_count);
   const auto aovs = looks(asked) ? static_cast<u32>(pixels) : 0u;
-  if (fault(value_of(device_.info().environment).faults, "cut",
-            fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
+  if (fault(value_of(device_.info().environment).faults, "cut", device_.info().place(),
+            sizer_.tile_samples()))
     finished = 0;
   // A stopped tile may have samples of unfinished rows.
   if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;
