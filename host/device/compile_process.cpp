@@ -13,6 +13,7 @@
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
+#include "base/file.h"
 #include "base/memory_file.h"
 #include "device/cl_status.h"
 #include "device/driver_folder.h"
@@ -65,14 +66,6 @@ void build_for_launch(cl::Program& program, const cl::Context& context, const cl
   const cl::CommandQueue queue(context, device, 0, &status);
   if (status == CL_SUCCESS) status = launch_nothing(context, queue, kernel, launch);
   if (status != CL_SUCCESS) throw DeviceError("the kernel cannot be launched", status);
-}
-
-void write_all(int file, const std::vector<unsigned char>& bytes) {
-  for (std::size_t written = 0; written < bytes.size();) {
-    const ssize_t part = ::write(file, bytes.data() + written, bytes.size() - written);
-    if (part < 0 && errno != EINTR) throw IoError(std::strerror(errno));
-    if (part > 0) written += static_cast<std::size_t>(part);
-  }
 }
 
 }  // namespace
@@ -140,7 +133,9 @@ void serve_compile(const EnvironmentPtr& environment, const std::string& place, 
     throw BuildError("the program does not compile", "");
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
   if (binaries.empty() || binaries.front().empty()) throw BuildError("the driver gives no binary", "");
-  write_all(out, binaries.front());
+  const std::vector<unsigned char>& binary = binaries.front();
+  if (!write_all(out, {reinterpret_cast<const char*>(binary.data()), binary.size()}))
+    throw IoError(std::strerror(errno));
 }
 
 }  // namespace sundog
