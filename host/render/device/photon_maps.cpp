@@ -110,7 +110,7 @@ void PhotonMaps::make_room(const PhotonTracer& tracer) {
   const KernelConfig& config = tracer.kernels.config;
   auto find = scene_kernel<Buffer<u32>>(
       device.build("entry/light_media.cl", config.defines(), nullptr, config.generated), "find_light_media");
-  run_scene_kernel<Buffer<u32>>(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
+  run_scene_kernel(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
   device.finish();
 }
 
@@ -122,9 +122,8 @@ void PhotonMaps::trace(const PhotonTracer& tracer, const PhotonLaunch& launch) {
   const std::size_t group = photon_group(kernels.config, kernels.most_group);
   const WatchedLaunch watched(tracer.watch, expected, !traced_,
                               value_of(tracer.device.info().environment).launch_limit);
-  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
-      tracer.device, kernels.trace_photons, {.x = items, .local_x = group}, kernels.tables, light_media_,
-      landed_, cells_, launch);
+  run_scene_kernel(tracer.device, kernels.trace_photons, {.x = items, .local_x = group}, kernels.tables,
+                   light_media_, landed_, cells_, launch);
   tracer.device.finish();
   traced_ = true;
 }
