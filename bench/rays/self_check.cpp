@@ -114,7 +114,7 @@ SelfCheck check_device(const DeviceInfo& info, const std::function<void(const st
 std::string advice(const std::string& problem, Others others) {
   const auto says = [&](const char* part) { return problem.find(part) != std::string::npos; };
   const bool can_leave = others != Others::none;
-  const std::string leave =
+  std::string leave =
       others == Others::sound ? "leave it out: --device '!P:D'"
       : others == Others::unasked
           ? "leave it out, --device '!P:D', if one of those that were not asked for is sound: `sundog check` "

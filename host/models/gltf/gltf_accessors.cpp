@@ -57,7 +57,8 @@ struct ElementShape {
 
 ElementShape shape_of(const std::string& type) {
   if (type == "SCALAR") return {1, 1};
-  const std::size_t edge = type.size() == 4 && type[3] >= '2' && type[3] <= '4' ? type[3] - '0' : 0;
+  const auto is_edge = [](char digit) { return digit >= '2' && digit <= '4'; };
+  const auto edge = static_cast<std::size_t>(type.size() == 4 && is_edge(type[3]) ? type[3] - '0' : 0);
   if (edge > 0 && type.starts_with("VEC")) return {1, edge};
   return type.starts_with("MAT") ? ElementShape{edge, edge} : ElementShape{};
 }
