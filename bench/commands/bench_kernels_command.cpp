@@ -55,9 +55,10 @@ template <class T>
 Cell told(const std::optional<T>& value) {
   return value ? Cell(static_cast<double>(*value)) : Cell();
 }
+/// The same of what is 0 where it is not known.
 template <class T>
-Cell told(T value, bool known) {
-  return known ? Cell(static_cast<double>(value)) : Cell();
+Cell told(T value) {
+  return value > 0 ? Cell(static_cast<double>(value)) : Cell();
 }
 
 std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLimits>& nvidia) {
@@ -66,11 +67,11 @@ std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLi
   if (nvidia && figures.resident_threads)
     occupancy = 100.0 * static_cast<double>(*figures.resident_threads) / nvidia->threads();
   return {figures.kernel,
-          told(figures.greatest_group, figures.greatest_group > 0),
-          told(limits.work_group, limits.work_group > 0),
-          told(limits.preferred_multiple, limits.preferred_multiple > 0),
-          told(limits.private_bytes, true),
-          told(limits.local_bytes, true),
+          told(figures.greatest_group),
+          told(limits.work_group),
+          told(limits.preferred_multiple),
+          static_cast<double>(limits.private_bytes),
+          static_cast<double>(limits.local_bytes),
           told(figures.compiler.registers),
           told(figures.compiler.stack),
           told(figures.compiler.spill_stores),

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <ranges>
 #include <sstream>
-#include <tuple>
 
 #include "app/options/devices.h"
 #include "app/options/option_helpers.h"
@@ -135,11 +134,6 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
                           const std::vector<std::string>& more) {
   return compile(bench_description(file, options, more));
-}
-
-SceneDescription sized(SceneDescription scene, const BenchOptions& options) {
-  if (!options.size.empty()) std::tie(scene.image.width, scene.image.height) = parse_size(options.size);
-  return scene;
 }
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {

@@ -58,9 +58,6 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
 SceneDescription bench_description(const std::string& file, const BenchOptions& options,
                                    const std::vector<std::string>& more = {});
 
-/// A made scene with the size of the options.
-SceneDescription sized(SceneDescription scene, const BenchOptions& options);
-
 /// The devices that the options mean.
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
 

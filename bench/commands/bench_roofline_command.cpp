@@ -140,7 +140,7 @@ int bench_roofline(const RooflineOptions& options) {
       "Reads sum up, copies add a number; both directions count. `read cache` reads 128 KiB again and again. "
       "Operations are multiply-adds, two each, in one chain where each waits for the one before it, and in "
       "eight that do not wait for each other. Each result is compared before its time counts. A launch is "
-      "one work-item's, awaited; `queued` is the part until the device's clock says that it started.");
+      "one work-item's, awaited.");
   run.head().notes.emplace_back(
       "The work of a ray is what it needs alone in the scene's tree, near children first, counted by the "
       "host: an fma is two operations; comparisons, whole numbers, and the equations of solids are not "

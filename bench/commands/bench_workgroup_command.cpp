@@ -38,11 +38,6 @@ struct WorkgroupOptions : BenchOptions {
   double budget = 0;  // seconds; 0: no limit
 };
 
-template <class T>
-std::uint64_t hash_of(const std::vector<T>& values) {
-  return hash_bytes(values.data(), values.size() * sizeof(T));
-}
-
 using Times = std::map<std::string, KernelTimes>;
 
 /// The group of the kernel's last launch.
@@ -83,13 +78,8 @@ void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledSc
 /// The camera's rays through the tracer alone.
 void time_rays(TimedKernel& kernel, const DeviceInfo& info, const CompiledScene& scene, bool any,
                unsigned size) {
-  struct Setup {
-    Device device;
-    RayTracer tracer;
-    Setup(const DeviceInfo& info_, const CompiledScene& scene_) : device(info_), tracer(device, scene_) {}
-  };
   const Stopwatch clock;
-  const auto setup = std::make_shared<Setup>(info, scene);
+  const auto setup = std::make_shared<OpenedTracer>(info, scene);
   kernel.build_seconds = clock.seconds();
   kernel.limit = setup->tracer.greatest_group(any);
   setup->tracer.upload(primary_rays(scene_viewpoint(scene), size).rays);

@@ -1,6 +1,6 @@
 // Whole frames against POV-Ray: the same scene, size, depth, cut-off, one sample a pixel and number of
-// threads, in turn, medians. Transmissive things cast opaque shadows, unless told otherwise, since the
-// programs filter light by different models. A time counts only if the two pictures are alike. Without
+// threads, in turn, medians by processor time. Transmissive things cast opaque shadows, since the programs
+// filter light by different models. A time counts only if the two pictures are alike. Without
 // POV-Ray it says so and measures sundog alone.
 #include <fmt/format.h>
 
@@ -29,9 +29,8 @@ struct Options {
   std::vector<std::string> scenes{SUNDOG_SOURCE_DIR "/scenes/spheres.json",
                                   SUNDOG_SOURCE_DIR "/bench/scenes/ice_boxes.json",
                                   SUNDOG_SOURCE_DIR "/bench/scenes/ice_mesh.json"};
-  int width = 640, height = 640, repeat = 5;
+  int size = 640, repeat = 5;
   unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  bool filtered = false, media = false, wall = false;
   double tolerance = 0.02;  // sundog filters checkers, POV-Ray does not
   std::string json, folder = "against_povray";
 };
@@ -51,30 +50,29 @@ struct Measured {
 };
 
 SceneDescription load(const Options& options, const std::string& name) {
-  std::vector<std::string> overrides{fmt::format("/image/width={}", options.width),
-                                     fmt::format("/image/height={}", options.height), "/render/samples=1"};
+  std::vector<std::string> overrides{fmt::format("/image/width={}", options.size),
+                                     fmt::format("/image/height={}", options.size), "/render/samples=1"};
   // POV-Ray has no priorities, so there the liquid must end close to the cavity's wall.
   if (std::filesystem::path(name).stem() == "hollow_ice")
     overrides.emplace_back("/meshes/liquid/generate/wall=0.02");
   SceneDescription scene = load_scene(name, overrides);
   for (MaterialDescription& material : scene.materials)
-    if (material.transmission != dvec3(0)) material.shadow_opaque = !options.filtered;
+    if (material.transmission != dvec3(0)) material.shadow_opaque = true;
   return scene;
 }
 
-Elapsed time_ours(const Options& options, const std::string& name, FrameRunner& runner, Times& times) {
+void time_ours(const Options& options, const std::string& name, FrameRunner& runner, Times& times) {
   const Elapsed prepared = elapsed([&] { compile(load(options, name)); });
   const Elapsed frame = elapsed([&] { runner.run(); });
-  times.frame.push_back(frame.of_thread(options.threads, options.wall));
-  times.whole.push_back(times.frame.back() + (options.wall ? prepared.wall : prepared.processor));
-  return frame;
+  times.frame.push_back(frame.processor / options.threads);
+  times.whole.push_back(times.frame.back() + prepared.processor);
 }
 
 povray::Run time_theirs(const Options& options, const std::string& scene, const std::string& name,
                         Times& times) {
-  povray::Run run = povray::run(scene, options.width, options.height, static_cast<int>(options.threads),
-                                options.folder, name);
-  times.frame.push_back(options.wall ? run.seconds : run.cpu_seconds / options.threads);
+  povray::Run run =
+      povray::run(scene, options.size, options.size, static_cast<int>(options.threads), options.folder, name);
+  times.frame.push_back(run.cpu_seconds / options.threads);
   times.whole.push_back(times.frame.back() + run.parse_seconds);
   return run;
 }
@@ -96,8 +94,7 @@ Measured measure(const Options& options, const std::string& name, const DeviceIn
   Measured m;
   m.scene = std::filesystem::path(name).stem();
   const SceneDescription description = load(options, name);
-  const std::string scene =
-      povray::from_scene(description, options.media ? povray::Absorption::media : povray::Absorption::fade);
+  const std::string scene = povray::from_scene(description, povray::Absorption::fade);
   const CompiledScene compiled = compile(description);
   FrameRunner runner(device, compiled);
   runner.run();
@@ -166,20 +163,16 @@ DeviceInfo choose_device(unsigned threads) {
 void run(const Options& options) {
   const std::string version = povray::installed_version();
   const DeviceInfo device = choose_device(options.threads);
-  fmt::print("{}, driver {}; {}\n{} threads, {}x{}, {} runs in turn; {} shadows; seconds by the {} clock\n",
+  fmt::print("{}, driver {}; {}\n{} threads, {}x{}, {} runs in turn; seconds of processor time a thread\n",
              device.label(), device.driver,
              version.empty() ? "POV-Ray is not installed (apt-get install povray)" : "POV-Ray " + version,
-             options.threads, options.width, options.height, options.repeat,
-             options.filtered ? "filtered" : "opaque", options.wall ? "wall" : "processor's");
+             options.threads, options.size, options.size, options.repeat);
   fmt::print("{:16} {:8}{:>8}{:>24}{:>9}{:>9}\n", "", "", "frame", "whole", "M rays", "M shadow");
   nlohmann::json report{{"device", device.label()},
                         {"driver", device.driver},
                         {"povray", version},
                         {"threads", options.threads},
-                        {"width", options.width},
-                        {"height", options.height},
-                        {"shadows", options.filtered ? "filtered" : "opaque"},
-                        {"clock", options.wall ? "wall" : "processor"}};
+                        {"size", options.size}};
   for (const std::string& scene : options.scenes) {
     const Measured m = measure(options, scene, device, !version.empty());
     print(m, !version.empty());
@@ -195,22 +188,11 @@ int main(int argc, char** argv) {
   sundog::Options options;
   sundog::Arguments app{"Times whole frames of sundog and POV-Ray in turn"};
   app.add_option("SCENE", options.scenes, "scene files (default: spheres, ice_boxes, ice_mesh)");
-  int side = 0;
-  app.add_option("--size", side, "pixels a side (default 640)")->positive();
-  app.add_option("--width", options.width)->positive();
-  app.add_option("--height", options.height)->positive();
+  app.add_option("--size", options.size, "pixels a side (default 640)")->positive();
   app.add_option("--repeat", options.repeat, "runs of each")->positive();
   app.add_option("--threads", options.threads, "of each (default: the machine's)")->positive();
   app.add_option("--tolerance", options.tolerance, "mean difference up to which pictures are alike");
   app.add_option("--json", options.json, "file for the figures");
   app.add_option("--folder", options.folder, "for the pictures and POV-Ray's files");
-  app.add_flag("--filtered", options.filtered,
-               "transmissive things filter the light, each program by its own model");
-  app.add_flag("--media", options.media,
-               "absorption as POV-Ray's media: right everywhere, but slower than fading");
-  app.add_flag("--wall", options.wall, "wall clock; without it processor time over threads");
-  return run_program(app, argc, argv, [&] {
-    if (side > 0) options.width = options.height = side;
-    sundog::run(options);
-  });
+  return run_program(app, argc, argv, [&] { sundog::run(options); });
 }

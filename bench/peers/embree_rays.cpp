@@ -19,7 +19,6 @@ namespace {
 
 struct Options : RayOptions {
   bool packets = false;
-  EmbreeOptions embree;
 };
 
 /// Rays for which the two disagree: one hits and the other does not, or the distances differ.
@@ -126,7 +125,7 @@ class Comparison {
 
 nlohmann::json compare_model(const Options& options, const std::string& path) {
   PeerModel model(path, options);
-  const EmbreePeer embree(model.description, options.embree);
+  const EmbreePeer embree(model.description);
   const BvhFigures& figures = model.scene.figures;
   fmt::print("{}: {} triangles, {} thread(s) of {}; build {:.0f} ms, Embree {:.0f} ms\n", path,
              figures.triangles, options.threads, model.device.info().label(), figures.build_seconds * 1e3,
@@ -153,10 +152,7 @@ int main(int argc, char** argv) {
   options.threads = 1;
   add_ray_options(app, options);
   app.add_option("--threads", options.threads, "compute units and Embree threads");
-  app.add_option("--define", options.defines, "NAME=VALUE for the kernels");
   app.add_flag("--packets", options.packets, "also Embree's 16-wide packets");
-  app.add_flag("--robust", options.embree.robust, "Embree's watertight mode");
-  app.add_flag("--high", options.embree.high_quality, "Embree's high build quality");
   return run_peer_program(app, argc, argv, options,
                           [&](const std::string& model) { return compare_model(options, model); });
 }

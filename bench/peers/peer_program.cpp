@@ -18,7 +18,6 @@ void add_peer_options(Arguments& app, PeerOptions& options) {
   app.add_option("--repeats", options.repeats, "pairs of measurements")->positive();
   app.add_option("--json", options.json, "file for the figures");
   app.add_flag("--wall", options.wall, "wall clock, not processor time over threads");
-  app.add_flag("--spatial", options.spatial_splits, "sundog's BVH with spatial splits");
 }
 
 int run_program(Arguments& app, int argc, char** argv, const std::function<void()>& run) {

@@ -18,10 +18,9 @@ struct PeerOptions {
   std::string json;
   unsigned repeats = 7;  // pairs of measurements
   bool wall = false;     // the wall clock where else the processor's is taken
-  bool spatial_splits = false;
 };
 
-/// MODEL... --repeats --json --wall --spatial.
+/// MODEL... --repeats --json --wall.
 void add_peer_options(Arguments& app, PeerOptions& options);
 
 /// Reads the command line, or prints help or an error; then calls `run`, whose errors are one line on stderr.

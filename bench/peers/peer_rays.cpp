@@ -12,17 +12,12 @@ namespace sundog {
 namespace {
 
 /// One model's meshes where they lie, without lights; or a .json scene as it is.
-SceneDescription scene_of_model(const std::string& path, bool spatial_splits) {
-  if (path.ends_with(".json")) {
-    SceneDescription scene = load_scene(path, {}, {.outside_files = true});
-    if (spatial_splits) scene.render.spatial_splits = true;
-    return scene;
-  }
+SceneDescription scene_of_model(const std::string& path) {
+  if (path.ends_with(".json")) return load_scene(path, {}, {.outside_files = true});
   Model model = load_model(path, {.for_paths = false});
   SceneDescription scene;
   scene.file = path;
   scene.media.resize(1);
-  scene.render.spatial_splits = spatial_splits;
   scene.materials = std::move(model.materials);
   scene.meshes = std::move(model.meshes);
   scene.objects = std::move(model.objects);
@@ -42,31 +37,21 @@ DeviceInfo chosen_device(const RayOptions& options) {
   return info;
 }
 
-KernelDefines kernel_defines(const std::vector<std::string>& texts) {
-  KernelDefines defines;
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    defines[text.substr(0, equals)] = equals == std::string::npos ? "1" : text.substr(equals + 1);
-  }
-  return defines;
-}
-
 }  // namespace
 
 void add_ray_options(Arguments& app, RayOptions& options) {
   add_peer_options(app, options);
   app.add_option("--device", options.device, "SPEC of the device");
-  app.add_option("--from", options.from, "direction from the model to the camera")->expected(3);
   app.add_option("--size", options.size, "pixels along each side of the image");
   app.add_option("--kinds", options.kinds, "kinds of rays; all without it")->one_of(ray_kinds);
 }
 
 PeerModel::PeerModel(const std::string& model, const RayOptions& options)
     : path(model),
-      description(scene_of_model(model, options.spatial_splits)),
+      description(scene_of_model(model)),
       scene(compiled(description, options.tracer)),
       device(chosen_device(options)),
-      tracer(device, scene, kernel_defines(options.defines)) {}
+      tracer(device, scene) {}
 
 const char* PeerModel::tracer_name() const {
   return traces_compact(scene, device.info()) ? "compact" : "wide";
@@ -74,7 +59,7 @@ const char* PeerModel::tracer_name() const {
 
 std::vector<RaySet> PeerModel::rays(const RayOptions& options) {
   const TraceFunction trace = [&](std::span<const Ray> given) { return tracer.trace(given); };
-  const Viewpoint view = framing_viewpoint(scene, {options.from[0], options.from[1], options.from[2]}, trace);
+  const Viewpoint view = framing_viewpoint(scene, {0.25f, 0.2f, 1.0f}, trace);
   return frame_rays(scene, view, options.size, trace, options.kinds);
 }
 

@@ -9,16 +9,14 @@
 namespace sundog {
 
 struct RayOptions : PeerOptions {
-  std::string device = "cpu";        // SPEC
-  unsigned threads = 0;              // compute units of a CPU that are used; 0: all
-  std::string tracer = "auto";       // or wide, compact
-  std::vector<std::string> defines;  // "NAME=VALUE" or "NAME", for sundog's kernels
-  std::vector<float> from{0.25f, 0.2f, 1.0f};
+  std::string device = "cpu";   // SPEC
+  unsigned threads = 0;         // compute units of a CPU that are used; 0: all
+  std::string tracer = "auto";  // or wide, compact
   unsigned size = 1024;
   std::vector<std::string> kinds;
 };
 
-/// add_peer_options() and --device --from --size --kinds.
+/// add_peer_options() and --device --size --kinds.
 void add_ray_options(Arguments& app, RayOptions& options);
 
 /// A model, compiled, and sundog's tracer of it on the device that the options name.

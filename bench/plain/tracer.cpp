@@ -132,10 +132,6 @@ void cross_scene(Walk& walk) {
 
 }  // namespace
 
-bool PlainFinder::closest(const Ray& ray, Hit& hit) const { return closest_hit(scene_, ray, hit); }
-
-bool PlainFinder::any(const Ray& ray) const { return any_hit(scene_, ray); }
-
 glm::vec3 object_point(const Instance& instance, const vec3& p) {
   const float4* m = instance.object_from_world;
   return object_vector(instance, p) + vec3(m[0].w, m[1].w, m[2].w);

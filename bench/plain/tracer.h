@@ -13,27 +13,6 @@ struct Hit {
   glm::vec3 ng{0};  // object space, outward, not normalised
 };
 
-/// Finds hits for the integrator.
-class HitFinder {
- public:
-  virtual ~HitFinder() = default;
-  /// The nearest hit in (t_min, t_max]; false: none.
-  virtual bool closest(const Ray& ray, Hit& hit) const = 0;
-  /// Whether there is any.
-  virtual bool any(const Ray& ray) const = 0;
-};
-
-/// By the functions below.
-class PlainFinder : public HitFinder {
- public:
-  explicit PlainFinder(const CompiledScene& scene) : scene_(scene) {}
-  bool closest(const Ray& ray, Hit& hit) const override;
-  bool any(const Ray& ray) const override;
-
- private:
-  const CompiledScene& scene_;
-};
-
 /// How often rays came to each node, block of triangles and instance of a scene.
 struct Visits {
   std::vector<u32> nodes, blocks, instances;

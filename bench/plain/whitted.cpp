@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/image_compare.h"
+#include "bench/plain/media.h"
 #include "bench/plain/random.h"
 #include "bench/plain/surface.h"
 #include "compile/surfaces/lobes.h"
@@ -22,13 +23,6 @@ using glm::vec3;
 constexpr int most_crossings = 64;  // vanished interfaces, or filters, along one ray
 
 float greatest(const vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
-
-// The integrator's scene, tracer and counters.
-struct World {
-  const CompiledScene& scene;
-  const HitFinder& finder;
-  RayCounts& counts;
-};
 
 // The next surface on a ray.
 struct Encounter {
@@ -50,13 +44,12 @@ bool is_invisible(const CompiledScene& scene, const Encounter& e, const Material
 
 /// Follows the ray to the next surface that can be seen; `media` are those at its start, then those before
 /// the surface.
-Encounter next_surface(const World& world, Ray ray, MediaStack& media) {
-  const CompiledScene& scene = world.scene;
+Encounter next_surface(const CompiledScene& scene, Ray ray, MediaStack& media) {
   Encounter e;
   float from = 0;
   for (int crossing = 0;; ++crossing) {
     e.before = e.after = media.current(scene);
-    e.found = world.finder.closest(ray, e.hit);
+    e.found = closest_hit(scene, ray, e.hit);
     if (!e.found) {
       e.absorbed *= absorb(scene, e.before, ray.t_max - from);
       return e;
@@ -95,17 +88,15 @@ vec3 filter(const CompiledScene& scene, const Material& material, const Hit& hit
 }
 
 /// The share of a light that arrives from `distance` along the ray.
-vec3 visibility(const World& world, Ray ray, MediaStack media) {
-  const CompiledScene& scene = world.scene;
-  ++world.counts[COUNT_SHADOW];
+vec3 visibility(const CompiledScene& scene, Ray ray, MediaStack media) {
   if (!scene.features.shadow_filters)
-    return world.finder.any(ray) ? vec3(0) : absorb(scene, media.current(scene), ray.t_max);
+    return any_hit(scene, ray) ? vec3(0) : absorb(scene, media.current(scene), ray.t_max);
   vec3 through(1);
   float from = 0;
   for (int i = 0; i < most_crossings; ++i) {
     Hit hit;
     const u32 here = media.current(scene);
-    if (!world.finder.closest(ray, hit)) return through * absorb(scene, here, ray.t_max - from);
+    if (!closest_hit(scene, ray, hit)) return through * absorb(scene, here, ray.t_max - from);
     const Material& material = material_of(scene, hit);
     if (!(material.flags & MATERIAL_TRANSMITS) || (material.flags & MATERIAL_SHADOW_OPAQUE)) return vec3(0);
     ray.t_min = hit.t;
@@ -130,38 +121,37 @@ struct Path {
   vec3 throughput{1};
 };
 
-vec3 trace(const World& world, const Path& start, float* coverage);
+vec3 trace(const CompiledScene& scene, const Path& start, float* coverage);
 
 vec3 background(const SceneInfo& info, const vec3& d) {
   const float s = std::clamp(0.5f + 0.5f * glm::dot(d, rgb(info.up)), 0.0f, 1.0f);
   return glm::mix(rgb(info.background_bottom), rgb(info.background_top), s);
 }
 
-vec3 direct_light(const World& world, const Path& path, const Surface& s) {
-  vec3 sum = s.ambient * rgb(world.scene.info.ambient);
-  for (const Light& light : world.scene.lights) {
+vec3 direct_light(const CompiledScene& scene, const Path& path, const Surface& s) {
+  vec3 sum = s.ambient * rgb(scene.info.ambient);
+  for (const Light& light : scene.lights) {
     const LightSample sample = sample_light(light, s.p);
     if (!(glm::dot(s.ns, sample.wi) > 0)) continue;
     const vec3 possible = sample.radiance * local_reflection(s, path.ray.d, sample.wi);
     if (!(greatest(possible) >= std::numeric_limits<float>::min())) continue;
-    const float share = world.scene.info.cutoff * LEAST_OF_LIGHT * greatest(sample.radiance);
+    const float share = scene.info.cutoff * LEAST_OF_LIGHT * greatest(sample.radiance);
     if (greatest(path.throughput * possible) < share) continue;
     sum += possible *
-           visibility(world, {s.p + (s.offset + s.lift) * s.ng, sample.wi, 0, sample.distance}, path.media);
+           visibility(scene, {s.p + (s.offset + s.lift) * s.ng, sample.wi, 0, sample.distance}, path.media);
   }
   return sum;
 }
 
 /// kr I(reflected) or kt I(transmitted), unless the ray is too weak or too deep.
-vec3 follow(const World& world, const Path& parent, const vec3& factor, const vec3& o, const vec3& d,
-            const MediaStack& media, u32 kind) {
+vec3 follow(const CompiledScene& scene, const Path& parent, const vec3& factor, const vec3& o, const vec3& d,
+            const MediaStack& media) {
   const vec3 throughput = parent.throughput * factor;
-  if (!(greatest(throughput) > 0) || greatest(throughput) < world.scene.info.cutoff ||
-      parent.depth >= world.scene.info.max_depth)
+  if (!(greatest(throughput) > 0) || greatest(throughput) < scene.info.cutoff ||
+      parent.depth >= scene.info.max_depth)
     return vec3(0);
-  ++world.counts[kind];
   const Ray ray{o, d, 0, std::numeric_limits<float>::infinity()};
-  return factor * trace(world, {ray, media, parent.depth + 1, throughput}, nullptr);
+  return factor * trace(scene, {ray, media, parent.depth + 1, throughput}, nullptr);
 }
 
 vec3 reflected(const vec3& d, const Surface& s) {
@@ -180,13 +170,12 @@ vec3 refracted(const vec3& d, const Surface& s, float eta) {
   return glm::dot(direction, s.ng) < 0 ? direction : bend(d, s.ng, eta);
 }
 
-vec3 secondary_light(const World& world, const Path& path, const Encounter& e, const Surface& s) {
+vec3 secondary_light(const CompiledScene& scene, const Path& path, const Encounter& e, const Surface& s) {
   const Material& material = *s.material;
   const bool transmits = material.flags & MATERIAL_TRANSMITS, interior = has_interior(material);
   vec3 kr = rgb(material.reflection), kt = transmits ? rgb(material.transmission) : vec3(0);
   if (!(greatest(kr) > 0) && !(greatest(kt) > 0)) return vec3(0);
-  const float eta =
-      interior ? world.scene.media[e.after].absorption.w / world.scene.media[e.before].absorption.w : 1;
+  const float eta = interior ? scene.media[e.after].absorption.w / scene.media[e.before].absorption.w : 1;
   const float cos_i = std::clamp(-glm::dot(s.ns, path.ray.d), 0.0f, 1.0f);
   if (material.kind == MATERIAL_DIELECTRIC) {
     const float f = fresnel(cos_i, eta);
@@ -198,32 +187,32 @@ vec3 secondary_light(const World& world, const Path& path, const Encounter& e, c
   }
   const vec3 off = s.offset * s.ng;
   const vec3 before = s.p + (s.offset + s.lift) * s.ng;
-  vec3 sum = follow(world, path, kr, before, reflected(path.ray.d, s), path.media, COUNT_REFLECTION);
+  vec3 sum = follow(scene, path, kr, before, reflected(path.ray.d, s), path.media);
   if (!transmits) return sum;
   MediaStack inside = path.media;
   if (interior) inside.cross(material.medium, e.entering);
-  return sum + follow(world, path, kt, s.p - off, refracted(path.ray.d, s, eta), inside, COUNT_REFRACTION);
+  return sum + follow(scene, path, kt, s.p - off, refracted(path.ray.d, s, eta), inside);
 }
 
 /// I = ka Ia + sum of Ij (kd n.l + ks (r.v)^b) Vj + kr I(reflected) + kt I(transmitted).
-vec3 trace(const World& world, const Path& start, float* coverage) {
+vec3 trace(const CompiledScene& scene, const Path& start, float* coverage) {
   Path path = start;
-  const Encounter e = next_surface(world, path.ray, path.media);
-  if (!e.found) return e.absorbed * background(world.scene.info, path.ray.d);
+  const Encounter e = next_surface(scene, path.ray, path.media);
+  if (!e.found) return e.absorbed * background(scene.info, path.ray.d);
   if (coverage) *coverage = 1;
   path.throughput *= e.absorbed;
-  const Surface s = make_surface(world.scene, path.ray, e.hit);
-  return e.absorbed * (direct_light(world, path, s) + secondary_light(world, path, e, s));
+  const Surface s = make_surface(scene, path.ray, e.hit);
+  return e.absorbed * (direct_light(scene, path, s) + secondary_light(scene, path, e, s));
 }
 
 /// Follows a line from the camera to the outside: what it leaves without having entered holds the camera.
-MediaStack camera_media(const CompiledScene& scene, const HitFinder& finder) {
+MediaStack camera_media(const CompiledScene& scene) {
   MediaStack entered, holding;
   if (!scene.features.camera_inside) return holding;
   Ray ray{rgb(scene.info.camera_position), glm::normalize(vec3(0.3141f, 0.8660f, 0.3890f)), 0,
           std::numeric_limits<float>::infinity()};
   Hit hit;
-  for (int i = 0; i < 4096 && finder.closest(ray, hit); ++i, ray.t_min = hit.t) {
+  for (int i = 0; i < 4096 && closest_hit(scene, ray, hit); ++i, ray.t_min = hit.t) {
     const Material& material = material_of(scene, hit);
     if (!has_interior(material)) continue;
     const bool entering = glm::dot(world_normal(scene.instances[hit.instance], hit.ng), ray.d) < 0;
@@ -284,35 +273,24 @@ std::string plain_difference(const Image& plain, const Image& device) {
       difference.over_tolerance, difference.pixels, visible, difference.mean);
 }
 
-PlainFrame::PlainFrame(const CompiledScene& scene, const plain::HitFinder& finder)
-    : scene_(scene), finder_(finder), media_(plain::camera_media(scene, finder)) {}
-
-void PlainFrame::render(const Tile& tile, Image& image, RayCounts& counts) const {
-  const SceneInfo& info = scene_.info;
-  const plain::World world{scene_, finder_, counts};
-  for (int row = tile.y; row < tile.y + tile.height; ++row)
-    for (int column = tile.x; column < tile.x + tile.width; ++column) {
+Image render_plain(const CompiledScene& scene) {
+  const SceneInfo& info = scene.info;
+  const plain::MediaStack media = plain::camera_media(scene);
+  Image image(static_cast<int>(info.width), static_cast<int>(info.height), 4);
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
       const auto x = static_cast<u32>(column), y = static_cast<u32>(row);
       glm::vec4 sum(0);
       for (u32 sample = 0; sample < info.samples; ++sample) {
         const glm::vec2 at = plain::sample_offset(x, y, sample, info.samples);
         float coverage = 0;
-        ++counts[COUNT_PRIMARY];
         const plain::Path path =
-            plain::camera_path(info, static_cast<float>(x) + at.x, static_cast<float>(y) + at.y, media_);
-        const glm::vec3 color = plain::trace(world, path, &coverage);
+            plain::camera_path(info, static_cast<float>(x) + at.x, static_cast<float>(y) + at.y, media);
+        const glm::vec3 color = plain::trace(scene, path, &coverage);
         sum += glm::vec4(color, coverage);
       }
       for (int c = 0; c < 4; ++c) image.pixel(column, row)[c] = sum[c] / static_cast<float>(info.samples);
     }
-}
-
-Image render_plain(const CompiledScene& scene) {
-  const Tile whole{0, 0, static_cast<int>(scene.info.width), static_cast<int>(scene.info.height)};
-  Image image(whole.width, whole.height, 4);
-  RayCounts counts{};
-  const plain::PlainFinder finder(scene);
-  PlainFrame(scene, finder).render(whole, image, counts);
   return image;
 }
 

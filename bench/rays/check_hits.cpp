@@ -124,35 +124,23 @@ plain::Ray plain_ray(const Ray& ray) {
   return {{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}, ray.t_min, ray.t_max};
 }
 
-/// The plain tracer's answer: the nearest hit, or whether there is any.
-Hit plain_answer(const plain::HitFinder& plain, const Ray& ray, const Hit&) {
+/// Whether the answer is the plain tracer's.
+bool agrees(const CompiledScene& scene, const Ray& ray, const Hit& hit) {
   plain::Hit found;
-  Hit hit{0, 0, 0, NO_PRIM, NO_INSTANCE, 0, 0, 0};
-  if (plain.closest(plain_ray(ray), found))
-    hit.t = found.t, hit.prim = found.prim, hit.instance = found.instance;
-  return hit;
+  if (!plain::closest_hit(scene, plain_ray(ray), found)) return hit.instance == NO_INSTANCE;
+  return hit.instance == found.instance &&
+         std::abs(hit.t - found.t) <= static_cast<float>(relative) * std::abs(found.t);
 }
 
-bool plain_answer(const plain::HitFinder& plain, const Ray& ray, bool) { return plain.any(plain_ray(ray)); }
-
-bool agree(const Hit& a, const Hit& b) {
-  return a.instance == b.instance &&
-         (a.instance == NO_INSTANCE || std::abs(a.t - b.t) <= static_cast<float>(relative) * std::abs(b.t));
+bool agrees(const CompiledScene& scene, const Ray& ray, bool occluded) {
+  return occluded == plain::any_hit(scene, plain_ray(ray));
 }
-
-bool agree(bool a, bool b) { return a == b; }
 
 /// Counts one answer; `judge` it in double precision where it is not the plain tracer's.
 template <class Answer>
-void count(const CompiledScene& scene, const plain::HitFinder& plain, const Ray& ray, const Answer& answer,
-           bool judge, HitCheck& sum) {
+void count(const CompiledScene& scene, const Ray& ray, const Answer& answer, bool judge, HitCheck& sum) {
   ++sum.checked;
-  const Answer expected = plain_answer(plain, ray, answer);
-  if (agree(answer, expected)) return;
-  if (!judge || !is_right(scene, ray, answer))
-    ++sum.differ;
-  else
-    ++(is_right(scene, ray, expected) ? sum.rounded : sum.plain_wrong);
+  if (!agrees(scene, ray, answer)) ++(judge && is_right(scene, ray, answer) ? sum.rounded : sum.differ);
 }
 
 }  // namespace
@@ -170,8 +158,7 @@ bool is_right(const CompiledScene& scene, const Ray& ray, bool occluded) {
   return occluded ? std::isfinite(findings.nearest) : !std::isfinite(findings.farthest);
 }
 
-HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers,
-                    const plain::HitFinder& plain) {
+HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers) {
   tbb::enumerable_thread_specific<HitCheck> parts;
   std::atomic<std::size_t> wrong{0};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, set.rays.size(), 1024), [&](const auto& range) {
@@ -180,10 +167,10 @@ HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers
       const std::size_t before = part.differ;
       if (set.any) {
         part.hits += answers.occluded[i] != 0;
-        count(scene, plain, set.rays[i], answers.occluded[i] != 0, wrong < enough, part);
+        count(scene, set.rays[i], answers.occluded[i] != 0, wrong < enough, part);
       } else {
         part.hits += answers.hits[i].instance != NO_INSTANCE;
-        count(scene, plain, set.rays[i], answers.hits[i], wrong < enough, part);
+        count(scene, set.rays[i], answers.hits[i], wrong < enough, part);
       }
       wrong += part.differ - before;
     }
@@ -191,12 +178,8 @@ HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers
   HitCheck sum;
   for (const HitCheck& part : parts)
     sum.hits += part.hits, sum.checked += part.checked, sum.rounded += part.rounded,
-        sum.plain_wrong += part.plain_wrong, sum.differ += part.differ;
+        sum.differ += part.differ;
   return sum;
-}
-
-HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers) {
-  return check_hits(scene, set, answers, plain::PlainFinder(scene));
 }
 
 }  // namespace sundog

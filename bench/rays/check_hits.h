@@ -2,7 +2,6 @@
 // floats, none of the kernels' code); where the two differ, double precision decides.
 #pragma once
 
-#include "bench/plain/tracer.h"
 #include "bench/rays/ray_sets.h"
 
 namespace sundog {
@@ -14,24 +13,16 @@ struct Answers {
 };
 
 struct HitCheck {
-  std::size_t hits = 0;         // rays that hit something
-  std::size_t checked = 0;      // all of them
-  std::size_t rounded = 0;      // another answer than the plain tracer's, and both are right within rounding
-  std::size_t plain_wrong = 0;  // right, where the plain tracer's answer is wrong
-  std::size_t differ = 0;       // wrong
-
-  /// Whether the plain tracer is sound: it fails on one ray in a thousand at most.
-  bool plain_is_sound() const { return plain_wrong * 1000 <= checked; }
+  std::size_t hits = 0;     // rays that hit something
+  std::size_t checked = 0;  // all of them
+  std::size_t rounded = 0;  // another answer than the plain tracer's, and right within rounding
+  std::size_t differ = 0;   // wrong
 };
 
 /// Checks every ray, on all cores. An answer is right when it is the plain tracer's (hit or none, the
 /// distance to 1e-4), or when is_right() says so. After a thousand wrong answers the rest of those that
 /// differ from the plain tracer's count as wrong unseen.
 HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers);
-
-/// check_hits() with another tracer in place of the plain one.
-HitCheck check_hits(const CompiledScene& scene, const RaySet& set, const Answers& answers,
-                    const plain::HitFinder& plain);
 
 /// Whether a hit (NO_INSTANCE: none) is right within rounding. The ray and its copies that are moved by what
 /// floats round, sideways and along, are traced in double precision: the answer must lie between the nearest

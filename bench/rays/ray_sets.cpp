@@ -39,8 +39,7 @@ std::optional<Surface> surface_at(const CompiledScene& scene, const Ray& ray, co
   if (hit.instance == NO_INSTANCE) return std::nullopt;
   const Instance& instance = scene.instances[hit.instance];
   const vec3 ng(hit.ng_x, hit.ng_y, hit.ng_z);
-  const vec3 n = ng.x * xyz(instance.object_from_world[0]) + ng.y * xyz(instance.object_from_world[1]) +
-                 ng.z * xyz(instance.object_from_world[2]);
+  const vec3 n = plain::world_normal(instance, ng);
   const float length = glm::length(n);
   if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
   Surface surface;

@@ -30,11 +30,6 @@ class RayTimes {
   std::vector<Timed> timed() const;
 
  private:
-  struct Tracing {
-    Device device;
-    RayTracer tracer;
-    Tracing(const DeviceInfo& info, const CompiledScene& scene) : device(info), tracer(device, scene) {}
-  };
   struct Kind {
     RaySet set;
     HitCheck check;
@@ -50,7 +45,7 @@ class RayTimes {
   DeviceInfo info_;
   unsigned size_;
   std::vector<std::string> wanted_;
-  std::shared_ptr<Tracing> tracing_;
+  std::shared_ptr<OpenedTracer> tracing_;
   std::vector<std::shared_ptr<Kind>> kinds_;
   std::vector<Subject> subjects_;
 };

@@ -17,7 +17,7 @@ RayTracer::RayTracer(Device& device, const CompiledScene& scene, const KernelDef
   const KernelConfig config = make_kernel_config(scene, device.info());
   KernelDefines defines = config.defines();
   for (const auto& [name, value] : extra) defines[name] = value;
-  batch_ = static_cast<unsigned>(std::stoul(defines.at("TILE_W")) * std::stoul(defines.at("TILE_H")));
+  batch_ = config.tile_w * config.tile_h;
   stack_limit_ = greatest_work_group(config, device.info());
   const Program program = device.build("entry/trace_rays.cl", defines);
   trace_rays_ = scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(program, "trace_rays");
@@ -38,11 +38,9 @@ double RayTracer::run(const RayQuery& query, const WorkGroup& group) {
   const auto count = static_cast<u32>(rays_.count);
   const u32 coherent = query.coherent ? 1 : 0;
   if (query.any)
-    run_scene_kernel<Buffer<Ray>, Buffer<u32>, u32, u32>(device_, occluded_rays_, size, tables_, rays_,
-                                                         occluded_, count, coherent);
+    run_scene_kernel(device_, occluded_rays_, size, tables_, rays_, occluded_, count, coherent);
   else
-    run_scene_kernel<Buffer<Ray>, Buffer<Hit>, u32, u32>(device_, trace_rays_, size, tables_, rays_, hits_,
-                                                         count, coherent);
+    run_scene_kernel(device_, trace_rays_, size, tables_, rays_, hits_, count, coherent);
   const auto seconds = [&] {
     const auto times = device_.times().find(query.any ? occluded_rays_.name : trace_rays_.name);
     return times == device_.times().end() ? 0 : 1e-3 * times->second.device_ms;

@@ -55,4 +55,11 @@ class RayTracer {
   Buffer<u32> occluded_;
 };
 
+/// A device that is opened for the rays of a scene.
+struct OpenedTracer {
+  Device device;
+  RayTracer tracer;
+  OpenedTracer(const DeviceInfo& info, const CompiledScene& scene) : device(info), tracer(device, scene) {}
+};
+
 }  // namespace sundog

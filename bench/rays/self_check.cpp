@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -13,6 +13,7 @@
 #include "device/embedded_kernels.h"
 #include "render/device/kernel_config.h"
 #include "render/render.h"
+#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -22,31 +23,30 @@ namespace {
 constexpr double visible_difference = 0.02;
 constexpr std::uint64_t pixels_per_flip = 200;
 
-int add(SceneDescription& scene, const MaterialDescription& material) {
-  scene.materials.push_back(material);
-  return static_cast<int>(scene.materials.size()) - 1;
-}
-
-int add_glass(SceneDescription& scene, double ior, const dvec3& absorption) {
-  MediumDescription medium;
-  medium.ior = ior;
-  medium.absorption = absorption;
-  scene.media.push_back(medium);
-  MaterialDescription glass;
-  glass.type = MaterialType::dielectric;
-  glass.ambient = glass.diffuse = dvec3(0);
-  glass.reflection = glass.transmission = dvec3(1);
-  glass.medium = static_cast<int>(scene.media.size()) - 1;
-  return add(scene, glass);
-}
-
-void place(SceneDescription& scene, const Shape& shape, int material, const dvec3& at) {
-  Object object;
-  object.shape = shape;
-  object.material = material;
-  object.world_from_object = glm::translate(dmat4(1), at);
-  scene.objects.push_back(object);
-}
+constexpr const char* scene_text = R"({
+  "camera": {"position": [0.4, 1.6, 5.5], "target": [0, -0.2, 0]},
+  "image": {"width": 64, "height": 48, "background": {"bottom": [0.5, 0.6, 0.7], "top": [0.1, 0.2, 0.5]}},
+  "render": {"samples": 2},
+  "lights": [{"type": "ambient"}, {"type": "point", "position": [-3, 5, 4]}],
+  "media": {
+    "glass": {"ior": 1.5, "absorption": [0.1, 0.05, 0.02]},
+    "liquid": {"ior": 1.33, "absorption": [0.4, 0.9, 1.2]}
+  },
+  "materials": {
+    "floor": {"color": {"checker": [[1, 1, 1], [0.125, 0.375, 0.25]]}},
+    "glass": {"type": "dielectric", "medium": "glass"},
+    "liquid": {"type": "dielectric", "medium": "liquid"},
+    "mirror": {"reflection": 0.7, "specular": {"coefficient": 0.5}},
+    "matt": {"diffuse": {"color": [0.8, 0.4, 0.2], "coefficient": 1}}
+  },
+  "objects": [
+    {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0], "material": "floor"},
+    {"type": "sphere", "center": [-0.9, -0.1, 0.6], "radius": 0.9, "material": "glass"},
+    {"type": "sphere", "center": [-0.9, -0.1, 0.6], "radius": 0.5, "material": "liquid"},
+    {"type": "sphere", "center": [1.1, -0.2, -0.4], "radius": 0.8, "material": "mirror"},
+    {"type": "mesh", "mesh": "pyramid", "material": "matt", "transform": [{"translate": [0.5, 0, 1.4]}]}
+  ]
+})";
 
 /// A four-sided pyramid.
 Mesh pyramid() {
@@ -83,30 +83,8 @@ void compare(const CompiledScene& scene, const Image& image, SelfCheck& check) {
 }  // namespace
 
 SceneDescription self_check_scene() {
-  SceneDescription scene;
-  scene.camera.position = {0.4, 1.6, 5.5};
-  scene.camera.target = {0, -0.2, 0};
-  scene.image.width = 64, scene.image.height = 48;
-  scene.image.background_bottom = {0.5, 0.6, 0.7}, scene.image.background_top = {0.1, 0.2, 0.5};
-  scene.render.samples = 2;
-  scene.media.push_back({"world", 1, dvec3(0), world_priority});
-  LightDescription ambient, point;
-  ambient.type = LightType::ambient;
-  point.position = {-3, 5, 4};
-  scene.lights = {ambient, point};
-  MaterialDescription floor, mirror, matt;
-  floor.checker = true;
-  floor.checker_diffuse = {0.1, 0.3, 0.2};
-  mirror.reflection = dvec3(0.7);
-  mirror.specular = dvec3(0.5);
-  matt.diffuse = {0.8, 0.4, 0.2};
-  scene.meshes.push_back(pyramid());
-  place(scene, PlaneShape{}, add(scene, floor), {0, -1, 0});
-  place(scene, SphereShape{0.9}, add_glass(scene, 1.5, {0.1, 0.05, 0.02}), {-0.9, -0.1, 0.6});
-  place(scene, SphereShape{0.5}, add_glass(scene, 1.33, {0.4, 0.9, 1.2}), {-0.9, -0.1, 0.6});
-  place(scene, SphereShape{0.8}, add(scene, mirror), {1.1, -0.2, -0.4});
-  place(scene, MeshShape{0}, add(scene, matt), {0.5, 0, 1.4});
-  return scene;
+  const auto mesh = std::make_shared<const Mesh>(pyramid());
+  return load_scene_document(nlohmann::json::parse(scene_text), "self-check", {}, {{"pyramid", mesh}});
 }
 
 SelfCheck check_device(const DeviceInfo& info, const std::function<void(const std::string&)>& on_stage) {
@@ -136,7 +114,7 @@ SelfCheck check_device(const DeviceInfo& info, const std::function<void(const st
 std::string advice(const std::string& problem, Others others) {
   const auto says = [&](const char* part) { return problem.find(part) != std::string::npos; };
   const bool can_leave = others != Others::none;
-  const std::string leave =
+  std::string leave =
       others == Others::sound ? "leave it out: --device '!P:D'"
       : others == Others::unasked
           ? "leave it out, --device '!P:D', if one of those that were not asked for is sound: `sundog check` "

@@ -129,7 +129,6 @@ void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& mak
     peak->times = 1;
     while (work->run(peak->times) < least_run_seconds && peak->times < (1u << 20)) peak->times *= 2;
     peak->amount = amount * as_double(peak->times);
-    peak->queued.clear();
   };
   subject.run = [work, peak = shared] { return work->run(peak->times); };
   subject.check = [work, peak = shared] { return work->is_right(peak->times) ? "" : "its result is wrong"; };
@@ -192,19 +191,12 @@ void DevicePeaks::add_operations(const std::string& type, unsigned width, unsign
 }
 
 void DevicePeaks::add_launches() {
-  add({"launch", "us"}, 1, [o = opened_, peak = peaks_.size(), this] {
+  add({"launch", "us"}, 1, [o = opened_] {
     auto kernel = o->build("float", 1, 1).kernel<Buffer<i32>, i32>("start");
-    const auto run = [=, peak = peaks_[peak]](std::size_t times) mutable {
-      double seconds = 0, queued = 0;
-      for (std::size_t i = 0; i < times; ++i) {
-        cl::Event event;
-        seconds += o->timed(1, [&] { event = o->device.run(kernel, {1, 1, 1, 1}, o->sums, o->run); });
-        // Rusticl stamps both nanoseconds apart on llvmpipe.
-        const auto begin = event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>(),
-                   end = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-        if (end > begin + 100) queued += 1e-3 * static_cast<double>(end - begin);
-      }
-      peak->queued.push_back(queued / as_double(times));
+    const auto run = [=](std::size_t times) mutable {
+      double seconds = 0;
+      for (std::size_t i = 0; i < times; ++i)
+        seconds += o->timed(1, [&] { o->device.run(kernel, {1, 1, 1, 1}, o->sums, o->run); });
       return seconds;
     };
     return Work{run, [=](std::size_t) { return o->read_sums(1)[0] == o->run; }};
@@ -256,11 +248,6 @@ std::optional<Spread> DevicePeaks::best(const std::string& what) const {
   return most;
 }
 
-Spread DevicePeaks::queued_of(std::size_t index) const {
-  if (index >= peaks_.size() || !subjects_[index].is_good()) return {};
-  return spread(subjects_[index].counted(peaks_[index]->queued));
-}
-
 Table DevicePeaks::table() const {
   Table table{fmt::format("Peaks of {}", info_.label()), {{"", ""}, {"chains", ""}, {"unit", ""}}, {}};
   for (const unsigned width : widths) table.columns.push_back({fmt::format("width {}", width), ""});
@@ -278,8 +265,6 @@ Table DevicePeaks::table() const {
     if (const auto rate = figure(i))
       table.rows[static_cast<std::size_t>(row - rows.begin())][3 + column] = *rate;
   }
-  const Spread queued = queued_of(subjects_.size() - 1);
-  if (queued.median > 0) table.rows.push_back({"launch, queued", Cell(), "us", queued, {}, {}, {}, {}});
   return table;
 }
 
@@ -298,8 +283,6 @@ void DevicePeaks::add_to(Report& report) const {
                              {"bandwidth", "GB/s", of("GB/s")},
                              {"operations", "Gop/s", of("Gop/s")},
                              {"launch", "us", of("us")}});
-      const Spread queued = queued_of(i);
-      row.push_back({"queued", "us", queued.median > 0 ? Cell(queued) : Cell()});
     }
     add_measured(report, subjects_[i], row);
   }

@@ -13,13 +13,12 @@ namespace sundog {
 
 /// A kernel of kernels/entry/peaks.cl at one width of vectors.
 struct Peak {
-  std::string what;                 // "read memory", "copy memory", "read cache", "float", ..., "launch"
-  std::string unit;                 // "GB/s", "Gop/s" or "us"
-  unsigned width = 1;               // lanes of a vector
-  unsigned chains = 0;              // computations that do not wait for each other, of a work-item; 0: none
-  double amount = 0;                // bytes or operations of a run; set before its first run counts
-  std::size_t times = 0;            // launches or rounds of a run, as many as take long enough
-  std::vector<double> queued = {};  // of launches: microseconds until each run's started, if known
+  std::string what;       // "read memory", "copy memory", "read cache", "float", ..., "launch"
+  std::string unit;       // "GB/s", "Gop/s" or "us"
+  unsigned width = 1;     // lanes of a vector
+  unsigned chains = 0;    // computations that do not wait for each other, of a work-item; 0: none
+  double amount = 0;      // bytes or operations of a run; set before its first run counts
+  std::size_t times = 0;  // launches or rounds of a run, as many as take long enough
 
   bool is_rate() const { return unit != "us"; }
 };
@@ -45,7 +44,6 @@ class DevicePeaks {
   void add_operations(const std::string& type, unsigned width, unsigned chains);
   void add_launches();
   std::optional<Spread> figure(std::size_t index) const;
-  Spread queued_of(std::size_t index) const;  // microseconds; zeros: not known
   Table table() const;
 
   DeviceInfo info_;

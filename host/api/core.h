@@ -1,6 +1,6 @@
-// Aliases for the host's types that the public interface wraps (core::Image and so on), since Image alone
-// means the public one (include/sundog). Each source in this folder includes this before any public header,
-// because the host's headers must not see those.
+// Aliases for the host's types whose names the public interface has too (core::Image and so on), since Image
+// alone means the public one (include/sundog). Each source in this folder includes this before any public
+// header, because the host's headers must not see those.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -30,46 +30,14 @@
 
 namespace sundog::core {
 
-using sundog::aov_names;
-using sundog::AovImages;
-using sundog::apply;
-using sundog::apply_animation;
-using sundog::BuildError;
-using sundog::change_scene;
-using sundog::compile;
-using sundog::CompiledScene;
-using sundog::DeviceError;
-using sundog::DeviceInfo;
-using sundog::DriverThreads;
-using sundog::encode_image;
-using sundog::enumerate_devices;
-using sundog::EnvironmentPtr;
 using sundog::Film;
 using sundog::Image;
-using sundog::IoError;
-using sundog::JsonContext;
-using sundog::load_scene_document;
 using sundog::LoadOptions;
-using sundog::Mesh;
-using sundog::NamedMeshes;
-using sundog::Picked;
-using sundog::read_image;
-using sundog::read_scene_document;
 using sundog::render;
 using sundog::RenderOptions;
-using sundog::RenderProgress;
-using sundog::RenderResult;
-using sundog::RenderSession;
-using sundog::SceneDescription;
-using sundog::SceneError;
-using sundog::select_devices;
-using sundog::SessionSettings;
 using sundog::SessionState;
 using sundog::Snapshot;
-using sundog::ToneCurve;
 using sundog::ToneMap;
-using sundog::UsageError;
 using sundog::WorkGroup;
-using sundog::write_image;
 
 }  // namespace sundog::core

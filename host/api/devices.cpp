@@ -9,7 +9,7 @@ namespace sundog {
 inline namespace v0 {
 namespace {
 
-Device device_of(core::DeviceInfo info) {
+Device device_of(DeviceInfo info) {
   Device device;
   device.label = info.label();
   device.platform = info.platform;
@@ -29,18 +29,17 @@ Device device_of(core::DeviceInfo info) {
 }
 
 /// The process's environment variables, listed in docs/guide/library.md.
-const core::EnvironmentPtr& environment() {
-  static const core::EnvironmentPtr read = sundog::plain_environment();
+const EnvironmentPtr& environment() {
+  static const EnvironmentPtr read = sundog::plain_environment();
   return read;
 }
 
 /// Owns the threads that drivers keep. Created after the drivers are loaded, hence destroyed before they are
 /// unloaded at the end of the process. A child of fork() lacks these threads, so it does not wait for them.
-const std::shared_ptr<core::DriverThreads>& threads_of_process() {
-  static const std::shared_ptr<core::DriverThreads> threads(new core::DriverThreads,
-                                                            [](const core::DriverThreads* all) {
-                                                              if (!is_forked()) delete all;
-                                                            });
+const std::shared_ptr<DriverThreads>& threads_of_process() {
+  static const std::shared_ptr<DriverThreads> threads(new DriverThreads, [](const DriverThreads* all) {
+    if (!is_forked()) delete all;
+  });
   return threads;
 }
 
@@ -50,10 +49,10 @@ int process_of_threads() noexcept {
   return process;
 }
 
-std::vector<Device> devices_of_host(const std::vector<core::DeviceInfo>& all) {
+std::vector<Device> devices_of_host(const std::vector<DeviceInfo>& all) {
   std::vector<Device> result;
   result.reserve(all.size());
-  for (const core::DeviceInfo& info : all) result.push_back(device_of(info));
+  for (const DeviceInfo& info : all) result.push_back(device_of(info));
   return result;
 }
 
@@ -68,7 +67,7 @@ void wait_for_threads_at_exit() noexcept {
 
 void enter_threads() {
   if (is_forked())
-    throw core::UsageError(
+    throw UsageError(
         "this process was forked from one that had used sundog, and has none of its threads: begin processes "
         "by spawn, as Python's multiprocessing.get_context(\"spawn\") does, or before sundog is first used");
 }
@@ -76,7 +75,7 @@ void enter_threads() {
 std::vector<Device> devices() {
   return translated([] {
     enter_threads();
-    return devices_of_host(core::enumerate_devices(environment()));
+    return devices_of_host(enumerate_devices(environment()));
   });
 }
 
@@ -84,8 +83,8 @@ std::vector<Device> choose_devices(const std::vector<std::string>& specs,
                                    std::vector<std::string>* warnings) {
   return translated([&] {
     enter_threads();
-    const std::vector<core::DeviceInfo> all = core::enumerate_devices(environment());
-    return devices_of_host(core::select_devices(all, specs, warnings));
+    const std::vector<DeviceInfo> all = enumerate_devices(environment());
+    return devices_of_host(select_devices(all, specs, warnings));
   });
 }
 
@@ -95,34 +94,33 @@ void wait_for_threads() noexcept {
 
 unsigned threads_left_behind() { return is_forked() ? 0 : threads_of_process()->count(); }
 
-std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices) {
+std::vector<DeviceInfo> devices_of(const std::vector<Device>& devices) {
   enter_threads();
-  std::vector<core::DeviceInfo> result;
-  if (devices.empty()) result = core::select_devices(core::enumerate_devices(environment()), {});
+  std::vector<DeviceInfo> result;
+  if (devices.empty()) result = select_devices(enumerate_devices(environment()), {});
   for (const Device& device : devices) {
-    if (!device.handle) throw core::UsageError("a device wants to come from devices() or choose_devices()");
-    if (!device.usable) throw core::DeviceError(device.label + ": " + device.problem);
+    if (!device.handle) throw UsageError("a device wants to come from devices() or choose_devices()");
+    if (!device.usable) throw DeviceError(device.label + ": " + device.problem);
     result.push_back(device.handle->info);
   }
-  for (core::DeviceInfo& info : result) info.threads = threads_of_process();
+  for (DeviceInfo& info : result) info.threads = threads_of_process();
   return result;
 }
 
 core::WorkGroup group_of(const WorkGroup& group) {
   if (group.driver) return {.kind = core::WorkGroup::Kind::driver};
   if (group.x == 0) return {};
-  if (group.y == 0) throw core::UsageError("a work-group wants one work-item or more each way");
+  if (group.y == 0) throw UsageError("a work-group wants one work-item or more each way");
   return {.kind = core::WorkGroup::Kind::fixed, .x = group.x, .y = group.y};
 }
 
 int tile_of(int tile) {
-  if (tile < 0)
-    throw core::UsageError("a tile wants an edge of 1 pixel or more, or 0 for one that is chosen");
+  if (tile < 0) throw UsageError("a tile wants an edge of 1 pixel or more, or 0 for one that is chosen");
   return tile;
 }
 
 double seconds_of(const char* name, double seconds) {
-  if (!(seconds >= 0)) throw core::UsageError(std::string(name) + ": wanted seconds, 0 or more");
+  if (!(seconds >= 0)) throw UsageError(std::string(name) + ": wanted seconds, 0 or more");
   return seconds;
 }
 

@@ -30,17 +30,17 @@ Error::~Error() = default;
 void throw_public() {
   try {
     throw;
-  } catch (const core::UsageError& error) {
+  } catch (const UsageError& error) {
     throw Error(ErrorKind::usage, error.what());
-  } catch (const core::SceneError& error) {
+  } catch (const SceneError& error) {
     throw Error(ErrorKind::scene, error.what(),
                 {.file = error.file, .place = error.place, .reason = error.reason, .log = {}});
-  } catch (const core::DeviceError& error) {
+  } catch (const DeviceError& error) {
     throw Error(ErrorKind::device, error.what(),
                 {.file = {}, .place = {}, .reason = {}, .log = {}, .status = error.status});
-  } catch (const core::BuildError& error) {
+  } catch (const BuildError& error) {
     throw Error(ErrorKind::build, error.what(), {.file = {}, .place = {}, .reason = {}, .log = error.log});
-  } catch (const core::IoError& error) {
+  } catch (const IoError& error) {
     throw Error(ErrorKind::io, error.what(),
                 {.file = error.file, .place = {}, .reason = error.reason, .log = {}});
   } catch (const Error&) {

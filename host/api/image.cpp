@@ -67,20 +67,20 @@ std::span<const float> Image::pixels() const noexcept { return impl_->image->dat
 Image Image::tone_mapped(const ToneMap& map) const {
   core::Image changed = *impl_->image;
   const core::ToneMap wanted = tone_map_of(map);
-  if (changed.channels >= 3) core::apply(wanted, changed);
+  if (changed.channels >= 3) apply(wanted, changed);
   return share(std::move(changed));
 }
 
 Image Image::load(const std::filesystem::path& file) {
-  return translated([&] { return share(core::read_image(file)); });
+  return translated([&] { return share(read_image(file)); });
 }
 
 void Image::save(const std::filesystem::path& file) const {
-  translated([&] { core::write_image(with_colors(*impl_->image), file); });
+  translated([&] { write_image(with_colors(*impl_->image), file); });
 }
 
 std::string Image::encode(const std::string& extension) const {
-  return translated([&] { return core::encode_image(with_colors(*impl_->image), "picture." + extension); });
+  return translated([&] { return encode_image(with_colors(*impl_->image), "picture." + extension); });
 }
 
 }  // namespace v0

@@ -35,7 +35,7 @@ struct SUNDOG_LOCAL Image::Impl {
 };
 
 struct SUNDOG_LOCAL Device::Handle {
-  core::DeviceInfo info;
+  DeviceInfo info;
 };
 
 /// Call before using threads of the library or of a driver. Throws UsageError in a child of fork() whose
@@ -48,7 +48,7 @@ void wait_for_threads_at_exit() noexcept;
 bool is_forked() noexcept;
 
 struct SUNDOG_LOCAL Film::Impl {
-  core::RenderResult result;  // the image and AOVs are moved to the members below
+  RenderResult result;  // the image and AOVs are moved to the members below
   core::ToneMap tone_map;
   bool transparent = false;  // a PNG keeps alpha
   Image image;
@@ -64,7 +64,7 @@ struct SUNDOG_LOCAL Scene::Impl {
   nlohmann::json document;
   std::filesystem::path file;
   core::LoadOptions options;
-  core::NamedMeshes meshes;
+  NamedMeshes meshes;
 
   Impl();
   Impl(const Impl& other);
@@ -72,13 +72,13 @@ struct SUNDOG_LOCAL Scene::Impl {
   ~Impl() = default;
 
   /// Reads the document on first use. Thread-safe while nobody changes the scene. Throws SceneError.
-  std::shared_ptr<const core::SceneDescription> describe() const;
+  std::shared_ptr<const SceneDescription> describe() const;
   void forget_description();
 
  private:
   mutable std::mutex mutex_;
   mutable nlohmann::json described_document_;
-  mutable std::shared_ptr<const core::SceneDescription> described_;
+  mutable std::shared_ptr<const SceneDescription> described_;
 };
 
 Image share(core::Image image);
@@ -86,7 +86,7 @@ Image share(std::shared_ptr<const core::Image> image);
 
 /// The given devices, or the default one; the process owns the threads left in their drivers. Throws
 /// DeviceError, UsageError.
-std::vector<core::DeviceInfo> devices_of(const std::vector<Device>& devices);
+std::vector<DeviceInfo> devices_of(const std::vector<Device>& devices);
 
 core::WorkGroup group_of(const WorkGroup& group);
 

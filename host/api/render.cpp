@@ -24,7 +24,7 @@ class Callbacks : public std::enable_shared_from_this<Callbacks> {
   void install(core::RenderOptions& to) {
     to.stop = &stop_;
     if (progress_)
-      to.on_progress = [self = shared_from_this()](const core::RenderProgress& now) {
+      to.on_progress = [self = shared_from_this()](const RenderProgress& now) {
         self->call([&] { self->progress_({now.pixels_done, now.pixels_total, now.seconds}); });
       };
     if (picture_)
@@ -77,7 +77,7 @@ DeviceFigures figures_of(const sundog::DeviceReport& report) {
   return figures;
 }
 
-Figures figures_of(const core::RenderResult& result, double compile_seconds) {
+Figures figures_of(const RenderResult& result, double compile_seconds) {
   Figures figures;
   figures.primary = result.counts[COUNT_PRIMARY];
   figures.reflection = result.counts[COUNT_REFLECTION];
@@ -96,9 +96,9 @@ Figures figures_of(const core::RenderResult& result, double compile_seconds) {
 
 void check_aovs(const std::vector<std::string>& aovs) {
   for (const std::string& name : aovs)
-    if (std::ranges::count(core::aov_names(), name) == 0) {
-      throw core::UsageError(
-          fmt::format("there is no AOV \"{}\"; wanted some of {}", name, fmt::join(core::aov_names(), ", ")));
+    if (std::ranges::count(aov_names(), name) == 0) {
+      throw UsageError(
+          fmt::format("there is no AOV \"{}\"; wanted some of {}", name, fmt::join(aov_names(), ", ")));
     }
 }
 
@@ -108,12 +108,12 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   auto film = std::make_shared<Film::Impl>();
   const auto description = scene.impl().describe();
   const Stopwatch clock;
-  const auto flat = std::make_shared<const core::CompiledScene>(core::compile(*description));
+  const auto flat = std::make_shared<const CompiledScene>(compile(*description));
   const double compile_seconds = clock.seconds();
   sundog::check_frame_memory(
       static_cast<int>(flat->info.width), static_cast<int>(flat->info.height),
       {.file = {}, .aovs = options.aovs, .tile = options.tile, .passes = sundog::in_passes(flat->sampling)});
-  const std::vector<core::DeviceInfo> devices = devices_of(options.devices);
+  const std::vector<DeviceInfo> devices = devices_of(options.devices);
   film->warnings = description->warnings;
   for (std::string& warning : sundog::view_warnings(*description, *flat, devices))
     film->warnings.push_back(std::move(warning));
@@ -123,7 +123,7 @@ std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions&
   wanted.aovs = options.aovs;
   wanted.time_limit = seconds_of("the time limit", options.time_limit);
   wanted.picture_seconds = seconds_of("the time between pictures", options.picture_seconds);
-  wanted.tuning = [flat](const core::DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
+  wanted.tuning = [flat](const DeviceInfo& device) { return sundog::saved_tuning(device, *flat); };
   callbacks.install(wanted);
   film->result = core::render(flat, devices, wanted);
   wait_for_threads_at_exit();
@@ -175,7 +175,7 @@ const std::vector<std::string>& Film::warnings() const noexcept { return impl_->
 
 Image Film::shown() const {
   core::Image shown = *impl_->image.impl()->image;
-  core::apply(impl_->tone_map, shown);
+  apply(impl_->tone_map, shown);
   return share(std::move(shown));
 }
 
@@ -194,18 +194,18 @@ std::vector<std::string> Film::aovs() const {
 
 void Film::save(const std::filesystem::path& file) const {
   translated([&] {
-    if (width() < 1) throw core::UsageError("the film has no pixels to save");
+    if (width() < 1) throw UsageError("the film has no pixels to save");
     const bool all = file.extension() == ".exr" || file.extension() == ".EXR";
-    core::AovImages aovs;
+    AovImages aovs;
     if (all)
       for (const auto& [name, image] : impl_->aovs) aovs.emplace(name, *image.impl()->image);
     const core::Image& image = *impl_->image.impl()->image;
     if (all)
       return sundog::write_file(
-          file, core::encode_image(image, file, aovs, {.texts = impl_->texts, .shot = impl_->shot}));
+          file, encode_image(image, file, aovs, {.texts = impl_->texts, .shot = impl_->shot}));
     core::Image colors =
         impl_->transparent && sundog::is_png(file) ? core::Image(image) : without_coverage(image);
-    core::write_image(sundog::shown_in(file, std::move(colors), impl_->tone_map), file);
+    write_image(sundog::shown_in(file, std::move(colors), impl_->tone_map), file);
   });
 }
 

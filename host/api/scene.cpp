@@ -48,9 +48,9 @@ bool has_room(const json& document, json::json_pointer place) {
 core::LoadOptions options_of(const LoadOptions& options) {
   for (const int pixels : options.size)
     if (pixels < 0)
-      throw core::UsageError(fmt::format("size: wanted pixels, or 0 for the file's, found {}", pixels));
+      throw UsageError(fmt::format("size: wanted pixels, or 0 for the file's, found {}", pixels));
   if (options.frame && !std::isfinite(*options.frame))
-    throw core::UsageError(fmt::format("frame: wanted a frame's number, found {}", *options.frame));
+    throw UsageError(fmt::format("frame: wanted a frame's number, found {}", *options.frame));
   core::LoadOptions result;
   result.frame = options.frame;
   result.native_code = options.native_code;
@@ -71,23 +71,21 @@ Scene::Impl::Impl(const Impl& other)
 }
 
 void Scene::Impl::forget_description() {
-  std::shared_ptr<const core::SceneDescription> old;  // freed outside the lock: a mesh's owner runs any code
+  std::shared_ptr<const SceneDescription> old;  // freed outside the lock: a mesh's owner runs any code
   const std::lock_guard lock(mutex_);
   old.swap(described_);
 }
 
-std::shared_ptr<const core::SceneDescription> Scene::Impl::describe() const {
+std::shared_ptr<const SceneDescription> Scene::Impl::describe() const {
   enter_threads();
-  std::shared_ptr<const core::SceneDescription> old, next;
+  std::shared_ptr<const SceneDescription> old, next;
   const std::lock_guard lock(mutex_);
   if (described_ && described_document_ == document) return described_;
-  if (described_ && !options.frame)
-    next = core::change_scene(*described_, described_document_, document, options);
+  if (described_ && !options.frame) next = change_scene(*described_, described_document_, document, options);
   if (!next) {
     json moved = document;
-    if (options.frame) core::apply_animation(moved, *options.frame, core::JsonContext{.file = file});
-    next = std::make_shared<const core::SceneDescription>(
-        core::load_scene_document(moved, file, options, meshes));
+    if (options.frame) apply_animation(moved, *options.frame, JsonContext{.file = file});
+    next = std::make_shared<const SceneDescription>(load_scene_document(moved, file, options, meshes));
   }
   described_document_ = document;
   old = std::exchange(described_, std::move(next));
@@ -108,7 +106,7 @@ Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options)
   return translated([&] {
     Scene scene;
     scene.impl_->options = options_of(options);
-    scene.impl_->document = core::read_scene_document(file, scene.impl_->options);
+    scene.impl_->document = read_scene_document(file, scene.impl_->options);
     scene.impl_->file = file;
     return scene;
   });
@@ -143,7 +141,7 @@ Scene& Scene::set(std::string_view pointer, std::string_view text) {
   json value;
   try {
     value = sundog::parse_json(text, no_file);
-  } catch (const core::SceneError& error) {
+  } catch (const SceneError& error) {
     fail_at(pointer, "wanted JSON, found " + std::string(text.substr(0, 40)) + ": " + error.reason);
   }
   json changed = impl_->document;

@@ -104,9 +104,9 @@ sundog::MeshArray<To> vertices(const std::string& name, const char* what,
   return held<To>(from, view.owner);
 }
 
-core::Mesh mesh_of(const std::string& name, const MeshView& view) {
+Mesh mesh_of(const std::string& name, const MeshView& view) {
   if (view.triangles.empty()) refuse(name, "wanted a triangle or more");
-  core::Mesh mesh;
+  Mesh mesh;
   mesh.name = name;
   mesh.positions = vertices<glm::vec3>(name, "positions", view.positions, view);
   mesh.normals = vertices<glm::vec3>(name, "normals", view.normals, view);
@@ -154,32 +154,28 @@ Scene& Scene::add_material(const std::string& name, const Material& material) {
 }
 
 Scene& Scene::add_mesh(const std::string& name, const MeshView& mesh) {
-  impl_->meshes.insert_or_assign(name, std::make_shared<const core::Mesh>(mesh_of(name, mesh)));
+  impl_->meshes.insert_or_assign(name, std::make_shared<const Mesh>(mesh_of(name, mesh)));
   impl_->forget_description();
   return *this;
 }
 
 Scene& Scene::add_instance(const std::string& mesh, const Placement& placement) {
-  json object{{"type", "mesh"}, {"mesh", mesh}};
-  place(impl_->document, std::move(object), placement);
+  place(impl_->document, {{"type", "mesh"}, {"mesh", mesh}}, placement);
   return *this;
 }
 
 Scene& Scene::add_sphere(const Vec3& center, double radius, const Placement& placement) {
-  json object{{"type", "sphere"}, {"center", center}, {"radius", radius}};
-  place(impl_->document, std::move(object), placement);
+  place(impl_->document, {{"type", "sphere"}, {"center", center}, {"radius", radius}}, placement);
   return *this;
 }
 
 Scene& Scene::add_box(const Vec3& low, const Vec3& high, const Placement& placement) {
-  json object{{"type", "box"}, {"min", low}, {"max", high}};
-  place(impl_->document, std::move(object), placement);
+  place(impl_->document, {{"type", "box"}, {"min", low}, {"max", high}}, placement);
   return *this;
 }
 
 Scene& Scene::add_plane(const Vec3& point, const Vec3& normal, const Placement& placement) {
-  json object{{"type", "plane"}, {"point", point}, {"normal", normal}};
-  place(impl_->document, std::move(object), placement);
+  place(impl_->document, {{"type", "plane"}, {"point", point}, {"normal", normal}}, placement);
   return *this;
 }
 

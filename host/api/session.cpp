@@ -8,11 +8,10 @@ inline namespace v0 {
 
 struct SUNDOG_LOCAL Session::Impl {
   mutable std::mutex mutex;
-  std::unique_ptr<core::RenderSession> session;
-  std::shared_ptr<const core::SceneDescription> newest;  // guarded by the mutex
+  std::unique_ptr<RenderSession> session;
+  std::shared_ptr<const SceneDescription> newest;  // guarded by the mutex
 
-  explicit Impl(const std::vector<core::DeviceInfo>& devices)
-      : session(std::make_unique<core::RenderSession>(devices)) {}
+  explicit Impl(const std::vector<DeviceInfo>& devices) : session(std::make_unique<RenderSession>(devices)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
@@ -22,7 +21,7 @@ struct SUNDOG_LOCAL Session::Impl {
     session.reset();
     wait_for_threads_at_exit();
   }
-  core::RenderSession& entered() const {
+  RenderSession& entered() const {
     enter_threads();
     return *session;
   }
@@ -49,12 +48,12 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
     auto description = scene.impl().describe();
     sundog::check_frame_memory(description->image.width, description->image.height,
                                {.file = {}, .aovs = {}, .passes = true});
-    core::SessionSettings settings;
+    SessionSettings settings;
     settings.coarse = options.coarse;
     settings.patience = seconds_of("patience", options.patience);
     settings.work_group = group_of(options.work_group);
     settings.tile = tile_of(options.tile);
-    std::shared_ptr<const core::SceneDescription>
+    std::shared_ptr<const SceneDescription>
         before;  // destroyed outside the lock: owners of its meshes may run any code
     const std::lock_guard lock(impl_->mutex);
     before = std::exchange(impl_->newest, description);
@@ -107,7 +106,7 @@ Image Session::finish() const {
 
 std::optional<Pick> Session::pick(int x, int y) {
   return translated([&]() -> std::optional<Pick> {
-    std::shared_ptr<const core::SceneDescription> scene;
+    std::shared_ptr<const SceneDescription> scene;
     {
       const std::lock_guard lock(impl_->mutex);
       scene = impl_->newest;

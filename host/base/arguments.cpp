@@ -8,7 +8,6 @@ namespace sundog {
 Option* Option::required() { return option_->required(), this; }
 Option* Option::hidden() { return option_->group(""), this; }
 Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
-Option* Option::expected(int count) { return option_->expected(count), this; }
 Option* Option::range(double low, double high) {
   // Show whole bounds as integers.
   if (low == static_cast<int>(low) && high == static_cast<int>(high))
@@ -53,8 +52,6 @@ template Option* Arguments::add_option(const std::string&, int&, const std::stri
 template Option* Arguments::add_option(const std::string&, unsigned&, const std::string&);
 template Option* Arguments::add_option(const std::string&, double&, const std::string&);
 template Option* Arguments::add_option(const std::string&, std::vector<std::string>&, const std::string&);
-template Option* Arguments::add_option(const std::string&, std::vector<unsigned>&, const std::string&);
-template Option* Arguments::add_option(const std::string&, std::vector<float>&, const std::string&);
 
 Option* Arguments::add_flag(const std::string& name, bool& target, const std::string& help) {
   return keep(app_->add_flag(name, target, help));

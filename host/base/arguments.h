@@ -19,7 +19,6 @@ class Option {
   Option* required();
   Option* hidden();                              // omitted from help
   Option* type_name(const std::string& name);    // the word for the value in help
-  Option* expected(int count);                   // number of values
   Option* one_value_each();                      // repeatable, one value each time
   Option* range(double low, double high);        // inclusive
   Option* positive();                            // above 0

@@ -35,6 +35,15 @@ bool is_pipe_or_device(const fs::path& path) {
   return ::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode);
 }
 
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
 std::string read_file(const fs::path& path) { return read_regular_file(path); }
 
 namespace {
@@ -70,16 +79,6 @@ fs::path behind_links(fs::path path) {
     path = path.parent_path() / next;
   }
   return path;
-}
-
-/// Sets errno on failure.
-bool write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file, bytes.data(), bytes.size());
-    if (count < 0 && errno != EINTR) return false;
-    if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
 }
 
 /// write_all() to a pipe or device; waits for a pipe's reader.

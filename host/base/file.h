@@ -17,6 +17,9 @@ std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 const std::shared_ptr<Faults>& faults = nullptr);
 
+/// Writes all bytes at the place of an open file. False, with errno, on failure.
+bool write_all(int file, std::string_view bytes);
+
 /// Removes temporaries that killed write_file() calls for `named` left on this machine; never those of a
 /// running process.
 void remove_left_over(const std::filesystem::path& named);

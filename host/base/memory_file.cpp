@@ -1,27 +1,18 @@
-// Calls memfd_create(), and fills the file by pwrite().
+// Calls memfd_create(), and fills the file.
 #include "base/memory_file.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include "base/file.h"
 
 namespace sundog {
 
 int memory_file(const std::string& text) {
   const int file = ::memfd_create("sundog", MFD_CLOEXEC);
-  std::size_t written = 0;
-  while (file >= 0 && written < text.size()) {
-    const ssize_t part =
-        ::pwrite(file, text.data() + written, text.size() - written, static_cast<off_t>(written));
-    if (part > 0) {
-      written += static_cast<std::size_t>(part);
-    } else if (part == 0 || errno != EINTR) {
-      ::close(file);
-      return -1;
-    }
-  }
-  return file;
+  if (file < 0 || (write_all(file, text) && ::lseek(file, 0, SEEK_SET) == 0)) return file;
+  ::close(file);
+  return -1;
 }
 
 }  // namespace sundog

@@ -1,7 +1,8 @@
-// Numbers in texts.
+// Numbers in texts, and bytes that they stand for.
 #pragma once
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace sundog {
@@ -13,6 +14,21 @@ std::optional<Number> whole_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// The bytes of a part of a URI (RFC 3986). A '%' without two hexadecimal digits stands for itself: programs
+/// do not always encode names.
+inline std::string percent_decoded(std::string_view text) {
+  std::string bytes;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    const char* digits = text.data() + i + 1;
+    const bool coded = text[i] == '%' && i + 2 < text.size() &&
+                       std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    bytes += coded ? static_cast<char>(byte) : text[i];
+    if (coded) i += 2;
+  }
+  return bytes;
 }
 
 }  // namespace sundog

@@ -13,6 +13,7 @@
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/faults.h"
+#include "base/file.h"
 #include "base/memory_file.h"
 #include "device/cl_status.h"
 #include "device/driver_folder.h"
@@ -41,7 +42,7 @@ std::string contents(int file) {
 
 cl::Device device_at(const EnvironmentPtr& environment, const std::string& place) {
   for (const DeviceInfo& info : enumerate_devices(environment))
-    if (info.usable() && place == fmt::format("{}:{}", info.platform, info.device))
+    if (info.usable() && place == info.place())
       return cl::Device(static_cast<cl_device_id>(info.handle), true);
   throw DeviceError(fmt::format("no device {} to compile for", place));
 }
@@ -67,14 +68,6 @@ void build_for_launch(cl::Program& program, const cl::Context& context, const cl
   if (status != CL_SUCCESS) throw DeviceError("the kernel cannot be launched", status);
 }
 
-void write_all(int file, const std::vector<unsigned char>& bytes) {
-  for (std::size_t written = 0; written < bytes.size();) {
-    const ssize_t part = ::write(file, bytes.data() + written, bytes.size() - written);
-    if (part < 0 && errno != EINTR) throw IoError(std::strerror(errno));
-    if (part > 0) written += static_cast<std::size_t>(part);
-  }
-}
-
 }  // namespace
 
 std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, const std::string& source,
@@ -89,9 +82,8 @@ std::optional<CompileProcess> CompileProcess::start(const DeviceInfo& device, co
   try {
     in = memory_file(fmt::format("{}\n{}\n{}", options, launch ? to_line(*launch) : "", source));
     if (in >= 0 && out >= 0) {
-      const std::string place = fmt::format("{}:{}", device.platform, device.device);
       process.emplace(
-          CompileProcess(start_program({"compile", place},
+          CompileProcess(start_program({"compile", device.place()},
                                        {{in, STDIN_FILENO}, {out, STDOUT_FILENO}, {nowhere, STDERR_FILENO}}),
                          out));
     }
@@ -141,7 +133,9 @@ void serve_compile(const EnvironmentPtr& environment, const std::string& place, 
     throw BuildError("the program does not compile", "");
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
   if (binaries.empty() || binaries.front().empty()) throw BuildError("the driver gives no binary", "");
-  write_all(out, binaries.front());
+  const std::vector<unsigned char>& binary = binaries.front();
+  if (!write_all(out, {reinterpret_cast<const char*>(binary.data()), binary.size()}))
+    throw IoError(std::strerror(errno));
 }
 
 }  // namespace sundog

@@ -97,18 +97,16 @@ std::string variant(const std::string& kernel, const LaunchSize& grid) {
   return fmt::format("{} {}x{} {}", kernel, grid.local_x, grid.local_y, extent);
 }
 
-std::string place(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
-
 /// Faults injected by tests (base/faults.h).
 void inject_launch_faults(const DeviceInfo& info, const std::string& name, std::size_t items,
                           std::size_t group) {
   const auto& faults = value_of(info.environment).faults;
   if (!faults) return;
-  while (fault(faults, "hang", place(info), items)) std::this_thread::sleep_for(std::chrono::hours(1));
-  for (const char* kind : {"crash", "kill", "stop"}) faults->end_process(kind, place(info), items);
-  if (const auto status = fault(faults, "launch", place(info), items))
+  while (fault(faults, "hang", info.place(), items)) std::this_thread::sleep_for(std::chrono::hours(1));
+  for (const char* kind : {"crash", "kill", "stop"}) faults->end_process(kind, info.place(), items);
+  if (const auto status = fault(faults, "launch", info.place(), items))
     check_cl(*status, info, fmt::format("launch of {}", name));
-  if (const auto status = fault(faults, "group", place(info), group))
+  if (const auto status = fault(faults, "group", info.place(), group))
     check_cl(*status, info, fmt::format("launch of {} in groups of {}", name, group));
 }
 
@@ -241,7 +239,7 @@ KernelLimits Device::limits_of(const cl::Kernel& kernel) const {
   // Mesa's rusticl reports a sub-group's size for every kernel, but runs larger groups. If the limit is real,
   // a launch fails and is reduced.
   if (limits.work_group <= limits.preferred_multiple) limits.work_group = info_.max_work_group;
-  if (const auto most = fault(value_of(info_.environment).faults, "limit", place(info_)))
+  if (const auto most = fault(value_of(info_.environment).faults, "limit", info_.place()))
     limits.work_group = std::min(limits.work_group, static_cast<std::size_t>(*most));
   return limits;
 }
@@ -251,7 +249,7 @@ cl::Buffer Device::allocate(std::size_t bytes, const void* data, std::shared_ptr
   if (bytes > info_.max_allocation)
     check_cl(CL_MEM_OBJECT_ALLOCATION_FAILURE, info_,
              fmt::format("a buffer of {} bytes where {} is the limit", bytes, info_.max_allocation));
-  if (const auto injected = fault(value_of(info_.environment).faults, "alloc", place(info_), bytes))
+  if (const auto injected = fault(value_of(info_.environment).faults, "alloc", info_.place(), bytes))
     check_cl(*injected, info_, fmt::format("a buffer of {} bytes", bytes));
   cl_int status = CL_SUCCESS;
   const bool given = bytes > 0 && data, in_place = given && owner && shares_memory();
@@ -278,7 +276,7 @@ void Device::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t
 void Device::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset,
                         cl_bool waits) {
   if (bytes == 0) return;
-  const bool spoiled = fault(value_of(info_.environment).faults, "spoil", place(info_), bytes).has_value();
+  const bool spoiled = fault(value_of(info_.environment).faults, "spoil", info_.place(), bytes).has_value();
   check_cl(queue_.enqueueReadBuffer(buffer, spoiled ? CL_TRUE : waits, offset, bytes, data), info_,
            "clEnqueueReadBuffer");
   if (!spoiled) return;

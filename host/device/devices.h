@@ -41,6 +41,8 @@ struct DeviceInfo {
   /// Whether other devices of its machine may run on the same cores. A sub-device has its own.
   bool shares_cores() const { return type == "cpu" && sub_units == 0; }
   bool usable() const { return problem.empty() && device >= 0; }
+  /// "0:1"; that of the whole device for a sub-device.
+  std::string place() const;
   /// "0:1", or "0:1/2" for a sub-device of two units: the SPEC of select_devices() that means it.
   std::string spec() const;
   /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" if they

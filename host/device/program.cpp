@@ -198,9 +198,6 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
                    report.log);
 }
 
-/// The device's name in faults: "P:D".
-std::string place_of(const DeviceInfo& info) { return fmt::format("{}:{}", info.platform, info.device); }
-
 /// Oclgrind's optimiser leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes):
 /// such a program builds, but has no kernels. Without optimisation it works. That program is not cached,
 /// because the failure may be transient and the kernels are slow.
@@ -208,7 +205,7 @@ void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const
                         const std::string& source, BuildReport& report) {
   const auto makes_kernels = [&](const std::string& options) {
     compile(record, context, device, source, options, report);
-    return !fault(value_of(record.device.environment).faults, "kernels", place_of(record.device)) &&
+    return !fault(value_of(record.device.environment).faults, "kernels", record.device.place()) &&
            kernels_work(record.program);
   };
   if (makes_kernels(record.options)) return;
@@ -232,7 +229,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   const HostEnvironment& environment = value_of(info.environment);
   const std::string& entry = source.text.entry;
   dump_source(environment.dump_folder, source.text);
-  if (fault(environment.faults, "build", place_of(info)))
+  if (fault(environment.faults, "build", info.place()))
     throw BuildError(fmt::format("{} did not build on {}: a fault was asked for", entry, info.label()), "");
   if (is_pocl(info))
     if (const std::string problem = driver_folder(environment).problem(environment); !problem.empty())

@@ -189,8 +189,10 @@ DeviceInfo fastest(std::span<const DeviceInfo> all) {
 
 }  // namespace
 
+std::string DeviceInfo::place() const { return fmt::format("{}:{}", platform, device); }
+
 std::string DeviceInfo::spec() const {
-  return fmt::format("{}:{}{}", platform, device, sub_units > 0 ? fmt::format("/{}", sub_units) : "");
+  return sub_units > 0 ? fmt::format("{}/{}", place(), sub_units) : place();
 }
 
 std::string DeviceInfo::label() const {

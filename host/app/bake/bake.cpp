@@ -8,13 +8,13 @@
 #include <limits>
 #include <numbers>
 
+#include "bench/plain/tracer.h"
+
 namespace sundog {
 namespace {
 
 /// Texels at a time, and rays of occlusion at a time.
 constexpr std::size_t texels_at_once = std::size_t{1} << 18, rays_at_once = std::size_t{1} << 20;
-
-glm::vec3 vec(const float4& v) { return {v.x, v.y, v.z}; }
 
 Ray make_ray(const CompiledScene& scene, const dvec3& origin, const dvec3& direction, double length) {
   const glm::vec3 o(origin - scene.origin), d(direction);
@@ -33,9 +33,7 @@ dvec3 normal_at(const CompiledScene& scene, const Hit& hit) {
     };
     n = (1 - hit.u - hit.v) * normal(0) + hit.u * normal(1) + hit.v * normal(2);
   }
-  const glm::vec3 world = n.x * vec(instance.object_from_world[0]) +
-                          n.y * vec(instance.object_from_world[1]) + n.z * vec(instance.object_from_world[2]);
-  return glm::normalize(dvec3(world));
+  return glm::normalize(dvec3(plain::world_normal(instance, n)));
 }
 
 std::uint8_t byte_of(double value) {

@@ -271,7 +271,7 @@ json wanted_rows(const json& rows, const std::vector<std::string>& specs) {
   json wanted = json::array();
   for (const DeviceInfo& device : pick_devices(all, specs))
     for (json row : rows)
-      if (row.value("index", "") == fmt::format("{}:{}", device.platform, device.device)) {
+      if (row.value("index", "") == device.place()) {
         if (device.sub_units > 0) row["sub_units"] = device.sub_units;
         wanted.push_back(std::move(row));
       }

@@ -65,7 +65,7 @@ json device_json(const DeviceInfo& device, bool is_default) {
               {"usable", device.usable()},
               {"problem", device.problem.empty() ? json(nullptr) : json(device.problem)}};
   if (device.device < 0) return row;
-  row.update({{"index", fmt::format("{}:{}", device.platform, device.device)},
+  row.update({{"index", device.place()},
               {"device", device.device},
               {"name", device.name},
               {"vendor", device.vendor},

@@ -158,17 +158,12 @@ double parse_amount(const char* option, const std::string& text, double most) {
   return *value;
 }
 
-std::pair<int, int> parse_size(const std::string& text) {
+std::vector<std::string> parse_image_size(const std::string& text) {
   const auto size = number_pair(text);
   if (!size)
     throw UsageError(
         fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
-  return *size;
-}
-
-std::vector<std::string> parse_image_size(const std::string& text) {
-  const auto [width, height] = parse_size(text);
-  return {fmt::format("/image/width={}", width), fmt::format("/image/height={}", height)};
+  return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
 }
 
 void check_override(const std::string& setting) {

@@ -35,10 +35,7 @@ double parse_tolerance(const std::string& text);
 /// A number above 0 and at most `most`.
 double parse_amount(const char* option, const std::string& text, double most = 1e9);
 
-/// "WxH", each from 1 to the greatest edge.
-std::pair<int, int> parse_size(const std::string& text);
-
-/// parse_size() as overrides of a scene's image size.
+/// "WxH", each from 1 to the greatest edge, as overrides of a scene's image size.
 std::vector<std::string> parse_image_size(const std::string& text);
 
 /// The options of a picture's colours as overrides of a scene.

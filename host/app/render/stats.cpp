@@ -62,7 +62,7 @@ json device_json(const DeviceReport& report) {
                      {"host_ms", times.host_ms},
                      {"first_ms", times.first_ms},
                      {"work_group", work_group_json(times)}};
-  return {{"index", fmt::format("{}:{}", report.info.platform, report.info.device)},
+  return {{"index", report.info.place()},
           {"platform", report.info.platform_name},
           {"name", report.info.name},
           {"driver", report.info.driver},

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/numbers.h"
 
 namespace sundog {
 
@@ -88,37 +89,15 @@ Refusal check_request(const Gate& gate, const RequestHead& head) {
   return {};
 }
 
-namespace {
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-std::string percent_decoded(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0) {
-      out += static_cast<char>(16 * hex_digit(text[i + 1]) + hex_digit(text[i + 2]));
-      i += 2;
-    } else {
-      out += text[i] == '+' ? ' ' : text[i];
-    }
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string query_value(std::string_view query, std::string_view key) {
   while (!query.empty()) {
     const std::string_view part = query.substr(0, query.find('&'));
     query.remove_prefix(std::min(query.size(), part.size() + 1));
     const std::size_t equals = part.find('=');
-    if (part.substr(0, equals) == key)
-      return equals == std::string_view::npos ? "" : percent_decoded(part.substr(equals + 1));
+    if (part.substr(0, equals) != key) continue;
+    std::string value(equals == std::string_view::npos ? "" : part.substr(equals + 1));
+    std::ranges::replace(value, '+', ' ');
+    return percent_decoded(value);
   }
   return "";
 }

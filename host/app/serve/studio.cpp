@@ -29,6 +29,14 @@ std::string text_of(const json& message, const char* key) {
   return found != message.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
+std::vector<std::string> texts_of(const json& message, const char* key) {
+  std::vector<std::string> texts;
+  if (const auto list = message.find(key); list != message.end() && list->is_array())
+    for (const json& text : *list)
+      if (text.is_string()) texts.push_back(text);
+  return texts;
+}
+
 /// A pixel's place in a message. Throws UsageError.
 int pixel_of(const json& message, const char* key) {
   const auto found = message.find(key);
@@ -93,8 +101,6 @@ WebHandlers Studio::handlers() {
       stream_.greet(client);
     });
   };
-  all.closed = [](ClientId) {};
-  all.ready = [](ClientId) {};
   all.answer = [this](WebRequest request, const std::function<void(WebAnswer)>& reply) {
     const bool slow = request.path == "/api/picture";
     const bool taken =
@@ -205,10 +211,7 @@ void Studio::step(ClientId client, const json& message, bool back) {
 }
 
 void Studio::use_devices(const json& message) {
-  std::vector<std::string> specs;
-  if (const auto list = message.find("specs"); list != message.end() && list->is_array())
-    for (const json& spec : *list)
-      if (spec.is_string()) specs.push_back(spec);
+  const std::vector<std::string> specs = texts_of(message, "specs");
   if (specs.empty()) throw UsageError("at least one device has to draw");
   std::vector<DeviceInfo> picked = select_devices(setup_.devices, specs);
   session_.use_devices(picked);
@@ -240,10 +243,8 @@ void Studio::set_options(const json& message) {
 
 /// The first balance draws the picture anew, with groups kept apart; later ones only develop it.
 void Studio::balance(ClientId client, const json& message) {
-  std::vector<std::string> lights;
-  if (const auto list = message.find("lights"); list != message.end() && list->is_array())
-    for (const json& light : *list)
-      if (light.is_string() && lights.size() < most_light_groups + 1) lights.push_back(light);
+  std::vector<std::string> lights = texts_of(message, "lights");
+  if (lights.size() > most_light_groups + 1) lights.resize(most_light_groups + 1);
   for (const std::string& light : lights) parse_light(light);
   {
     const std::lock_guard lock(mutex_);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "app/serve/web_connection.h"
 #include "base/error.h"
 
@@ -74,38 +76,40 @@ void WebServer::run(const Gate& gate, WebHandlers handlers) {
 
 void WebServer::stop() { state_->io.stop(); }
 
+namespace {
+
+/// Has the server's thread call `use` for each socket, or for that of one client. A socket may take itself
+/// off the list meanwhile.
+template <class Use>
+void post_to(WebState& state, std::optional<ClientId> client, Use use) {
+  asio::post(state.io, [&state, client, use = std::move(use)] {
+    const auto sockets = state.sockets;
+    for (const auto& [id, socket] : sockets)
+      if (id == client.value_or(id)) use(*socket);
+  });
+}
+
+auto sending(std::string text) {
+  return [text = std::make_shared<const std::string>(std::move(text))](WebSocket& to) { to.send(text); };
+}
+
+auto showing(SharedText picture) {
+  return [picture = std::move(picture)](WebSocket& to) { to.show(picture); };
+}
+
+}  // namespace
+
 void WebServer::send(ClientId client, std::string text) {
-  asio::post(state_->io,
-             [state = state_.get(), client, text = std::make_shared<const std::string>(std::move(text))] {
-               if (const auto found = state->sockets.find(client); found != state->sockets.end()) {
-                 const std::shared_ptr<WebSocket> socket = found->second;  // may take itself off the list
-                 socket->send(text);
-               }
-             });
+  post_to(*state_, client, sending(std::move(text)));
 }
 
-void WebServer::send_to_all(std::string text) {
-  asio::post(state_->io, [state = state_.get(), text = std::make_shared<const std::string>(std::move(text))] {
-    const auto sockets = state->sockets;
-    for (const auto& [id, socket] : sockets) socket->send(text);
-  });
-}
-
-void WebServer::show_to_all(SharedText picture) {
-  asio::post(state_->io, [state = state_.get(), picture = std::move(picture)] {
-    const auto sockets = state->sockets;
-    for (const auto& [id, socket] : sockets) socket->show(picture);
-  });
-}
+void WebServer::send_to_all(std::string text) { post_to(*state_, {}, sending(std::move(text))); }
 
 void WebServer::show(ClientId client, SharedText picture) {
-  asio::post(state_->io, [state = state_.get(), client, picture = std::move(picture)] {
-    if (const auto found = state->sockets.find(client); found != state->sockets.end()) {
-      const std::shared_ptr<WebSocket> socket = found->second;
-      socket->show(picture);
-    }
-  });
+  post_to(*state_, client, showing(std::move(picture)));
 }
+
+void WebServer::show_to_all(SharedText picture) { post_to(*state_, {}, showing(std::move(picture))); }
 
 int WebServer::ready_clients() const { return state_->ready; }
 

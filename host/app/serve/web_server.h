@@ -30,8 +30,6 @@ struct WebHandlers {
   std::function<void(WebRequest, std::function<void(WebAnswer)> reply)> answer;
   std::function<void(ClientId)> opened;  // a socket whose first message was the token
   std::function<void(ClientId, std::string)> message;
-  std::function<void(ClientId)> ready;  // it has drawn its last picture: a newer one may be made
-  std::function<void(ClientId)> closed;
 };
 
 struct WebLimits {

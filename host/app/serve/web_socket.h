@@ -8,8 +8,6 @@
 
 namespace sundog {
 
-/// A client's WebSocket: its first message is the token, "ack" acknowledges a picture, all else is the
-/// handlers'.
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(WebState& server, tcp::socket&& socket)
@@ -52,7 +50,6 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     server_.sockets.erase(id_);
     --server_.greeted;
     if (!owes_) --server_.ready;
-    server_.handlers.closed(id_);
   }
 
  private:
@@ -75,7 +72,6 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
       if (owes_) ++server_.ready;
       owes_ = false;
       write_next();
-      if (!owes_) server_.handlers.ready(id_);
     } else {
       server_.handlers.message(id_, std::move(text));
     }

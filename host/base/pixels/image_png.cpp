@@ -131,16 +131,13 @@ int append_bytes(spng_ctx*, void* to, void* bytes, std::size_t size) {
 
 /// `fill(y, row)` writes a row's samples, words in the machine's order. With `file` the colours are sRGB.
 template <class Fill>
-std::string encode_rows(spng_ihdr header, const FileOptions* file, const Fill& fill) {
+std::string encode_rows(spng_ihdr header, std::size_t row_bytes, const FileOptions* file, const Fill& fill) {
   constexpr int level = 4;  // of zlib: half the time of its default, and hardly larger
   constexpr int filters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;  // a fifth less time, as small
   std::string profile = file && file->icc ? srgb_icc_profile() : "";       // outlives the context
   const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   if (!context) throw std::bad_alloc();
-  const std::size_t channels = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE   ? 1
-                               : header.color_type == SPNG_COLOR_TYPE_TRUECOLOR ? 3
-                                                                                : 4;
-  std::vector<std::uint8_t> row(channels * header.width * header.bit_depth / 8);
+  std::vector<std::uint8_t> row(row_bytes);
   std::string bytes;
   bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // it never grows
   check_encoder(spng_set_png_stream(context.get(), append_bytes, &bytes));
@@ -205,8 +202,8 @@ StoredImage decode_png(std::string_view bytes) {
 std::string encode_png(const StoredImage& image) {
   const std::size_t bytes = image.sample_bytes(), columns = static_cast<std::size_t>(image.width);
   const auto from = static_cast<std::size_t>(image.channels), to = std::min<std::size_t>(from, 3);
-  return encode_rows(header_of(image, static_cast<int>(to), static_cast<int>(8 * bytes)), nullptr,
-                     [&](std::size_t y, std::uint8_t* row) {
+  return encode_rows(header_of(image, static_cast<int>(to), static_cast<int>(8 * bytes)),
+                     to * columns * bytes, nullptr, [&](std::size_t y, std::uint8_t* row) {
                        for (std::size_t x = 0; x < columns; ++x)
                          row = std::copy_n(&image.data[(y * columns + x) * from * bytes], to * bytes, row);
                      });
@@ -216,7 +213,8 @@ std::string encode_png(const Image& image, const FileOptions& options) {
   const auto channels = static_cast<std::size_t>(image.channels);
   const std::size_t samples = channels * static_cast<std::size_t>(image.width);
   return encode_rows(
-      header_of(image, image.channels, options.bits), &options, [&](std::size_t y, std::uint8_t* row) {
+      header_of(image, image.channels, options.bits), samples * static_cast<std::size_t>(options.bits) / 8,
+      &options, [&](std::size_t y, std::uint8_t* row) {
         const float* from = &image.data[y * samples];
         for (std::size_t i = 0; i < samples; ++i) {
           const bool alpha = i % channels == 3;

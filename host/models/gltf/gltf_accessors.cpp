@@ -14,81 +14,53 @@ namespace {
 constexpr std::uint64_t element_array_buffer = 34963;  // target of a view: indices
 constexpr std::uint64_t most = std::uint64_t{1} << 53;
 
-std::size_t size_of_component(std::uint64_t component) {
+// Calls `use` with a 0 of the component's type; the result's own 0 if glTF has no such component.
+template <class Use>
+auto with_component(std::uint64_t component, const Use& use) -> decltype(use(float{})) {
   switch (component) {
     case component_byte:
+      return use(std::int8_t{});
     case component_unsigned_byte:
-      return 1;
+      return use(std::uint8_t{});
     case component_short:
+      return use(std::int16_t{});
     case component_unsigned_short:
-      return 2;
+      return use(std::uint16_t{});
     case component_unsigned_int:
+      return use(std::uint32_t{});
     case component_float:
-      return 4;
+      return use(float{});
     default:
-      return 0;
+      return {};
   }
 }
 
-std::size_t components_of(const std::string& type) {
-  if (type == "SCALAR") return 1;
-  if (type == "VEC2") return 2;
-  if (type == "VEC3") return 3;
-  if (type == "VEC4" || type == "MAT2") return 4;
-  if (type == "MAT3") return 9;
-  return type == "MAT4" ? 16 : 0;
-}
-
-// Columns of a matrix are aligned to four bytes.
-std::size_t element_size(const std::string& type, std::size_t component_size) {
-  if (type.starts_with("MAT")) {
-    const auto columns = static_cast<std::size_t>(type.size() == 4 ? type[3] - '0' : 0);
-    return columns * ((columns * component_size + 3) / 4 * 4);
-  }
-  return components_of(type) * component_size;
-}
-
-// The bytes after a matrix's last column.
-std::size_t padding(const std::string& type, std::size_t component_size) {
-  if (!type.starts_with("MAT") || component_size == 0 || type.size() != 4) return 0;
-  const std::size_t column = static_cast<std::size_t>(type[3] - '0') * component_size;
-  return (column + 3) / 4 * 4 - column;
+std::size_t size_of_component(std::uint64_t component) {
+  return with_component(component, [](auto value) { return sizeof value; });
 }
 
 double component_at(const char* bytes, std::uint64_t component) {
-  const auto take = [bytes](auto value) {
+  return with_component(component, [bytes](auto value) {
     std::memcpy(&value, bytes, sizeof value);  // little-endian, as on every OpenCL host
     return static_cast<double>(value);
-  };
-  switch (component) {
-    case component_byte:
-      return take(std::int8_t{});
-    case component_unsigned_byte:
-      return take(std::uint8_t{});
-    case component_short:
-      return take(std::int16_t{});
-    case component_unsigned_short:
-      return take(std::uint16_t{});
-    case component_unsigned_int:
-      return take(std::uint32_t{});
-    default:
-      return take(float{});
-  }
+  });
 }
 
 double normalization(std::uint64_t component) {
-  switch (component) {
-    case component_byte:
-      return 1.0 / 127;
-    case component_unsigned_byte:
-      return 1.0 / 255;
-    case component_short:
-      return 1.0 / 32767;
-    case component_unsigned_short:
-      return 1.0 / 65535;
-    default:
-      return 1;
-  }
+  return with_component(component,
+                        [](auto value) { return 1.0 / std::numeric_limits<decltype(value)>::max(); });
+}
+
+struct ElementShape {
+  std::size_t columns = 0, rows = 0;  // of scalars and vectors: one column
+};
+
+ElementShape shape_of(const std::string& type) {
+  if (type == "SCALAR") return {1, 1};
+  const auto is_edge = [](char digit) { return digit >= '2' && digit <= '4'; };
+  const auto edge = static_cast<std::size_t>(type.size() == 4 && is_edge(type[3]) ? type[3] - '0' : 0);
+  if (edge > 0 && type.starts_with("VEC")) return {1, edge};
+  return type.starts_with("MAT") ? ElementShape{edge, edge} : ElementShape{};
 }
 
 }  // namespace
@@ -153,9 +125,11 @@ void GltfAccessors::read_accessor(const JsonAt& at) {
   accessor.dense.count = at.member("count").integer(1, most);
   const std::size_t size = size_of_component(accessor.dense.component);
   // An unknown type makes the accessor unusable, not the file.
-  accessor.dense.components = size == 0 ? 0 : components_of(accessor.type);
-  accessor.dense.element_size = element_size(accessor.type, size);
-  accessor.dense.padding = padding(accessor.type, size);
+  const ElementShape shape = shape_of(accessor.type);
+  accessor.dense.components = size == 0 ? 0 : shape.columns * shape.rows;
+  const std::size_t column = shape.rows * size;
+  accessor.dense.padding = shape.columns > 1 ? (4 - column % 4) % 4 : 0;  // matrices align their columns
+  accessor.dense.element_size = shape.columns * (column + accessor.dense.padding);
   accessor.normalized = at.boolean("normalized", false);
   if (accessor.normalized && size == 4)
     at.member("normalized").fail("only integers of 8 and 16 bits are normalised");

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/input.h"
+#include "base/numbers.h"
 #include "models/beside.h"
 
 namespace sundog::models {
@@ -77,22 +78,6 @@ std::string decode_base64(std::string_view text, const JsonAt& uri) {
   return bytes;
 }
 
-// A '%' without two hexadecimal digits stands for itself: programs do not always encode names.
-std::string decode_percent(std::string_view text) {
-  const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto hex = [](char c) { return c <= '9' ? c - '0' : (c | 32) - 'a' + 10; };
-  std::string bytes;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%' || i + 2 >= text.size() || !is_hex(text[i + 1]) || !is_hex(text[i + 2])) {
-      bytes += text[i];
-      continue;
-    }
-    bytes += static_cast<char>(hex(text[i + 1]) * 16 + hex(text[i + 2]));
-    i += 2;
-  }
-  return bytes;
-}
-
 std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer) {
   const std::size_t comma = text.find(',');
   if (comma == text.npos) uri.fail("a data URI without a comma");
@@ -103,7 +88,7 @@ std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer)
   // An image's type is recognised by its bytes.
   if (buffer && head != "application/octet-stream" && head != "application/gltf-buffer")
     uri.fail("a data URI of type application/octet-stream or application/gltf-buffer wanted");
-  return base64 ? decode_base64(text.substr(comma + 1), uri) : decode_percent(text.substr(comma + 1));
+  return base64 ? decode_base64(text.substr(comma + 1), uri) : percent_decoded(text.substr(comma + 1));
 }
 
 // The length of a URI's scheme, 0 without one; fails for a colon without a scheme.
@@ -130,7 +115,7 @@ void note_uri(const Source& source, const JsonAt& named) {
   const auto uri = named.find("uri");
   if (!uri) return;
   const std::string text = uri->text();
-  if (scheme_length(text, *uri) == 0) note_file(source.path.parent_path() / fs::path(decode_percent(text)));
+  if (scheme_length(text, *uri) == 0) note_file(source.path.parent_path() / fs::path(percent_decoded(text)));
 }
 
 }  // namespace
@@ -164,7 +149,7 @@ std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& u
   const auto may_be_read = [&](const fs::path& path) {
     return source.outside_files || !leads_outside(source.path, path);
   };
-  fs::path path = folder / fs::path(decode_percent(text));
+  fs::path path = folder / fs::path(percent_decoded(text));
   // Some programs do not encode names that contain a '%'.
   std::error_code ignored;
   if (const fs::path plain = folder / fs::path(text);
@@ -184,9 +169,9 @@ std::string read_image_uri(const Source& source, const JsonAt& uri) {
   const std::string text = uri.text();
   if (text.starts_with("data:")) return read_data_uri(text, uri, false);
   const fs::path folder = source.path.parent_path();
-  for (const std::string& name : {decode_percent(text), text})
+  for (const std::string& name : {percent_decoded(text), text})
     if (const auto path = find_beside(source, folder, name)) return read_source(*path).bytes;
-  uri.fail("the image " + why_not_beside(source, folder, decode_percent(text)));
+  uri.fail("the image " + why_not_beside(source, folder, percent_decoded(text)));
 }
 
 }  // namespace sundog::models

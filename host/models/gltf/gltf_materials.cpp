@@ -142,7 +142,6 @@ GltfMaterials::Entry GltfMaterials::read(const JsonAt& at, VertexColors colors) 
   read_textures(at, entry);
   add_specular_textures(at, entry);
   add_clearcoat(at, entry);
-  add_sheen_texture(at, entry);
   add_layers(at, entry, ior);
   take_highlight_from_transmission(m);
   read_unlit(at, entry, base);
@@ -158,10 +157,9 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   const dvec3 passed = base * factor;
   if (passed == dvec3(0)) return;
   MaterialDescription& m = entry.material;
-  if (const auto texture = extension->find("transmissionTexture")) {
+  if (extension->find("transmissionTexture")) {
     // The diffuse term gets the rest, per texel: use_transmission().
-    entry.transmission = textures_.read(*texture);
-    entry.transmission->channel = 0;
+    entry.transmission = read_texture(extension, "transmissionTexture", 0);
     entry.transmitted = std::min(factor * (1 - entry.values.metalness), 1.0);
   } else {
     m.diffuse = glm::max(m.diffuse - passed, dvec3(0));
@@ -187,29 +185,33 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   }
 }
 
+/// The texture of that name; with `channel`, that one of it.
+std::optional<TextureDescription> GltfMaterials::read_texture(const std::optional<JsonAt>& of,
+                                                              const char* name, int channel) const {
+  const auto found = of ? of->find(name) : std::nullopt;
+  if (!found) return std::nullopt;
+  TextureDescription texture = textures_.read(*found);
+  texture.channel = channel;
+  return texture;
+}
+
 void GltfMaterials::read_textures(const JsonAt& at, Entry& entry) const {
   MaterialDescription& m = entry.material;
-  if (const auto pbr = at.find("pbrMetallicRoughness")) {
-    if (const auto base = pbr->find("baseColorTexture")) entry.base = textures_.read(*base);
-    if (const auto both = pbr->find("metallicRoughnessTexture")) entry.metal_rough = textures_.read(*both);
-  }
+  const auto pbr = at.find("pbrMetallicRoughness");
+  entry.base = read_texture(pbr, "baseColorTexture");
+  entry.metal_rough = read_texture(pbr, "metallicRoughnessTexture");
+  entry.sheen = read_texture(at.extension("KHR_materials_sheen"), "sheenColorTexture");
   const auto gloss = at.extension("KHR_materials_pbrSpecularGlossiness");
   if (gloss && entry.metal_rough) {  // see convert_specular_glossiness()
     entry.metal_rough->channel = 3;
     entry.metal_rough->factor = glm::dvec4(-gloss->number("glossinessFactor", 1, unit_range));
     entry.metal_rough->offset = glm::dvec4(1);
   }
-  if (const auto emission = at.find("emissiveTexture"))
-    if (m.emission != dvec3(0)) entry.emission = textures_.read(*emission);
-  if (const auto normal = at.find("normalTexture")) {
-    entry.normal = textures_.read(*normal);
-    m.normal_scale = normal->number("scale", 1, {});
-  }
-  if (const auto occlusion = at.find("occlusionTexture")) {
-    entry.occlusion = textures_.read(*occlusion);
-    entry.occlusion->channel = 0;
-    m.occlusion = occlusion->number("strength", 1, unit_range);
-  }
+  if (m.emission != dvec3(0)) entry.emission = read_texture(at, "emissiveTexture");
+  entry.normal = read_texture(at, "normalTexture");
+  if (entry.normal) m.normal_scale = at.member("normalTexture").number("scale", 1, {});
+  entry.occlusion = read_texture(at, "occlusionTexture", 0);
+  if (entry.occlusion) m.occlusion = at.member("occlusionTexture").number("strength", 1, unit_range);
   const bool half_metal = entry.values.metalness > 0 && entry.values.metalness < 1;
   entry.by_values = (entry.metal_rough || (entry.base && half_metal)) && m.transmission == dvec3(0) &&
                     m.type != MaterialType::dielectric;
@@ -234,29 +236,13 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
 void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const {
   const auto extension = at.extension("KHR_materials_specular");
   if (!extension || (!entry.by_values && entry.values.metalness > 0)) return;
-  if (const auto strength = extension->find("specularTexture")) {
-    entry.specular = textures_.read(*strength);
-    entry.specular->channel = 3;
-  }
-  if (const auto color = extension->find("specularColorTexture"))
-    entry.specular_color = textures_.read(*color);
+  entry.specular = read_texture(extension, "specularTexture", 3);
+  entry.specular_color = read_texture(extension, "specularColorTexture");
 }
 
-/// KHR_materials_clearcoat's texture; red multiplies the coat's weight.
+/// Red multiplies the coat's weight.
 std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt& at) const {
-  const auto extension = at.extension("KHR_materials_clearcoat");
-  const auto texture = extension ? extension->find("clearcoatTexture") : std::nullopt;
-  if (!texture) return std::nullopt;
-  TextureDescription read = textures_.read(*texture);
-  read.channel = 0;
-  return read;
-}
-
-/// KHR_materials_sheen's colour texture.
-void GltfMaterials::add_sheen_texture(const JsonAt& at, Entry& entry) const {
-  const auto extension = at.extension("KHR_materials_sheen");
-  if (const auto texture = extension ? extension->find("sheenColorTexture") : std::nullopt)
-    entry.sheen = textures_.read(*texture);
+  return read_texture(at.extension("KHR_materials_clearcoat"), "clearcoatTexture", 0);
 }
 
 /// KHR_materials_clearcoat as a 4 % mirror on top, weighted by its smoothness.

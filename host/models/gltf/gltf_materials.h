@@ -52,10 +52,11 @@ class GltfMaterials {
   Entry read(const JsonAt& at, VertexColors colors) const;
   Entry of_colors(std::size_t index, VertexColors colors) const;
   void read_textures(const JsonAt& at, Entry& entry) const;
+  std::optional<TextureDescription> read_texture(const std::optional<JsonAt>& of, const char* name,
+                                                 int channel = -1) const;
   void settle_sides();
   static void read_unlit(const JsonAt& at, Entry& entry, glm::dvec3 base);
   std::optional<TextureDescription> read_coat_texture(const JsonAt& at) const;
-  void add_sheen_texture(const JsonAt& at, Entry& entry) const;
   void add_clearcoat(const JsonAt& at, Entry& entry) const;
   void add_layers(const JsonAt& at, Entry& entry, double ior) const;
   void add_specular_textures(const JsonAt& at, Entry& entry) const;

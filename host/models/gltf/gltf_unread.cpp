@@ -123,35 +123,24 @@ void find_in_mesh(const json& mesh, Model& model) {
   }
 }
 
-constexpr std::string_view read_extensions[] = {
-    "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
-    "KHR_mesh_quantization",      "KHR_texture_transform",
-    "EXT_texture_webp",           "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_materials_specular",     "KHR_materials_clearcoat",
-    "KHR_materials_dispersion",   "KHR_materials_sheen",
-    "KHR_materials_iridescence",  "KHR_materials_anisotropy"};
+/// Those of materials are reported where materials use them; KHR_texture_basisu likewise.
+bool is_known(const std::string& extension) {
+  constexpr std::array known{"KHR_lights_punctual",   "EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
+                             "KHR_texture_transform", "EXT_texture_webp",        "KHR_texture_basisu"};
+  return extension.starts_with("KHR_materials_") || std::ranges::count(known, extension) > 0;
+}
 
 }  // namespace
 
 void check_extensions(const JsonAt& root) {
-  for (const JsonAt& at : root.list("extensionsRequired")) {
-    const std::string name = at.text();
-    const bool color = name.starts_with("KHR_materials_") || name == "KHR_texture_basisu";
-    if (std::ranges::count(read_extensions, name) == 0 && !color)
+  for (const JsonAt& at : root.list("extensionsRequired"))
+    if (const std::string name = at.text(); !is_known(name))
       at.fail(fmt::format("the file requires the extension {}, which is not read", name));
-  }
 }
 
-// Material extensions are reported where materials use them.
 void name_unread_extensions(const JsonAt& root, Model& model) {
-  for (const JsonAt& at : root.list("extensionsUsed")) {
-    const std::string name = at.text();
-    if (std::ranges::count(read_extensions, name) == 0 && !name.starts_with("KHR_materials_") &&
-        name != "KHR_texture_basisu")
-      leave_unread(model, name);
-  }
+  for (const JsonAt& at : root.list("extensionsUsed"))
+    if (const std::string name = at.text(); !is_known(name)) leave_unread(model, name);
 }
 
 void find_unread(const json& document, Model& model) {

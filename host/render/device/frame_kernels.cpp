@@ -43,14 +43,8 @@ void find_camera_media(Device& device, FrameKernels& kernels) {
     kernels.find_media = scene_kernel<Buffer<u32>>(
         device.build("entry/camera_media.cl", kernels.config.defines(), nullptr, kernels.config.generated),
         "find_camera_media");
-  run_scene_kernel<Buffer<u32>>(device, kernels.find_media, {1, 1, 1, 1}, kernels.tables,
-                                kernels.tables.camera_media);
+  run_scene_kernel(device, kernels.find_media, {1, 1, 1, 1}, kernels.tables, kernels.tables.camera_media);
   device.finish();
-}
-
-auto integrator_kernel(const Program& program, const std::string& name) {
-  return scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
-                      Launch>(program, name);
 }
 
 constexpr const char* photon_entry = "entry/trace_photons.cl";
@@ -146,6 +140,11 @@ void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels
 }
 
 }  // namespace
+
+IntegratorKernel integrator_kernel(const Program& program, const std::string& name) {
+  return scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>,
+                      Launch>(program, name);
+}
 
 bool take_wanted_kernel(Device& device, FrameKernels& kernels) {
   if (!kernels.store) return false;

@@ -11,13 +11,14 @@
 
 namespace sundog {
 
+using IntegratorKernel =
+    SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>;
 using PhotonKernel = SceneKernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>;
 
 struct FrameKernels {
   KernelConfig config;
   DeviceScene tables;
-  SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>
-      integrator;
+  IntegratorKernel integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
       first_surfaces;          // only with AOVs
   PhotonKernel trace_photons;  // only with caustics
@@ -38,6 +39,8 @@ struct FrameKernels {
   std::vector<std::string> notes;       // why a cache was not usable
   KernelStore* store = nullptr;         // others may draw while the scene's are built; null: they do not
 };
+
+IntegratorKernel integrator_kernel(const Program& program, const std::string& name);
 
 /// Whether the frame's kernels must be built on the device, while those of its draft are in its cache.
 bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning);

@@ -9,8 +9,7 @@
 
 #include "base/clock.h"
 #include "base/environment.h"
-#include "render/device/device_scene.h"
-#include "shared/launch.h"
+#include "render/device/frame_kernels.h"
 
 namespace sundog {
 namespace {
@@ -28,9 +27,7 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
   const Program program = device.build(order.entry, order.config.defines(), nullptr, order.config.generated);
-  auto kernel =
-      scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
-          program, order.kernel);
+  IntegratorKernel kernel = integrator_kernel(program, order.kernel);
   device.make_ready(kernel, first_group(order.config));
   device.save_programs();
 }

@@ -26,8 +26,7 @@ constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::
 /// Memory budget of all maps on the device: a quarter of its memory, within these bounds, and at most one
 /// buffer's maximum.
 std::uint64_t room_on(const DeviceInfo& info) {
-  const auto kibibytes =
-      fault(value_of(info.environment).faults, "photons", fmt::format("{}:{}", info.platform, info.device));
+  const auto kibibytes = fault(value_of(info.environment).faults, "photons", info.place());
   if (kibibytes) return static_cast<std::uint64_t>(*kibibytes) << 10;
   const std::uint64_t room = std::clamp(info.global_memory / 4, least_room, most_room);
   return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;
@@ -119,7 +118,7 @@ void PhotonMaps::make_room(const PhotonTracer& tracer) {
   const KernelConfig& config = tracer.kernels.config;
   auto find = scene_kernel<Buffer<u32>>(
       device.build("entry/light_media.cl", config.defines(), nullptr, config.generated), "find_light_media");
-  run_scene_kernel<Buffer<u32>>(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
+  run_scene_kernel(device, find, {lights_, 1, 1, 1}, tracer.kernels.tables, light_media_);
   device.finish();
 }
 
@@ -131,9 +130,8 @@ void PhotonMaps::trace(const PhotonTracer& tracer, const PhotonLaunch& launch) {
   const std::size_t group = photon_group(kernels.config, kernels.most_group);
   const WatchedLaunch watched(tracer.watch, expected, !traced_,
                               value_of(tracer.device.info().environment).launch_limit);
-  run_scene_kernel<Buffer<u32>, Buffer<float4>, Buffer<u32>, PhotonLaunch>(
-      tracer.device, kernels.trace_photons, {.x = items, .local_x = group}, kernels.tables, light_media_,
-      landed_, cells_, launch);
+  run_scene_kernel(tracer.device, kernels.trace_photons, {.x = items, .local_x = group}, kernels.tables,
+                   light_media_, landed_, cells_, launch);
   tracer.device.finish();
   traced_ = true;
 }

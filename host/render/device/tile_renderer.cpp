@@ -162,9 +162,8 @@ double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& 
   const Stopwatch clock;
   const WatchedLaunch watched(watch_, sized.expected_seconds, sized.expected_seconds <= 0,
                               value_of(device_.info().environment).launch_limit);
-  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<float>, Buffer<u32>, Buffer<u32>, Launch>(
-      device_, kernels_.integrator, sized.size, kernels_.tables, kernels_.tables.camera_media, pixels_, film_,
-      weights_, counters_, rays_, launch);
+  run_scene_kernel(device_, kernels_.integrator, sized.size, kernels_.tables, kernels_.tables.camera_media,
+                   pixels_, film_, weights_, counters_, rays_, launch);
   device_.finish();
   return clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
 }
@@ -185,11 +184,10 @@ void TileRenderer::look_at_surfaces(const TileRequest& request, TileResult& resu
   constexpr double expected = 3;  // unknown, so only minutes count as stuck
   const WatchedLaunch watched(watch_, expected, !aovs_launched_,
                               value_of(device_.info().environment).launch_limit);
-  run_scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
-      device_, kernels_.first_surfaces, sizer_.surfaces(pixels), kernels_.tables,
-      kernels_.tables.camera_media, pixels_, aovs_, counters_, static_cast<u32>(tile.x),
-      static_cast<u32>(tile.y), static_cast<u32>(tile.width), static_cast<u32>(pixels),
-      request.pixels.empty() ? 0u : 1u);
+  run_scene_kernel(device_, kernels_.first_surfaces, sizer_.surfaces(pixels), kernels_.tables,
+                   kernels_.tables.camera_media, pixels_, aovs_, counters_, static_cast<u32>(tile.x),
+                   static_cast<u32>(tile.y), static_cast<u32>(tile.width), static_cast<u32>(pixels),
+                   request.pixels.empty() ? 0u : 1u);
   device_.finish();
   aovs_launched_ = true;
   std::vector<float4> surfaces(vectors);
@@ -209,8 +207,8 @@ void TileRenderer::check_finished(const TileRequest& asked, const TileResult& ma
   }
   const auto wanted = static_cast<u32>(pixels * asked.sample_count);
   const auto aovs = looks(asked) ? static_cast<u32>(pixels) : 0u;
-  if (fault(value_of(device_.info().environment).faults, "cut",
-            fmt::format("{}:{}", device_.info().platform, device_.info().device), sizer_.tile_samples()))
+  if (fault(value_of(device_.info().environment).faults, "cut", device_.info().place(),
+            sizer_.tile_samples()))
     finished = 0;
   // A stopped tile may have samples of unfinished rows.
   if (finished == 2 * (primary + aovs) && (primary == wanted || made.tile != asked.tile)) return;

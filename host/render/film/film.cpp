@@ -193,6 +193,11 @@ AovLayout aov_layout(const std::vector<std::string>& names) {
   return layout;
 }
 
+std::size_t aov_channels(const std::string& name) {
+  const AovPlace* place = find_place(name);
+  return place ? place->count : name == "variance" ? 3 : 1;
+}
+
 bool shows_features(const std::vector<std::string>& names) {
   return std::ranges::count(names, feature_albedo) + std::ranges::count(names, feature_normal) > 0;
 }

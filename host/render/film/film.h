@@ -143,6 +143,9 @@ FilmNeeds film_needs(const std::vector<std::string>& names);
 /// Whether they need `aovs` of a film. The others come of the samples' sums alone.
 bool show_surfaces(const std::vector<std::string>& names);
 
+/// Floats of a pixel of an AOV's image.
+std::size_t aov_channels(const std::string& name);
+
 /// The layout of a pixel's vectors for these AOVs.
 AovLayout aov_layout(const std::vector<std::string>& names);
 

@@ -21,18 +21,6 @@ constexpr std::uint64_t own_bytes = 16 + 4 + 1, film_aov_bytes = 48;
 /// Bytes of the AOVs in the film.
 std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.aovs) - film_bytes({}); }
 
-/// Floats of an AOV's image.
-std::uint64_t aov_floats(const std::string& name) {
-  if (name.starts_with("crypto_")) return 2 * MATTE_RANKS;
-  if (name == "uv") return 2;
-  if (name == motion_aov) return 5;
-  return name == feature_albedo || name == feature_normal || name == "geometric_normal" ||
-                 name == "variance" || is_light(name) || name == "normal" || name == "position" ||
-                 name == "albedo"
-             ? 3
-             : 1;
-}
-
 /// Bytes a pixel that an encoder allocates beside the image: converted samples, and the file, taken as
 /// incompressible noise. A growing buffer counts twice.
 std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
@@ -63,7 +51,7 @@ constexpr std::uint64_t denoiser_bytes = 600;
 std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   const std::uint64_t film = own_bytes + film_aovs(output);
   std::uint64_t aovs = 0;
-  for (const std::string& name : output.aovs) aovs += 4 * aov_floats(name);
+  for (const std::string& name : output.aovs) aovs += 4 * aov_channels(name);
   const auto channels = static_cast<std::uint64_t>(output.channels), image = 4 * channels;
   const bool part = output.file.ends_with(".part");
   const std::uint64_t encoder = encoder_bytes(output, aovs);

@@ -1,6 +1,7 @@
 // A 64-bit hash of bytes and of a compiled scene, to recognise a checkpoint's scene. Not cryptographic.
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "compile/compiled_scene.h"
 
@@ -8,6 +9,11 @@ namespace sundog {
 
 /// Mixes eight bytes at a time by multiplication and rotation; `seed` chains calls.
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
+
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) {
+  return hash_bytes(values.data(), values.size() * sizeof(T));
+}
 
 /// Everything that the image depends on.
 std::uint64_t hash_scene(const CompiledScene& scene);

@@ -21,7 +21,7 @@ std::vector<std::vector<std::string>> small_benches(const CliFolder& folder) {
           {"samples", folder.scene, "--device", "0:0", "--counts", "1,2", "--adaptive", "0.05", "--size",
            "96x64"},
           {"rays", folder.scene, "--device", "0:0", "--rays", "48", "--kinds", "primary,shadow"},
-          {"textures", "--device", "0:0", "--size", "64x48", "--edge", "16", "--loaded-edge", "16"}};
+          {"textures", SUNDOG_SOURCE_DIR "/scenes/textures.json", "--device", "0:0", "--size", "64x48"}};
 }
 
 CommandResult run_bench(std::vector<std::string> arguments, const std::vector<std::string>& more,

@@ -177,8 +177,8 @@ inline std::vector<Shaded> shade(const DeviceInfo& info, Part part, const Compil
   const std::span<const float4> values(reinterpret_cast<const float4*>(points.data()), 4 * points.size());
   const auto in = lab.device.upload<float4>(values);
   const auto out = lab.device.make<float4>(7 * points.size());
-  run_scene_kernel<Buffer<float4>, Buffer<float4>, u32>(lab.device, lab.kernel, {.x = points.size()}, tables,
-                                                        in, out, static_cast<u32>(points.size()));
+  run_scene_kernel(lab.device, lab.kernel, {.x = points.size()}, tables, in, out,
+                   static_cast<u32>(points.size()));
   std::vector<Shaded> shaded(points.size());
   lab.device.read(out, std::span(reinterpret_cast<float4*>(shaded.data()), 7 * points.size()));
   return shaded;

@@ -133,8 +133,7 @@ std::vector<Found> look(Device& device, const SceneDescription& scene, const std
       scene_kernel<Buffer<Ray>, Buffer<float>, u32>(build_text(device, look_kernel, defines), "look");
   const auto in = device.upload<Ray>(rays);
   const auto out = device.make<float>(8 * rays.size());
-  run_scene_kernel<Buffer<Ray>, Buffer<float>, u32>(device, kernel, {.x = rays.size()}, tables, in, out,
-                                                    static_cast<u32>(rays.size()));
+  run_scene_kernel(device, kernel, {.x = rays.size()}, tables, in, out, static_cast<u32>(rays.size()));
   std::vector<float> v(8 * rays.size());
   device.read(out, std::span<float>(v));
   std::vector<Found> found;
