@@ -152,7 +152,8 @@ std::string SchemaRule::describe(bool limits) const {
   std::string all;
   switch (type) {
     case Type::any:
-      for (const SchemaRule* option : options) all += (all.empty() ? "" : " or ") + option->describe(limits);
+      for (const SchemaRule* option : options)
+        all += (all.empty() ? "" : option == options.back() ? " or " : ", ") + option->describe(limits);
       return all.empty() ? "a value" : all;
     case Type::object:
       return "an object";

@@ -195,12 +195,10 @@ ImageSettings read_image(const JsonValue& value) {
     if (!background) return image;
     if (background->json().is_array()) {
       image.background_bottom = image.background_top = background->vec3();
-    } else if (background->json().is_object()) {
+    } else {
       background->object("gradient", [&](JsonObject& gradient) {
         gradient.read("bottom", image.background_bottom, "top", image.background_top);
       });
-    } else {
-      background->wanted("a colour [r, g, b] or {\"bottom\": colour, \"top\": colour}");
     }
     return image;
   });
