@@ -56,6 +56,7 @@ class Schema {
       for (const json& name : node["enum"]) rule.names.emplace_back(name.get_ref<const std::string&>());
     if (node.contains("const")) rule.names.emplace_back(node["const"].get_ref<const std::string&>());
     if (!rule.names.empty()) rule.type = Type::string;
+    if (node.contains("not") && node["not"].contains("enum")) rule.barred = &node["not"]["enum"];
     if (node.contains("anyOf") && !node.contains("properties"))
       for (const json& option : node["anyOf"]) rule.options.push_back(compile(option));
     rule.range = range_of(node);
@@ -129,6 +130,10 @@ class Schema {
 const SchemaRule* schema_rule(std::string_view kind) {
   static const Schema schema;
   return schema.find(kind);
+}
+
+bool SchemaRule::bars(const json& value) const {
+  return barred && std::find(barred->begin(), barred->end(), value) != barred->end();
 }
 
 const SchemaRule* SchemaRule::as(Type wanted) const {

@@ -84,7 +84,9 @@ void JsonValue::wanted(std::string_view what) const {
 }
 
 JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const {
-  return {value, *context_, join_pointer(pointer_, key), rule};
+  const JsonValue result(value, *context_, join_pointer(pointer_, key), rule);
+  if (rule && rule->bars(value)) result.fail(fmt::format("wanted {}, found {}", rule->describe(), value.dump()));
+  return result;
 }
 
 const SchemaRule& JsonValue::rule_of(SchemaRule::Type type) const {

@@ -32,8 +32,6 @@ Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
     if (!focal_length) f_number->fail("wanted a camera with a \"focal_length\", or the lens's \"radius\"");
     lens.radius = *focal_length / (2 * f_number->number());
   }
-  if (lens.blades == 1 || lens.blades == 2)
-    object.find("blades")->wanted("3 or more blades, or 0 for a round aperture");
   return lens;
 }
 
@@ -57,8 +55,6 @@ View read_view(JsonObject& object, const Camera& camera) {
 dvec3 read_falloff(JsonObject& object) {
   dvec3 falloff(0);
   object.read("constant", falloff.x, "linear", falloff.y, "quadratic", falloff.z);
-  if (falloff == dvec3(0))
-    object.value().fail("wanted a falloff that is not 0 everywhere: it divides the light");
   return falloff;
 }
 
