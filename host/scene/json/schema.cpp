@@ -7,6 +7,7 @@
 #include <deque>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 namespace sundog {
 namespace {
@@ -57,6 +58,7 @@ class Schema {
     if (node.contains("const")) rule.names.emplace_back(node["const"].get_ref<const std::string&>());
     if (!rule.names.empty()) rule.type = Type::string;
     if (node.contains("not") && node["not"].contains("enum")) rule.barred = &node["not"]["enum"];
+    if (node.contains("pattern")) rule.pattern = node["pattern"].get_ref<const std::string&>();
     if (node.contains("anyOf") && !node.contains("properties"))
       for (const json& option : node["anyOf"]) rule.options.push_back(compile(option));
     rule.range = range_of(node);
@@ -133,6 +135,8 @@ const SchemaRule* schema_rule(std::string_view kind) {
 }
 
 bool SchemaRule::bars(const json& value) const {
+  if (const auto* text = value.get_ptr<const std::string*>(); text && !pattern.empty())
+    return !std::regex_search(*text, std::regex(pattern.begin(), pattern.end()));
   return barred && std::find(barred->begin(), barred->end(), value) != barred->end();
 }
 

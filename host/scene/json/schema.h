@@ -35,6 +35,7 @@ struct SchemaRule {
   std::string_view title;                      // completes "wanted "; empty: follows from the rest
   Range range;                                 // of a number
   const nlohmann::json* barred = nullptr;      // values that are refused
+  std::string_view pattern;                    // of a string; bounded, for std::regex recurs
   std::vector<std::string_view> names;         // of a string; empty: any
   unsigned least_items = 0, most_items = ~0u;  // of an array
   const SchemaRule* items = nullptr;           // of an array

@@ -85,7 +85,9 @@ void JsonValue::wanted(std::string_view what) const {
 
 JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const {
   const JsonValue result(value, *context_, join_pointer(pointer_, key), rule);
-  if (rule && rule->bars(value)) result.fail(fmt::format("wanted {}, found {}", rule->describe(), value.dump()));
+  if (rule && rule->bars(value))
+    result.fail(fmt::format("wanted {}, found {}", rule->describe(),
+                            value.is_string() ? describe(value) : value.dump()));
   return result;
 }
 

@@ -239,7 +239,7 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
   std::string sides, shadow;
   object.read("sides", sides, "shadow", shadow, "vertex_color", material.vertex_color);
-  object.read("shadow_catcher", material.shadow_catcher);
+  object.read("shadow_catcher", material.shadow_catcher, "group", material.group);
   if (material.shadow_catcher && (material.medium >= 0 || material.wall_ior > 0))
     object.at("shadow_catcher").fail("a material with a \"medium\" or an \"ior\" catches no shadows");
   material.one_sided = sides == "front";
@@ -301,7 +301,6 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.transmission = transmission.even, material.textures.transmission = transmission.texture;
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
-    material.group = read_group(object);
     read_surface(object, material, textures);
     return material;
   });

@@ -250,8 +250,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
     EnvironmentDescription e;
     e.type = *value_named(environment_types, type);
     object.read("color", e.color, "intensity", e.intensity, "rotate", e.rotate, "samples", e.samples);
-    object.read("visible", e.visible, "hidden", e.hidden);
-    e.group = read_group(object);
+    object.read("visible", e.visible, "hidden", e.hidden, "group", e.group);
     if (const auto up = object.find("up")) e.up = up->direction();
     if (e.type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file"));
@@ -268,28 +267,14 @@ EnvironmentDescription read_environment(const JsonValue& value,
   });
 }
 
-std::string read_group(JsonObject& object) {
-  const auto group = object.find("group");
-  if (!group) return "";
-  const std::string name = group->text();
-  const bool plain = std::ranges::all_of(name, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  if (!plain || name == "rest" || name == "groups" || name == "parts")
-    group->wanted("a name of letters, digits, - and _, other than rest, groups and parts");
-  return name;
-}
-
 LightDescription read_light(const JsonValue& value, double unit) {
   const std::string type = value.type();
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
     object.check("name");  // for pointers
-    if (object.knows("group")) light.group = read_group(object);
     const auto read = [&](std::string_view key, auto& to) {
-      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff" && key != "group")
-        object.read(key, to);
+      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
     };
 #define SUNDOG_READ_KEY(of, name, ...) read(#name, light.name);
     LIGHT_KEYS(SUNDOG_READ_KEY)
