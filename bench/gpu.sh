@@ -88,7 +88,7 @@ part() {
   summarize
 }
 
-# Of a file of --stats: some of its seconds.
+# Prints the seconds of a step from a file of --stats: FILE STEP.
 stat_of() { sed -n "/\"seconds\": {/,/}/s/^ *\"$2\": \([0-9.e+-]*\),*\$/\1/p" "$1" | head -n 1; }
 is_there() { grep -qs "\"platform_name\": *\"$1" "$out/devices.json"; }
 

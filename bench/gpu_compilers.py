@@ -33,7 +33,7 @@ COLUMNS = ("target", "scene", "kernel") + FIGURES
 TARGETS = {"sm_75": ("nvidia", "sm_75", 32), "sm_90": ("nvidia", "sm_90", 64), "sm_120": ("nvidia", "sm_90", 48),
            "gfx90a": ("amd", "gfx90a", 0), "gfx1030": ("amd", "gfx1030", 0), "gfx1100": ("amd", "gfx1100", 0),
            "gfx1201": ("amd", "gfx1201", 0), "dg2": ("intel", "dg2-g10", 0), "pvc": ("intel", "pvc", 0)}
-# What each tool comes from.
+# The Debian packages of each tool.
 PACKAGES = {"clang": ["clang-19"], "libclc": ["libclc-19"],
             "ocloc": ["intel-opencl-icd", "libigc1", "libigdfcl1", "libigdgmm12", "libopencl-clang14", "libllvmspirvlib14"]}
 NEEDS = {"nvidia": ("clang", "libclc", "ptxas"), "amd": ("clang", "libclc"), "intel": ("ocloc",)}
@@ -69,7 +69,7 @@ class Tools:
         return [tool for tool in NEEDS[maker] if not getattr(self, tool)]
 
     def version(self, maker):
-        """Of the compiler whose figures count, for the table."""
+        """The version of the compiler that the figures come from, for the table."""
         if maker == "nvidia":
             return "ptxas " + first_match(r"V([\d.]+)", Ended([self.ptxas, "--version"]).stdout) + ", " + self.version("amd")
         if maker == "amd":
@@ -128,7 +128,7 @@ def checked(command, **more):
 
 
 def sections(file):
-    """Of an ELF file of 64 bits: name -> bytes."""
+    """The sections of a 64-bit ELF file: name -> bytes."""
     data = open(file, "rb").read()
     (at,), (size, count, names) = struct.unpack_from("<Q", data, 40), struct.unpack_from("<HHH", data, 58)
     heads = [struct.unpack_from("<IIQQQQ", data, at + i * size) for i in range(count)]

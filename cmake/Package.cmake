@@ -12,7 +12,7 @@ install(CODE "
   file(INSTALL \"\${pages}/sundog.fish\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d\")
 " COMPONENT program)
 
-# What Debian wants of each package: copyright, a changelog of its own form, and which of lintian's remarks do not apply.
+# Debian requires these files of each package: copyright, a changelog in its own form, and overrides for lintian.
 set(runtime lib${PROJECT_NAME}${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog)
 set(maintainer "The sundog authors <sundog@localhost>")

@@ -1,7 +1,7 @@
 # Several test files as one source, each in a namespace of its own, so that their helpers may share names.
 # As a script (cmake -DSOURCES=a|b -DOUTPUT=file -P) it writes such a source; included, it adds the rule.
 
-# What the files include comes first, outside of the namespaces: where they include it again, nothing happens.
+# Their includes come first, outside of the namespaces; include guards make the files' own includes empty.
 function(sundog_write_batch sources output)
   set(includes "")
   set(wrapped "")

@@ -13,7 +13,7 @@ for tool in zstd tar dpkg-query patchelf; do command -v "$tool" >/dev/null || { 
 
 # Libraries that drivers of the machine may bring or need too: its own copies come first (cmake/bundle/sundog).
 common='^(libstdc\+\+|libgcc_s|libz|libzstd|libffi|libtinfo|libxml2|liblzma|libedit|libbsd|libmd|libudev|libcap|libelf)\.'
-# What glibc 2.36 brings.
+# Libraries of glibc 2.36.
 glibc='^(ld-linux-x86-64|libc|libm|libdl|libpthread|librt)\.so'
 
 libraries_of() { ldd "$@" | sed -n 's/^\t\([^ ]*\) => \(\/[^ ]*\) .*/\1 \2/p' | sort -u; }

@@ -16,7 +16,7 @@ if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else nee
 # builds the Python package, pkg-config finds the library, Doxygen reads its headers, and git says what has changed.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
   python3-dev python3-venv pkg-config doxygen git)
-# Of one version, so that every machine finds the same: tests/check_format.sh, tests/tidy.sh.
+# One version, so that tests/check_format.sh and tests/tidy.sh find the same on every machine.
 checkers=(clang-format-19 clang-tidy-19)
 
 # Seconds of one core that a build takes with an empty compiler cache, in round figures.
@@ -87,7 +87,7 @@ install_missing() {
   patient_apt install -y -qq --no-install-recommends "${available[@]}"
 }
 
-# What the build cannot do without.
+# Installs the packages that the build needs.
 install_needed() {
   local missing
   missing=$(missing_of "${needed[@]}")
@@ -98,7 +98,7 @@ install_needed() {
   install_missing "${needed[@]}"
 }
 
-# What tests compare with: without it they are left out.
+# Installs the packages that tests compare with; tests without theirs are skipped.
 install_peers() {
   if may_install; then
     install_missing "${peers[@]}" "${checkers[@]}"

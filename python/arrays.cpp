@@ -1,4 +1,4 @@
-// See values.h.
+// Converts arrays, JSON, scenes and devices between Python and the library.
 #include "values.h"
 
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-"""What cases.py does in a case's folder where one command isn't enough."""
+"""Actions of cases.py in a case's folder that take more than one command."""
 import base64
 import math
 import os
@@ -120,7 +120,7 @@ def above_below(case, scene):
 
 
 def model_colour(case, model):
-    """Of a model under lights of sundog's own, as a share of its red."""
+    """A model's colour under lights of sundog's own, as a share of its red."""
     red, green, blue = pixel(case.picture(model, "--size", "33x25"))
     return (1, green / red, blue / red) if red > 0 else (0, green, blue)
 
@@ -131,7 +131,7 @@ def edge(case, scene):
 
 
 def balls(case, *places):
-    """What the balls at these places of furnace.json return at their middles, in red."""
+    """The red that the balls at these places of furnace.json return at their middles."""
     picture = case.picture("furnace.json")
     return tuple(mean(picture, u - 0.01, 0.45, u + 0.01, 0.55, channel=0) for u in places)
 
@@ -341,7 +341,7 @@ def slowest_stop(case):
 
 
 def viewer(case, script, *arguments, seconds=600):
-    """What a script prints that drives the viewer in a browser."""
+    """The output of a script that drives the viewer in a browser."""
     if not shutil.which("chromium") or not shutil.which("chromedriver"):
         raise Skip("no chromium and chromedriver")
     for module in ("selenium", "numpy", "PIL"):

@@ -1,4 +1,4 @@
-"""What cases.py runs, reads and compares with."""
+"""Tools of cases.py: runs commands, reads pictures, compares values."""
 import os
 import re
 import resource
@@ -114,7 +114,7 @@ class Case:
         return read_picture(self.folder / out)
 
 
-# What is right.
+# Right answers.
 near = lambda *wanted, within=0.02: Right(
     f"{wanted[0] if len(wanted) == 1 else wanted} +-{within}",
     lambda got: all(abs(g - w) <= within for g, w in zip(got if isinstance(got, tuple) else (got,), wanted)))

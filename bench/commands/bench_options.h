@@ -54,7 +54,7 @@ std::string scene_name(const std::string& file);
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
                           const std::vector<std::string>& more = {});
 
-/// The same, loaded only.
+/// Loads with the options' overrides and `more`, without compiling.
 SceneDescription bench_description(const std::string& file, const BenchOptions& options,
                                    const std::vector<std::string>& more = {});
 

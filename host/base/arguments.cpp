@@ -1,4 +1,4 @@
-// Command-line options over CLI11; see arguments.h.
+// Implements command-line options over CLI11, whose header only this file and command_line.cpp include.
 #include "base/arguments.h"
 
 #include <CLI/CLI.hpp>

@@ -13,7 +13,7 @@ struct Integrator {
   unsigned most_run;        // pixels per work-item at most, so that idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
   int least_samples;        // of a pixel, before its noise is judged
-  // What it does: scenes are compiled, kernels built and options refused by it.
+  // Abilities: they decide how scenes are compiled, kernels built and options refused.
   bool branches;       // child rays wait on a stack, and each light is sent a ray
   bool scatters;       // in media and fog
   bool own_materials;  // ModelOptions::for_paths, spectra, shadow catchers; no soft shadows of fields

@@ -39,8 +39,8 @@ SUNDOG_SHARED_BEGIN
 //   KEY(type, name, default)
 #define LIGHT_KEYS(KEY)                                                                   \
   KEY(dvec3, color, {1, 1, 1})                                                            \
-  KEY(double, intensity, {1})       /* times colour: of an extent its radiance */         \
-  KEY(dvec3, position, {0, 0, 0})   /* of an extent the middle */                         \
+  KEY(double, intensity, {1})       /* times colour; an area light's radiance */          \
+  KEY(dvec3, position, {0, 0, 0})   /* an area light's centre */                          \
   KEY(dvec3, direction, {0, -1, 0}) /* the way the light travels; normalised later */     \
   KEY(double, inner_angle, {20})    /* spot: half angles in degrees, */                   \
   KEY(double, outer_angle, {30})    /* 0 <= inner <= outer < 90 */                        \
@@ -51,8 +51,8 @@ SUNDOG_SHARED_BEGIN
   KEY(dvec3, up, {0, 1, 0})                                                               \
   KEY(double, radius, {0.5})  /* disk, sphere */                                          \
   KEY(double, angle, {0})     /* directional: degrees across that it takes up             \
-                                 in the sky, [0, 90]; above 0 an extent */                \
-  KEY(int, samples, {1})      /* an extent: shadow rays that a surface sends to it */     \
+                                 in the sky, [0, 90]; 0: a delta light */                 \
+  KEY(int, samples, {1})      /* area lights: shadow rays that a surface sends */         \
   KEY(bool, visible, {true})  /* the camera's rays see it, where others do */             \
   KEY(bool, hidden, {false})  /* no ray meets it (scene/lamps.h places what they meet) */ \
   KEY(std::string, group, {}) /* its AOV; empty: none */
@@ -66,7 +66,7 @@ typedef enum LightKind SUNDOG_ENUM_OF_U32 {
 #define ONE_LIGHT(constant, name, placed, aimed, extent) +1u  // NOLINT(bugprone-macro-parentheses)
 #define LIGHT_KINDS (0u LIGHTS(ONE_LIGHT))                    // those of scene files come first
 
-// Bits by kind: lights that have a position, lights without an extent, lights with corners_NAME().
+// Bits by kind: lights with a position, lights in the sky, delta lights, lights with corners_NAME().
 #define PLACED_LIGHT(constant, name, placed, aimed, extent) | (u32)(placed) << LIGHT_##constant
 #define KIND_OF_LIGHT(constant, name, placed, aimed, extent) | 1u << LIGHT_##constant
 #define PLACED_LIGHTS (0u LIGHTS(PLACED_LIGHT) MESH_LIGHTS(PLACED_LIGHT))

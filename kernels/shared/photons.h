@@ -32,9 +32,9 @@ typedef struct PhotonTarget {
 SUNDOG_SHARED_SIZE(PhotonTarget, 32)
 
 // 32 bytes: one map. Its photons are hashed by cubes with edges of two radii; those of a cube are contiguous
-// in the table `photons`, in order of their numbers, perhaps mixed with those of colliding cubes.
-// photon_cells holds the start of each cell's photons, and the end. After them the table `photons` has the
-// map's beams, ways of photons through media that scatter, three rows each: where a beam begins and its
+// in the table `photons`, in order of their numbers, perhaps mixed with those of colliding cubes: first the
+// places of all, then their light. photon_cells holds the start of each cell's photons, and the end. After
+// them the table has the map's beams, ways of photons through media that scatter, three rows each: where a beam begins and its
 // length; its direction, and its slice of time + PHOTON_SLICES times how often the photon had been sent on;
 // its flux, and the light that the medium scatters of it.
 typedef struct PhotonMap {
@@ -45,7 +45,7 @@ typedef struct PhotonMap {
   float inverse_edge;  // 1 / a cube's edge
   u32 first_beam;      // its first row in photons
   u32 beams;
-  u32 pad0;
+  u32 photons;  // rows from a photon's place to its light
 } PhotonMap;
 SUNDOG_SHARED_SIZE(PhotonMap, 32)
 

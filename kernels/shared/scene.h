@@ -133,7 +133,7 @@ typedef struct SceneInfo {
   u32 light_strategy;  // STRATEGY_*
   u32 guide_count;     // rows of the table `guides`: balls, w = radius
   // Whitted's integrator:
-  u32 shafts;           // 1: surfaces ask by shafts what stands before lights with an extent
+  u32 shafts;           // 1: surfaces ask by shafts what stands before area lights
                         // (plain/whitted/shaft_light.cl)
   u32 seed;             // added to the dimensions of samples, a multiple of four; 0: the default
   u32 transparent;      // 1: what is behind the scene is not seen straight on; alpha says how much
@@ -157,7 +157,7 @@ SUNDOG_SHARED_SIZE(SceneInfo, 400)
 #define COUNT_CUT_OFF 11             // rays not spawned because of low throughput; paths have none
 #define COUNT_RAY_STACK_OVERFLOW 12  // nor these
 #define COUNT_LOST_PIXEL 13          // pixels with overflows of media or stray exits; the host counts them
-// Of scenes with fields alone:
+// Only in scenes with fields:
 #define COUNT_MARCH_STEPS 14
 #define COUNT_MARCH_LIMIT 15   // marches stopped by their step limit
 #define COUNT_MARCH_BACK 16    // relaxed steps that were reverted

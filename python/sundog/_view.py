@@ -49,7 +49,7 @@ def _send_pictures(reference, session):
 
 
 class View(anywidget.AnyWidget):
-    """What sundog.view() returns: a widget over a session in this process."""
+    """The widget that sundog.view() returns, over a session in this process."""
 
     _esm = pathlib.Path(__file__).parent / "view.js"
     width = traitlets.Int().tag(sync=True)

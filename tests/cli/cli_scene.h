@@ -21,8 +21,8 @@ inline constexpr const char* small_scene = R"({
   ]
 })";
 
-/// The same camera and picture of a board alone: its kernels take a fifth less time to compile, for tests
-/// that begin without any.
+/// small_scene's camera and image, a plane alone: for tests that start without kernels, which compile in a
+/// fifth less time.
 inline constexpr const char* least_scene = R"({
   "camera": {"position": [0, 1, 5], "target": [0, 0, 0], "fov": 40},
   "image": {"width": 32, "height": 24, "background": [0.2, 0.4, 0.8]},

@@ -1,4 +1,4 @@
-// See embree_mesh.h.
+// Copies a mesh into a geometry of Embree.
 #include "embree_mesh.h"
 
 #include <algorithm>

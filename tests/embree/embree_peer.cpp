@@ -1,4 +1,4 @@
-// See embree_peer.h.
+// Builds Embree's scene from sundog's, traces rays and translates the hits.
 #include "embree_peer.h"
 
 #include <pmmintrin.h>
@@ -92,7 +92,7 @@ struct EmbreePeer::State {
     attach(scene, geometry, id);
   }
 
-  /// What a hit of these numbers is of.
+  /// Fills in the object and triangle of a hit from Embree's numbers.
   void name(EmbreeHit& hit, u32 geometry, u32 prim, u32 instance) const {
     if (geometry == RTC_INVALID_GEOMETRY_ID) return;
     const bool of_ball = instance == RTC_INVALID_GEOMETRY_ID && geometry == balls;

@@ -9,7 +9,7 @@
 
 namespace sundog {
 
-/// What Embree says of a ray. `object` is the scene's object, `prim` the triangle of its mesh or 0; NO_PRIM:
+/// Embree's hit of a ray. `object` is the scene's object, `prim` the triangle of its mesh or 0; NO_PRIM:
 /// no hit.
 struct EmbreeHit {
   float t = 0, u = 0, v = 0;

@@ -1,4 +1,4 @@
-// See embree_spheres.h.
+// Recognises balls among objects, and copies them into a geometry of Embree.
 #include "embree_spheres.h"
 
 #include <cmath>

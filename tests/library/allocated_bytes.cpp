@@ -1,4 +1,4 @@
-// See allocated_bytes.h: the program's own operators, which the library calls too.
+// Counts bytes in the program's own operators new and delete, which the library calls too.
 #include "allocated_bytes.h"
 
 #include <malloc.h>
@@ -13,7 +13,7 @@ namespace {
 
 std::atomic<std::size_t> allocated{0}, held_now{0}, most_held{0};
 
-/// What this thread is refused.
+/// The allocations that this thread is refused.
 struct Refusal {
   std::size_t size = std::numeric_limits<std::size_t>::max();
   int allowed = 0;

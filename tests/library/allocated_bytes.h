@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 
-/// What was allocated since it was made, by any thread. One at a time.
+/// Counts bytes that any thread has allocated since it was made. One at a time.
 class AllocatedBytes {
  public:
   AllocatedBytes();

@@ -1,4 +1,4 @@
-// What tests of the public interface share. They include <sundog/...> and no header of the host: the names
+// Shared by tests of the public interface. They include <sundog/...> and no header of the host: the names
 // are the same.
 #pragma once
 #include <sundog/sundog.hpp>

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// What the process holds.
+/// The memory, threads and files that the process holds.
 struct Held {
   double megabytes = 0;
   long threads = 0, files = 0;

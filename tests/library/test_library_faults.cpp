@@ -1,5 +1,4 @@
-// What programs see of drivers that fail: by faults on demand, in a program of its own
-// (tests/faulty_program).
+// Programs see drivers fail: faults on demand, in a program of its own (tests/faulty_program).
 #include <algorithm>
 
 #include "library_testing.h"
@@ -10,7 +9,7 @@ using sundog::ErrorKind;
 
 namespace {
 
-/// What the program prints of a device with that fault, such as "launch=-36" or "build" with the count "#2".
+/// The program's output for a device with that fault, such as "launch=-36" or "build" with the count "#2".
 std::string seen_of(const std::string& what, const std::string& fault, const std::string& count = "") {
   const TemporaryFolder folder;
   folder.write("scene.json", small_scene().to_json());

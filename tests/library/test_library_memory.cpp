@@ -1,4 +1,4 @@
-// What a mesh in memory costs beside itself: bytes are counted by the program's own `new`.
+// The memory that a mesh costs beside itself: bytes are counted by the program's own `new`.
 #include <atomic>
 #include <cstdio>
 

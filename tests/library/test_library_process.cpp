@@ -1,4 +1,4 @@
-// What the library makes of a process: first uses at once, copies side by side, fork(), dlclose().
+// The library in a process: first uses at once, copies side by side, fork(), dlclose().
 #include <filesystem>
 #include <sstream>
 

@@ -41,7 +41,7 @@ sundog::Scene new_scene() {
   return tiny_formula(size);
 }
 
-/// Of the process, in bytes.
+/// The process's address space, in bytes.
 double addresses() {
   std::ifstream file("/proc/self/statm");
   double pages = 0;

@@ -1,4 +1,4 @@
-// What the shared library and its headers show.
+// The names that the shared library and its headers show.
 #include <filesystem>
 #include <fstream>
 #include <regex>

@@ -1,5 +1,5 @@
-// What only a process of its own can show of the library: its first use, a fork(), a dlclose(). Prints a line
-// for each thing that goes as it should: `own_process first_use|copies|unload|fork [LIBRARY]...`.
+// Uses of the library that need a process of their own: first use, fork(), dlclose(). Prints a line for each
+// that goes as it should: `own_process first_use|copies|unload|fork [LIBRARY]...`.
 #include <dlfcn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -69,7 +69,7 @@ int unload(const char* file) {
   return 0;
 }
 
-/// What f() throws, as a line.
+/// Prints the error that f() throws, as a line.
 void print_error_of(const char* what, const std::function<void()>& f) {
   try {
     f();

@@ -1,5 +1,5 @@
-// See povray_from_scene.h. POV-Ray's axes are left-handed only by its default camera: all its vectors are
-// given here, so that coordinates stay as they are.
+// Writes camera, lights, materials and objects in POV-Ray's language. POV-Ray's axes are left-handed only by
+// its default camera: all its vectors are given here, so that coordinates stay as they are.
 #include "povray_from_scene.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See povray_run.h.
+// Starts POV-Ray on a scene's text and parses the figures that it prints.
 #include "povray_run.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// See shapes.h.
+// Writes sundog's shapes in POV-Ray's language.
 #include "shapes.h"
 
 #include <limits>
@@ -35,7 +35,7 @@ std::string open_round_box(const RoundBoxShape& s) {
   return out;
 }
 
-/// Of all distance fields POV-Ray knows one alike: the quaternion Julia set of a square or a cube.
+/// A distance field in POV-Ray, which knows only the quaternion Julia set of a square or a cube.
 std::string open_field(const SdfDescription& field) {
   const bool is_leaf = field.root.kind == SdfNode::Kind::formula && field.root.formula.steps.size() == 1;
   const FormulaStep* step = is_leaf ? &field.root.formula.steps[0] : nullptr;

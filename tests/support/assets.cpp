@@ -1,3 +1,4 @@
+// Finds the optional test data.
 #include "assets.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// Starts a program beside the test, reads its output by lines, and ends it.
 #include "background_program.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// Drives chromium through chromedriver's WebDriver protocol.
 #include "browser.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// Prepares the drivers, lists the tests' devices and compiles small kernels for them.
 #include "devices.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// Makes one solid and one light of each kind, from the lists of kernels/shared.
 #include "every_kind.h"
 
 #include <algorithm>

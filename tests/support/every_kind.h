@@ -8,7 +8,7 @@
 /// Each exact solid with the sizes that its description has from the start, in the order of Shape.
 std::vector<sundog::Shape> every_solid();
 
-/// The same without those that have no bounds.
+/// every_solid() without those that have no bounds.
 std::vector<sundog::Shape> every_bounded_solid();
 
 /// `shapes`, and of each bounded solid that is not among them one.
@@ -23,5 +23,5 @@ std::string name_of(const sundog::Shape& shape);
 /// Each type of light, at (1, 3, 2) and aimed down where it has a place or an aim.
 std::vector<sundog::LightDescription> every_light();
 
-/// Those of them that have an extent.
+/// The area lights of every_light().
 std::vector<sundog::LightDescription> every_area_light();

@@ -1,3 +1,4 @@
+// Sends raw HTTP and WebSocket bytes, and parses the answers.
 #include "http_client.h"
 
 #include <arpa/inet.h>

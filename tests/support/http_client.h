@@ -32,7 +32,7 @@ struct HttpReply {
 
 /// Sends these bytes and reads one reply.
 HttpReply http(int port, const std::string& request);
-/// The same over a connection that stays.
+/// Sends the request over a connection that stays.
 HttpReply http(const TcpClient& client, const std::string& request);
 
 /// A request of the ordinary form; `more` are whole header lines, each with "\r\n".

@@ -1,3 +1,4 @@
+// Loads small model files from text; measures their meshes.
 #include "model_files.h"
 
 #include <zlib.h>

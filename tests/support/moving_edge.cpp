@@ -1,3 +1,4 @@
+// Renders an edge that moves while the shutter is open, and measures its ramp.
 #include "moving_edge.h"
 
 #include <algorithm>

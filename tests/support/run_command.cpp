@@ -1,3 +1,4 @@
+// Runs a program and collects its output, status and time.
 #include "run_command.h"
 
 #include <fcntl.h>

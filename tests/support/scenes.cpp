@@ -1,3 +1,4 @@
+// Builds scenes in code and renders their pixels.
 #include "scenes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Makes a folder for a test's files, and removes it at the end.
 #include "temporary_folder.h"
 
 #include <stdlib.h>

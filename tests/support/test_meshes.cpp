@@ -1,4 +1,4 @@
-// See test_meshes.h.
+// Generates the tests' meshes from fixed seeds.
 #include "test_meshes.h"
 
 #include <cmath>

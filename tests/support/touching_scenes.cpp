@@ -1,3 +1,4 @@
+// Builds solids whose faces touch; renders and compares their pictures.
 #include "touching_scenes.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-// What codemirror.module.js exports; made by make.sh.
+// The exports of codemirror.module.js, which make.sh builds.
 export {EditorView, keymap, lineNumbers, drawSelection, tooltips} from '@codemirror/view';
 export {EditorState, Compartment, Annotation} from '@codemirror/state';
 export {defaultKeymap, history, historyKeymap} from '@codemirror/commands';

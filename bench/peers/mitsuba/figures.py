@@ -1,4 +1,4 @@
-"""What pictures say: means of regions in standard errors of their difference, errors against a reference, samples for a given error."""
+"""Figures of pictures: means of regions in standard errors of their difference, errors against a reference, samples for a given error."""
 import math
 import os
 
@@ -30,7 +30,7 @@ def stored_picture(folder, name, samples, make):
 
 
 def region_means(values):
-    """Of the whole and of GRID x GRID regions, row by row, per channel."""
+    """Means of the whole and of GRID x GRID regions, row by row, per channel."""
     step = values.shape[0] // GRID
     cells = [values[y:y + step, x:x + step] for y in range(0, GRID * step, step) for x in range(0, GRID * step, step)]
     return np.array([cell.mean((0, 1)) for cell in [values] + cells])
@@ -58,7 +58,7 @@ def name_of_region(index):
 
 
 def compare_means(ours, theirs):
-    """Of two Pictures. All lists are by region (the whole first) and channel."""
+    """Compares the means of two Pictures. All lists are by region (the whole first) and channel."""
     mean_a, mean_b = region_means(ours.mean), region_means(theirs.mean)
     error = np.hypot(region_errors(ours), region_errors(theirs))
     off = np.divide(mean_a - mean_b, error, out=np.zeros_like(error), where=error > 0)

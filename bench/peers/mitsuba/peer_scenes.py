@@ -86,8 +86,8 @@ def write_sky(path, rgbe):
 
 
 def sky_between_edges(rgbe):
-    """The same sky for Mitsuba 3.9, whose first and last rows of texels lie on the poles, where sundog's lie half a row below and above them.
-    Of twice the rows and one, every second is one of the picture's and those between are their means: blended linearly, the same radiance."""
+    """Converts the sky for Mitsuba 3.9, whose first and last rows of texels lie on the poles; sundog's lie half a row below and above them.
+    Returns 2 n + 1 rows: the picture's n, and means between and around them, which blend linearly to sundog's radiance."""
     sky = rgbe[..., :3] * np.exp2(rgbe[..., 3:].astype(float) - 136)
     around = np.concatenate([sky[:1], sky, sky[-1:]])
     rows = np.empty((2 * len(sky) + 1,) + sky.shape[1:], np.float32)
@@ -103,7 +103,7 @@ def without_normals(line):
 
 
 def write_files(folder):
-    """What scenes name: the sky, and the barrel's model where there is one. Returns the scenes that can be made."""
+    """Writes the files that scenes name: the sky, and the barrel's model where there is one. Returns the scenes that can be made."""
     write_sky(os.path.join(folder, "sky.hdr"), make_sky())
     barrel = find_barrel()
     if not barrel:

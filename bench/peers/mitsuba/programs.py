@@ -177,5 +177,5 @@ class Mitsuba:
         return image, time.perf_counter() - start
 
     def samples_made(self, sampler):
-        """Of the last render: `multijitter` rounds them up to a grid."""
+        """The last render's samples a pixel: `multijitter` rounds them up to a grid."""
         return self.scenes[sampler].sensors()[0].sampler().sample_count()

@@ -83,6 +83,9 @@ void check_options(const NamedCommand& command, int argc, const char* const* arg
     const OptionWords* option = option_without_value(*command.words, word);
     if (!option || ++i == argc) continue;
     const std::string next = argv[i];
+    if (next.empty())  // as "$SAMPLES" is where no such variable is set
+      throw UsageError(fmt::format("{} wants a value ({}), found an empty text {}", word, option->type,
+                                   see_help(*command.words)));
     if (next.size() > 1 && next[0] == '-' && find_option(*command.words, next))
       throw UsageError(fmt::format("{} wants a value ({}), found the option {} {}", word, option->type, next,
                                    see_help(*command.words)));

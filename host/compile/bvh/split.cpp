@@ -1,4 +1,4 @@
-// Binning, the choice of a plane, and partitioning; see split.h.
+// Splits a set of boxes: bins their centres, chooses the cheapest plane and partitions the boxes.
 #include "compile/bvh/split.h"
 
 #include <tbb/blocked_range.h>

@@ -26,7 +26,7 @@ double base_eta(const OpenPbr& v, double coat_weight) {
   return lowering::base_index(v.specular_ior, std::sqrt(v.specular_weight), index_above(v, coat_weight));
 }
 
-/// Of the coat: lowering::seen_roughness().
+/// The coat's `haze` for lowering::seen_roughness().
 double haze(const OpenPbr& v) { return v.coat_bends ? 2 * std::pow(v.coat_roughness, 4) : 0; }
 
 /// Internal reflectance of a coat for light from a base (OpenPBR 1.1, "Coat", "Darkening"): at normal

@@ -1,5 +1,5 @@
-// Of two animations that move a node the first counts. Cubic keys are Hermite splines (appendix C); rotations
-// go the short way.
+// Moves a glTF file's nodes by its animations: the first that moves a node counts. Cubic keys are Hermite
+// splines (appendix C); rotations go the short way.
 #include "models/gltf/gltf_animations.h"
 
 #include <fmt/format.h>

@@ -19,6 +19,7 @@ namespace {
 constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less shrinks it faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
 constexpr u32 least_cells = 1024;
+constexpr std::size_t most_lanes = 16;
 // With default settings, one holds the photons of 1024 samples, the other those of 30,000.
 constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::uint64_t{2} << 30;
 
@@ -32,20 +33,27 @@ std::uint64_t room_on(const DeviceInfo& info) {
   return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;
 }
 
-/// Sorts photons by cell, then by number; `begins` receives the start of each cell and the end of the last.
+/// Sorts photons by cell, then by number: the places of all, then their light. `begins` receives the start of
+/// each cell and the end of the last. The first cell follows the last one too, for rows that end there.
 std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::vector<u32>& cells, u32 mask,
                                  std::vector<u32>& begins) {
   begins.assign(std::size_t{mask} + 2, 0);
   for (const u32 cell : cells)
     if (cell != NO_PHOTON) ++begins[(cell & mask) + 1];
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  std::vector<u32> next(begins.begin(), begins.end() - 1);
-  std::vector<float4> sorted(std::size_t{begins.back()} * 2);
+  std::vector<u32> next(begins.begin(), begins.end() - 1);  // of each cell
+  begins.push_back(begins.back() + begins[1]);
+  const std::size_t count = begins.back();
+  std::vector<float4> sorted(2 * count);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i] == NO_PHOTON) continue;
     const std::size_t to = next[cells[i] & mask]++;
-    sorted[2 * to] = landed[2 * i];
-    sorted[2 * to + 1] = landed[2 * i + 1];
+    sorted[to] = landed[2 * i];
+    sorted[count + to] = landed[2 * i + 1];
+  }
+  for (u32 i = 0; i < begins[1]; ++i) {
+    sorted[begins.end()[-2] + i] = sorted[i];
+    sorted[count + begins.end()[-2] + i] = sorted[count + i];
   }
   return sorted;
 }
@@ -152,9 +160,9 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
   made.map.cell_mask = std::bit_ceil(std::max(plan_.count - lost, least_cells)) - 1;
   made.photons = sort_photons(landed, cells, made.map.cell_mask, made.cells);
   made.map.first_beam = static_cast<u32>(made.photons.size());
+  made.map.photons = made.map.first_beam / 2;
   append(made.photons, draw_beams(beams, beams_of(plan_.count), number));
   made.map.beams = static_cast<u32>(made.photons.size() - made.map.first_beam) / 3;
-  if (made.map.beams % 2 != 0) made.photons.push_back({});  // the next map's photons have two rows each
   return made;
 }
 
@@ -176,12 +184,13 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
     if (full_) break;
     made.map.first_cell = static_cast<u32>(cells.size());
     made.map.first_beam += static_cast<u32>(photons.size());
-    const auto before = static_cast<u32>(photons.size() / 2);
+    const auto before = static_cast<u32>(photons.size());
     for (u32& begin : made.cells) begin += before;
     maps.push_back(made.map);
     append(cells, made.cells);
     append(photons, made.photons);
   }
+  photons.resize(photons.size() + most_lanes);  // read, but not used, after the last ones
   DeviceScene& tables = tracer.kernels.tables;
   tables.photon_maps = tracer.device.upload(std::span<const PhotonMap>(maps));
   tables.photon_cells = tracer.device.upload(std::span<const u32>(cells));

@@ -1,4 +1,4 @@
-// The session as its callers see it: see render_session.h.
+// The session's public functions: they pass orders to its frame loop and return its picture so far.
 #include "render/session/render_session.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The strict reader; see value.h.
+// Reads JSON values strictly, by the schema's rules: an error names the file, the place and the mend.
 #include "scene/json/value.h"
 
 #include <fmt/format.h>

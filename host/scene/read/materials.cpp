@@ -111,7 +111,13 @@ Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLib
   Pattern pattern;
   const auto color = object.find("color");
   if (!color) return pattern;
-  if (color->json().is_array() || color->json().is_string()) return read_plain_color(*color, textures);
+  if (color->json().is_array() || color->json().is_string()) {
+    const Pattern plain = read_plain_color(*color, textures);
+    if (std::max({plain.even.x, plain.even.y, plain.even.z}) > 10)
+      color->warn(
+          "makes a surface that returns many times the light it gets: colours are linear, from 0 to 1");
+    return plain;
+  }
   refuse_texture_object(*color);
   color->object("checker", [&](JsonObject& checker) {
     const auto colors = checker.at("checker").items("colours");

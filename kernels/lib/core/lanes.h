@@ -132,6 +132,23 @@ static inline REAL3 real3(REAL x, REAL y, REAL z) {
   REAL3 r = {x, y, z};
   return r;
 }
+// Rows of four numbers, the first one's in the first lane, and so on.
+static inline void load_rows(__global const float4* rows, REAL3* xyz, REAL* w) {
+#if LANES == 1
+  *xyz = real3(rows->x, rows->y, rows->z);
+  *w = rows->w;
+#else
+  __global const float* from = (__global const float*)rows;
+  const REAL a = LOAD_LANES(from), b = LOAD_LANES(from + LANES), c = LOAD_LANES(from + 2 * LANES),
+             d = LOAD_LANES(from + 3 * LANES);
+  const REAL xz_low = (REAL)(a.even, b.even), xz_high = (REAL)(c.even, d.even),
+             yw_low = (REAL)(a.odd, b.odd), yw_high = (REAL)(c.odd, d.odd);
+  *xyz = real3((REAL)(xz_low.even, xz_high.even), (REAL)(yw_low.even, yw_high.even),
+               (REAL)(xz_low.odd, xz_high.odd));
+  *w = (REAL)(yw_low.odd, yw_high.odd);
+#endif
+}
+
 static inline REAL3 add3(REAL3 a, REAL3 b) { return real3(a.x + b.x, a.y + b.y, a.z + b.z); }
 static inline REAL3 subtract3(REAL3 a, REAL3 b) { return real3(a.x - b.x, a.y - b.y, a.z - b.z); }
 static inline REAL3 negate3(REAL3 a) { return real3(-a.x, -a.y, -a.z); }

@@ -1,6 +1,6 @@
-// One light of many for a point, by the tree over the lights with an extent: at each node a child is chosen
-// by its power over the square of its distance (the idea of Conty Estevez and Kulla 2018, "Importance
-// Sampling of Many Lights with Adaptive Tree Splitting", without directions).
+// Chooses one area light of many for a point, by the tree over them: at each node a child, by its power over
+// the square of its distance (the idea of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights
+// with Adaptive Tree Splitting", without directions).
 #include "plain/core.h"
 
 HAVING(HAS_LIGHT_TREE);

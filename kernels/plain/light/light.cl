@@ -6,7 +6,7 @@ static inline bool is_in_sky(UNIFORM __global const Light* light) {
   return (LIGHTS_OF_SKY >> light->kind & 1u) != 0u;
 }
 
-// Whether rays may meet the light `index`: it is seen, and has an extent.
+// Whether rays may meet the light `index`: it is visible and not a delta light.
 static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 index) {
   __global const Light* light = scene->lights + index;
   if (light->kind == LIGHT_ENVIRONMENT) return scene->info->sees_environment != 0u;
@@ -14,7 +14,7 @@ static inline UNIFORM bool rays_meet(UNIFORM const Scene* scene, UNIFORM u32 ind
   return has_extent(light) && light->position.w == 0.0f;
 }
 
-// The way from the point p to a light without extent.
+// The way from the point p to a delta light.
 static inline LightSample way_to_lamp(UNIFORM __global const Light* light, float3 p) {
 #define GO_TO(constant, name, placed, aimed, extent) \
   if (light->kind == LIGHT_##constant) return sample_##name(light, p);
@@ -51,7 +51,7 @@ static inline SeenLight see_light(UNIFORM __global const Light* light, float3 p)
   return seen_square(none, none, none, false, true);
 }
 
-// A way from the point p to the light `index`. Lights without extent leave the numbers alone.
+// A way from the point p to the light `index`. Delta lights ignore the numbers.
 ENTRY static inline LightSample sample_light(UNIFORM const Scene* scene, UNIFORM u32 index, float3 p,
                                              float u_x, float u_y) {
   __global const Light* light = scene->lights + index;

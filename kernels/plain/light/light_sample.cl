@@ -9,7 +9,7 @@ typedef struct LightSample {
   bool delta;       // all light comes along wi: no other way of sampling finds it
 } LightSample;
 
-// A square that holds what a point sees of a light with an extent.
+// A square around an area light, as a point sees it.
 typedef struct SeenLight {
   float3 corner[4];  // from the point to the corners, in turn
   bool in_front;     // the light shines on the point, from a place that is clearly before it
@@ -32,7 +32,7 @@ typedef struct Emission {
   float3 p, n;      // of a light that has a position: a place on it, and the normal there
   float3 d;         // of light from afar: its direction
   float3 radiance;  // times pi of a directional light; of a sun over the density of d
-  float area;       // of a light with an extent
+  float area;       // of an area light
 } Emission;
 
 static inline Emission emit_from(float3 p, float3 n, float3 radiance, float area) {

@@ -13,7 +13,7 @@ static inline float3 distant_along(UNIFORM const Scene* scene, float3 d, float* 
   return background_along(scene->info, d);
 }
 
-// The same, where the rays of the camera do not see what is hidden from them.
+// The environment's light along d; camera rays see the background instead if it is hidden from them.
 static inline float3 hide_environment(UNIFORM const Scene* scene, float3 d, float3 light, bool camera) {
   if (scene->info->sees_environment == SEEN_OFF_CAMERA && camera) return background_along(scene->info, d);
   return light;

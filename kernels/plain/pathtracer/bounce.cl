@@ -99,8 +99,9 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     path->spread *= square;
   }
   // Shadow rays pass this surface too, so MIS still compares with light chosen at the vertex before it.
-  const bool passes = below && sample.specular;
-  if (!(passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0)) {
+  const bool passes = below && sample.specular, straight = lobes->interface.eta == 1.0f,
+             filtered = passes && (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0;
+  if (!filtered) {
     path->pdf = sample.specular ? 0.0f : sample.pdf;
     path->from = at->s.p;
     if (HAS_FOG) path->unfog = 1.0f;
@@ -108,16 +109,15 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     if (HAS_CAUSTICS) note_gathered(path, sample.specular, narrow_part(scene, &at->bsdf, lobes, wo, &sample));
   }
   if (HAS_LIGHT_PARTS) {
-    const bool straight = lobes->interface.eta == 1.0f,
-               filtered = (at->bsdf.flags & (int)MATERIAL_SHADOW_OPAQUE) == 0;
-    if (!(passes && (straight || (filtered && path->scatterings > 0))))
+    if (!((passes && straight) || (filtered && path->scatterings > 0)))
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
-  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || lobes->interface.eta == 1.0f);
+  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || straight);
   bool going = cut_out;
   if (some && !cut_out) going = survives(scene, path, dimension);
   if (!cut_out) ++path->depth;
-  if (!going) return false;
+  if (HAS_SHADOW_FILTERS && filtered && straight && !cut_out) ++path->passed;
+  if (!going || limited_depth(path) > (int)scene->info->max_depth + 1) return false;
   if (below)
     count(counts, COUNT_REFRACTION);
   else
@@ -142,12 +142,14 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     *light += met_light(
         path, SEEN_EMISSION, at.bsdf.flags >> (int)MATERIAL_GROUP_SHIFT,
         path->throughput * spectrum_of(&path->wavelengths, met_surface(scene, path, ray, &met->hit, &at)));
-  const bool deep = path->depth > (int)scene->info->max_depth;
+  const bool deep = limited_depth(path) > (int)scene->info->max_depth;
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
   const bool nothing = (at.bsdf.flags & (int)MATERIAL_TRANSMITS) != 0 && cut_away(&at.bsdf, &lobes.interface);
   const bool cut_out = nothing && may_cross(ray);
   if (!nothing && path->depth == 1) count(counts, COUNT_PRIMARY_HIT);
-  if (deep && !cut_out && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
+  const int kind = at.bsdf.flags & (int)(MATERIAL_TRANSMITS | MATERIAL_SHADOW_OPAQUE);
+  const bool may_pass = cut_out || (HAS_SHADOW_FILTERS && kind == (int)MATERIAL_TRANSMITS);
+  if (deep && !may_pass && (at.bsdf.flags & (int)MATERIAL_EMITS) == 0) {
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
@@ -158,7 +160,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     if (HAS_CAUSTICS) by_photons = gather_photons(scene, path, ray, &at, &lobes);
   }
   bool going = false;
-  if (!deep || cut_out) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
+  if (!deep || may_pass) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
   if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
   *light += by_photons;

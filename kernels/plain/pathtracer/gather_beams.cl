@@ -34,7 +34,7 @@ static inline void scatter_beam(const PathState* path, const MediumSegment* s,
 HAVING(HAS_CAUSTICS)
 static SampledSpectrum gather_beams(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
                                     const MediumSegment* s) {
-  const int slice = photon_slice_of(ray), deepest = (int)scene->info->max_depth - path->depth;
+  const int slice = photon_slice_of(ray), deepest = (int)scene->info->max_depth - limited_depth(path);
   SampledSpectrum sum = (SampledSpectrum)(0.0f);
   float radius = 1.0f;
   EACH_ALIKE(u32, sample, (u32)path->at.sample) {

@@ -36,7 +36,7 @@ static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* pat
   Bsdf bsdf = at->bsdf;
   LobeSet wide = *lobes;
   keep_wide_lobes(&bsdf, &wide);
-  PhotonSearch search = search_photons(scene, &path->at, path->depth, ray, &at->s);
+  PhotonSearch search = search_photons(scene, &path->at, limited_depth(path), ray, &at->s);
   PhotonLight sum;
   sum.all = (float3)(0.0f);
   if (HAS_LIGHT_PARTS) {

@@ -31,9 +31,10 @@ typedef struct PathState {
   float pdf;                 // 0: from the camera or a perfect lobe; lights that the ray meets count in full
   // For Russian roulette alone: undoes eta^2 of refractions since the camera, and the weights of guides.
   float spread;
-  int depth;      // of the ray: the camera's has 1
-  bool covered;   // the path has not left the scene straight on from the camera
-  bool straight;  // the ray goes straight on from the camera
+  int depth;                              // of the ray: the camera's has 1
+  HAVING(HAS_SHADOW_FILTERS) int passed;  // surfaces, straight on, that shadow rays pass, too
+  bool covered;                           // the path has not left the scene straight on from the camera
+  bool straight;                          // the ray goes straight on from the camera
   SampleAt at;
   SampledWavelengths wavelengths;
   HAVING(HAS_FOG) float unfog;                // undoes the fog since `from`
@@ -63,6 +64,7 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   path.pdf = 0.0f;
   path.spread = 1.0f;
   path.depth = 1;
+  if (HAS_SHADOW_FILTERS) path.passed = 0;
   path.covered = true;
   path.straight = true;
   path.at = *at;
@@ -130,6 +132,13 @@ static inline float3 left_by_photons(const PathState* path, float3 light) {
 // The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that the ray meets.
 static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
   return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
+}
+
+// The depth that max_depth limits. What shadow rays pass at no cost has none here either: else the picture
+// would depend on which of the two finds a light.
+static inline int limited_depth(const PathState* path) {
+  if (HAS_SHADOW_FILTERS) return path->depth - path->passed;
+  return path->depth;
 }
 
 // The density of choosing distant light from a segment: in place of a surface, a place on it is chosen, too.

@@ -45,8 +45,8 @@ ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const Sample
   return photon;
 }
 
-// A light without extent falls off by its own rule up to the point p, where its photon is first bent, and
-// beyond it as the rays spread. So glass receives as much as any surface there.
+// A delta light falls off by its own rule up to the point p, where its photon is first bent, and beyond it as
+// the rays spread. So glass receives as much as any surface there.
 static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photon* photon) {
   if (photon->dimmed == NOT_DIMMED) return;
   EACH_ALIKE(int, index, photon->dimmed) {
@@ -80,7 +80,8 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
   if (HAS_DISPERSION) part_wavelengths(scene, at, &lobes->interface, &photon->path, !below);
   const bool cut_out = cut_away(&at->bsdf, &lobes->interface) && may_cross(ray);
   if (!cut_out) ++photon->path.depth;
-  if (!cut_out && photon->path.depth > (int)scene->info->max_depth) return false;
+  if (HAS_SHADOW_FILTERS && !turns && !cut_out && lobes->interface.eta == 1.0f) ++photon->path.passed;
+  if (!cut_out && limited_depth(&photon->path) > (int)scene->info->max_depth) return false;
   leave_surface(scene, met, at, sample, below, cut_out, ray);
   return true;
 }
@@ -104,7 +105,7 @@ static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay*
   photon->beam.d = s.d;
   photon->beam.length = s.length;
   photon->beam.flux = spectrum_seen(scene, &photon->path.wavelengths, &flux) * (1.0f / light);
-  photon->beam.sent_on = photon->path.depth - 1;
+  photon->beam.sent_on = limited_depth(&photon->path) - 1;
 }
 
 // Perhaps takes the photon's segment for its beam.
@@ -142,7 +143,7 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
                             at.s.p,
                             -ray->d,
                             spectrum_seen(scene, &photon->path.wavelengths, &flux),
-                            photon->path.depth - 1,
+                            limited_depth(&photon->path) - 1,
                             at.s.instance};
       *landed = here;
     }

@@ -8,7 +8,7 @@
 
 typedef struct PhotonStart {
   float3 o, d;
-  float3 flux;  // for one photon; of lights without extent, of a factor that dim_with_distance() knows
+  float3 flux;  // for one photon; a placed delta light's lacks the factor of dim_with_distance()
   float time;   // of moving objects, from 0 to 1
   int light;    // index of the one that it comes from
   int dimmed;   // the light whose distance counts where the photon is first bent, or NOT_DIMMED

@@ -104,7 +104,7 @@ static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, 
     note_scattering(path, &shares);
   }
   bool going = spectrum_greatest(path->throughput) > 0.0f;
-  if (going && path->depth > (int)scene->info->max_depth) {
+  if (going && limited_depth(path) > (int)scene->info->max_depth) {
     count(counts, COUNT_DEPTH_LIMIT);
     going = false;
   }
@@ -126,7 +126,7 @@ static bool scatter_on_segment(UNIFORM const Scene* scene, PathState* path, cons
   if (!any(s.scatters)) return false;
   const int dimension = (int)DIMENSION_STRETCH + (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE +
                         begun->crossings * (int)DIMENSIONS_A_CROSSING;
-  if (s.scatters && path->depth <= (int)scene->info->max_depth) {
+  if (s.scatters && limited_depth(path) <= (int)scene->info->max_depth) {
     if (scene->info->light_count > 0u)
       path->radiance += light_on_segment(scene, path, begun, ray, &s, dimension, counts);
     if (HAS_CAUSTICS) path->radiance += gather_beams(scene, path, ray, &s);

@@ -17,16 +17,17 @@ static inline float odd_cells(UNIFORM const Scene* scene, UNIFORM float frequenc
   return odd;
 }
 
-// Sets the frame about ns, with the tangent along `first`.
+// Sets the frame about ns, with the tangent along `first`, turned towards `second`.
 HAVING(HAS_LAYERS)
-static inline void turn_frame(UNIFORM __global const Layers* m, float3 first, Bsdf* bsdf) {
+static inline void turn_frame(UNIFORM __global const Layers* m, float3 first, float3 second, Bsdf* bsdf) {
   const float3 flat = along(first, -dot(first, bsdf->ns), bsdf->ns);
   float3 s, t;
   tangent_frame(bsdf->ns, &s, &t);
   const float3 u = dot(flat, flat) > 1e-20f * dot(first, first) ? safe_unit3(flat) : s;
   const float3 v = cross(bsdf->ns, u);
-  bsdf->tangent = along(u * m->turn_x, m->turn_y, v);
-  bsdf->bitangent = along(v * m->turn_x, -m->turn_y, u);
+  const float turn_y = dot(v, second) < 0.0f ? -m->turn_y : m->turn_y;
+  bsdf->tangent = along(u * m->turn_x, turn_y, v);
+  bsdf->bitangent = along(v * m->turn_x, -turn_y, u);
 }
 
 // A replacement for the diffuse term in layered materials (shared/layers.h).
@@ -43,9 +44,12 @@ static inline void add_layers(UNIFORM const Scene* scene, const SurfaceInteracti
   bsdf->diffuse = (float3)(0.0f);
   bsdf->coated = outside;
   bsdf->coated_behind = !outside;
-  float3 first = (float3)(0.0f);
-  if (HAS_UV) first = s->at.dpdu;
-  EACH_ALIKE(u32, index, (u32)bsdf->material) turn_frame(scene->layers + index, first, bsdf);
+  float3 first = (float3)(0.0f), second = first;
+  if (HAS_UV) {
+    first = s->at.dpdu;
+    second = s->at.dpdv;
+  }
+  EACH_ALIKE(u32, index, (u32)bsdf->material) turn_frame(scene->layers + index, first, second, bsdf);
 }
 
 ENTRY static inline Bsdf make_bsdfs(UNIFORM const Scene* scene, const SurfaceInteraction* s, int before,

@@ -1,5 +1,5 @@
-// What materials' numbers become in the terms of their lobes: devices ask where textures give them, the host
-// (host/models/values/lowering.h, in doubles) for numbers of a scene.
+// Converts the numbers of materials to those of their lobes: on devices for textures, on the host
+// (host/models/values/lowering.h, in doubles) for constants of a scene.
 
 // Metalness and roughness (glTF 2.0, appendix B) in terms of the phong model. For base colour b, metalness m,
 // roughness r and a dielectric's normal reflectance f:

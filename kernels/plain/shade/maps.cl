@@ -62,10 +62,14 @@ static inline float4 map_value(UNIFORM const Scene* scene, UNIFORM __global cons
 // duplicate a texture's code at each call.
 ENTRY static inline void read_slots(UNIFORM const Scene* scene, UNIFORM __global const MaterialMaps* maps,
                                     UNIFORM u32 wanted, const TexturePoint* at, SlotValues* values) {
+  TexturePoint here = *at;
   if (HAS_CONES)
     for (u32 slot = 0; slot < MAP_COUNT; ++slot)
-      if ((wanted >> slot & 1u) != 0u && has_slot(maps, slot))
-        values->of[place_of_slot(slot)] = value_of_texture(scene, maps->slot[slot], at);
+      if ((wanted >> slot & 1u) != 0u && has_slot(maps, slot)) {
+        // A mean of places that are there and others that are not says nothing of either.
+        here.footprint = slot == MAP_OPACITY && maps->cutoff > 0.0f ? 0.0f : at->footprint;
+        values->of[place_of_slot(slot)] = value_of_texture(scene, maps->slot[slot], &here);
+      }
 }
 
 static inline float part_of_one(float x) { return real_clamp(x, 0.0f, 1.0f); }

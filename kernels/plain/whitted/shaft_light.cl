@@ -1,7 +1,6 @@
-// Light of the lights with an extent that surfaces see whole or behind solids alone, without rays that go
-// through the scene: a shaft says what may stand before the light (lib/trace/shaft.cl). Where nothing does,
-// the diffuse term is exact and highlights are sampled; else samples are tried against the solids in the
-// shafts.
+// Light of area lights that surfaces see whole or behind solids alone, without rays through the scene: a
+// shaft says what may stand before the light (lib/trace/shaft.cl). Where nothing does, the diffuse term is
+// exact and highlights are sampled; else samples are tried against the solids in the shafts.
 #include "plain/light/seen_light.cl"
 #include "plain/shade/local_light.cl"
 #include "plain/whitted/interface.h"

@@ -139,7 +139,7 @@ TEST_CASE("the plain model with its baked map looks like the detailed one") {
     REQUIRE(result.status == 0);
     return out;
   };
-  // What each picture has of the other lies out of sight: one kernel draws all three.
+  // Each picture holds the others' solids out of sight: one kernel draws all three.
   const std::string board =
       R"({"type": "mesh", "mesh": "square", "material": "m"},
     {"type": "sphere", "center": [10, 0, 0], "radius": 0.8, "material": "m"},

@@ -48,7 +48,7 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
   }
   SECTION("PoCL's own, at which it would abort") {
     folder.options.environment["POCL_CACHE_DIR"] = "";
-    // What a process that was killed has left, in the folder that PoCL takes by itself and in sundog's.
+    // A killed process's leftovers, in PoCL's own folder and in sundog's.
     for (const char* place : {"cache/pocl/kcache", "cache/sundog/pocl/killed"}) {
       CommandOptions user = folder.options;
       user.environment["POCL_CACHE_DIR"] = folder.file(place);
@@ -89,8 +89,8 @@ TEST_CASE("a kernel cache that is corrupt or cannot be written costs time only")
 
 namespace {
 
-/// What the process starts has one core: of two kernels that are compiled at once, one is in the compiler
-/// when the other fails.
+/// Gives started processes one core: of two kernels that are compiled at once, one is in the compiler when
+/// the other fails.
 class OneCore {
  public:
   OneCore() {

@@ -1,5 +1,4 @@
-// What goes wrong with devices, drivers and disks costs time, not the frame. The faults are asked for by
-// SUNDOG_FAULTS (host/base/faults.h).
+// Faults of devices, drivers and disks cost time, not the frame. SUNDOG_FAULTS asks for them (base/faults.h).
 #include <base/file.h>
 #include <nlohmann/json.hpp>
 

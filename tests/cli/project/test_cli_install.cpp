@@ -1,4 +1,4 @@
-// What `cmake --install` puts beside the program: the pages, and what they link to.
+// `cmake --install` puts the pages beside the program, and the files that they link to.
 #include <base/file.h>
 
 #include <filesystem>

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What bash offers for these words, the last of which is being typed.
+/// bash's completions for these words, the last of which is being typed.
 std::string completed(const fs::path& pages, const std::string& words, int last) {
   return run_command({"bash", "-c",
                       "source '" + (pages / "sundog.bash").string() + "'; COMP_WORDS=(" + words +

@@ -1,4 +1,4 @@
-// What the picture sees, every AOV sees: through what is cut away, and behind one-sided faces.
+// Every AOV shows the surfaces that the picture shows: through cutouts, and behind one-sided faces.
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -108,4 +108,27 @@ TEST_CASE("--subsample keeps what stands behind a pane of opacity 0.5 in the mid
   const Image picture = subsampled(0.5, {3});
   CHECK(picture.pixel(3, 13)[3] == 1);
   CHECK(picture.pixel(5, 13)[3] == Approx(0.5));
+}
+
+TEST_CASE("a cutoff leaves the same share of a pattern near and far") {
+  const CliFolder folder;
+  const std::string scene = folder
+                                .write("leaves.json", R"({
+    "camera": {"position": [0, 0, 4], "target": [0, 0, 0], "orthographic": 1},
+    "image": {"width": 8, "height": 8, "background": [0, 0, 0]},
+    "render": {"samples": 64},
+    "textures": {"holes": {"type": "checker", "size": 0.0137}},
+    "materials": {"leaves": {"diffuse": 0, "ambient": 0, "emission": 1, "opacity": "holes", "cutoff": 0.6}},
+    "objects": [{"type": "rectangle", "size": [2, 2], "normal": [0, 0, 1], "material": "leaves"}]})")
+                                .string();
+  for (const char* integrator : {"whitted", "path"}) {
+    const CommandResult result = run_sundog({"render", scene, "-o", folder.file("a.exr"), "--quiet",
+                                             "--integrator", integrator, "--device", "0:0"});
+    CAPTURE(integrator, result.err);
+    REQUIRE(result.status == 0);
+    const Image picture = read_image(folder / "a.exr");
+    double sum = 0;
+    for (std::size_t i = 0; i < picture.data.size(); i += 4) sum += double(picture.data[i]) / 64;
+    CHECK(sum == Approx(0.5).epsilon(0.04));
+  }
 }

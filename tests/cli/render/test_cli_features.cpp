@@ -1,4 +1,4 @@
-// What a denoiser is given: the albedo and normal of what a picture's samples see.
+// A denoiser's input: the albedo and normal of the surfaces that a picture's samples see.
 #include <string>
 #include <vector>
 

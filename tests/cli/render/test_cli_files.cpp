@@ -1,4 +1,4 @@
-// What is read and where things are kept: files outside the scene's folder, files that are none, the cache.
+// Files that render reads and writes: outside the scene's folder, no regular files, the cache.
 #include <base/file.h>
 #include <sys/stat.h>
 

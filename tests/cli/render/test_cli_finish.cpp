@@ -1,4 +1,4 @@
-// What is done to a picture when it is made: --denoise, --metadata.
+// Steps after the render: --denoise, --metadata.
 #include <algorithm>
 #include <filesystem>
 

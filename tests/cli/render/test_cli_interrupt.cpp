@@ -193,7 +193,7 @@ TEST_CASE("an interrupted render's AOVs are whole, and hold what is done of the 
   }
 }
 
-// What is interrupted has one unit of the device, so that it takes some seconds on any machine.
+// The interrupted render has one compute unit, so that it takes some seconds on any machine.
 TEST_CASE("an interrupted render continues from its checkpoint to the same image and AOVs") {
   const CliFolder folder;
   const std::vector<std::string> end = {"--size", "128x96",  "--samples", "400",   "--tile",

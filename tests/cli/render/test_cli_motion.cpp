@@ -82,7 +82,7 @@ TEST_CASE("motion of an object is the difference of its projections, and nothing
 TEST_CASE(
     "motion by a camera that pans is the same for surfaces and the sky, and that of a dolly for depth") {
   MotionFolder folder;
-  // Of a straight way of the target, frame 1 is at a quarter of the tangent.
+  // The target moves straight: frame 1 is at a quarter of the tangent.
   const double angle = 0.02;
   folder.animate("/camera/target", {0, 0, 0}, {-40 * std::tan(angle), 0, 0});
   const Image pan = folder.render("m_0000.exr", {"--frames", "0"});

@@ -20,7 +20,7 @@ CommandResult run_line(const std::string& line, const std::vector<std::string>& 
   return run_command(words, options);
 }
 
-/// The same with a terminal as its standard streams.
+/// Runs a command with a terminal as its standard streams.
 CommandResult run_on_terminal(const std::string& line) {
   return run_command({"script", "-qec", line, "/dev/null"});
 }

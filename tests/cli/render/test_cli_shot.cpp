@@ -1,4 +1,4 @@
-// What an EXR says of the camera and the film that it is a picture of, in OpenEXR's standard attributes.
+// An EXR states its camera and film in OpenEXR's standard attributes.
 #include <fmt/format.h>
 #include <ImfFloatAttribute.h>
 #include <ImfHeader.h>

@@ -21,7 +21,7 @@ f 2 3 4
 f 3 1 4
 )";
 
-/// What a render of the small scene with `objects` in the place of its ball warns of.
+/// The warnings of a render of the small scene with `objects` in place of its ball.
 std::string warnings_with(const std::string& objects) {
   const CliFolder folder;
   folder.write("turned.obj", turned);

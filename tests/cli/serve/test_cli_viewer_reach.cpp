@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-/// What axe-core finds in the page as it is now, one line a finding.
+/// axe-core's findings in the page as it is now, one line each.
 struct Findings {
   json violations;
   int rules = 0;  // that the page was held to

@@ -10,7 +10,7 @@
 
 using nlohmann::json;
 
-/// What every script may use: the page's own store, and what the canvas shows.
+/// Names for every script: the page's own store, and the canvas's pixels.
 inline constexpr const char* viewer_prelude = R"(
   const {store} = await import('/store.js');
   const canvas = document.querySelector('canvas');

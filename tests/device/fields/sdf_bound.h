@@ -68,8 +68,8 @@ class BoundTester {
         records_(device.upload<sundog::SdfField>(fields.fields)),
         parameters_(device.upload<float>(fields.parameters)) {}
 
-  /// Of the way to the surface and the estimate, 1 at most, in ascending order, from `count` (of 16) random
-  /// points.
+  /// Ratios of the distance to the surface and the estimate, at most 1, in ascending order, from `count` (a
+  /// multiple of 16) random points.
   std::vector<float> ratios(sundog::u32 field, sundog::u32 count) {
     auto out = device_.make<float>(count);
     auto places = device_.make<sundog::float4>(count);

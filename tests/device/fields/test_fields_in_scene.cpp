@@ -197,7 +197,7 @@ TEST_CASE("fields and solids shadow each other") {
   const auto floor = [](double y) {
     return fmt::format(R"({{"type": "plane", "point": [0, {}, 0], "material": "m"}})", y);
   };
-  // What a case does not need is out of the way, so that all have one kernel.
+  // Every case holds every solid, the unneeded ones out of the way: all share one kernel.
   const auto seen = [&](double upper_field, double lower_field, double sphere, double plane) {
     const std::string fields = field(upper_field) + ", " + field(lower_field);
     return scenes::pixel_on(test_devices().front(), scene(fields, ball(sphere) + ", " + floor(plane))).x;

@@ -9,7 +9,7 @@ using glm::dvec3;
 
 namespace {
 
-/// What sphere tracing in double precision finds of the torus about y with radii 1 and 0.35.
+/// The hit of the torus about y with radii 1 and 0.35, by sphere tracing in double precision.
 struct TorusHit {
   double t = INFINITY, nearest = INFINITY;  // in lengths of the direction; least distance on the way
 };

@@ -42,7 +42,7 @@ SceneDescription busy_scene() {
   return scene;
 }
 
-// The same with a mesh of glass in it and a lamp, smaller: the compact tracer is slow on processors.
+// busy_scene() with a mesh of glass and a lamp, smaller: the compact tracer is slow on processors.
 SceneDescription busy_mesh_scene() {
   SceneDescription scene = busy_scene();
   scene.image.width = 21;

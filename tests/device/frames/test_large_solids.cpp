@@ -75,7 +75,7 @@ int black_pixels(const DeviceInfo& device, const SceneDescription& scene) {
   return black;
 }
 
-/// Of a thing whose surface near the origin faces +y as far as `flat` from there.
+/// Checks a solid whose surface faces +y as far as `flat` from the origin: no pixel is black.
 void check_lit(const DeviceInfo& device, double flat, double distance, const auto& put) {
   if (distance < flat) {  // all that is seen faces the sun
     SceneDescription scene = seen_from(distance, 20, sun(20, 70));

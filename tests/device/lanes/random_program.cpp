@@ -1,4 +1,4 @@
-// See random_program.h.
+// Generates random plain programs: statements, expressions and calls by depth.
 #include "random_program.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ class Numbers {
   std::uint64_t state_;
 };
 
-/// What a name in the text is.
+/// The type of a name in the text.
 enum class Sort { real, whole, fixed, truth, vector, array, pair };  // fixed: counts, and is not set
 
 class Generator {

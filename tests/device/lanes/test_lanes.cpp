@@ -18,7 +18,7 @@ namespace {
 
 constexpr u32 paths = 512;
 
-/// What plain text means for one path, without the translator.
+/// Defines that compile plain text for one path, without the translator.
 const char* const one_path = R"(
 #define UNIFORM
 #define ENTRY
@@ -77,7 +77,7 @@ std::vector<float> run(Device& device, const std::string& program, unsigned seed
   return result;
 }
 
-/// What a review of the translator found, which random programs seldom hold.
+/// Bodies that random programs seldom hold, from a review of the translator.
 const std::vector<std::string> rare{
     R"(EACH_ALIKE(int, j, k & 3) { return q[j]; } return 0.0f;)",
     R"(float r = 0.0f; if (x > 0.0f) return r; r = 5.0f; return r;)",

@@ -1,4 +1,4 @@
-// The irradiance of lights with an extent, in closed form.
+// The irradiance of area lights, in closed form.
 #pragma once
 #include <cmath>
 #include <numbers>

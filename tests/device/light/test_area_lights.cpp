@@ -1,6 +1,5 @@
 // Lights: what those of every row of kernels/shared/lights.h send to a point in closed form, by samples and
-// as photons start. Lights with an extent: the density of their samples, what is seen of them, and their
-// shadows.
+// as photons start. Area lights: the density of their samples, what is seen of them, and their shadows.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -31,7 +30,7 @@ struct Lit {
   float4 p, n;
 };
 /// Over the samples: mean and standard deviation of the irradiance's estimate, the greatest difference
-/// between a sample's density and that of its direction (0 without a place and an extent); and mean and
+/// between a sample's density and that of its direction (0 unless it is a placed area light); and mean and
 /// deviation of the estimate by how photons start.
 struct Estimate {
   float mean, deviation, density_error, by_place, place_deviation;
@@ -42,7 +41,7 @@ const char* const sample_kernel = R"(
 #include "plain/pathtracer/photon_start.cl"
 typedef struct Lit { Light light; float4 p, n; } Lit;
 typedef struct Estimate { float mean, deviation, density_error, by_place, place_deviation; } Estimate;
-// What a photon brings that starts like this, where `s` is a sample of the light.
+// The irradiance that a photon with this start brings; `s` is a sample of the light.
 float sent_by(const Scene* scene, const Emissions* from, const LightSamples* s, REAL3 p, REAL3 n) {
   __global const Light* light = scene->lights;
   if (!has_place(light)) return from->radiance.x * max(-dot3(from->d, n), 0.0f);
@@ -141,7 +140,7 @@ Row row_of(const LightDescription& light) {
   return {pack(light), [light](const dvec3& p, const dvec3& n) { return irradiance(light, p, n); }};
 }
 
-/// Light without an extent, by what is left of it at the distance and at the angle.
+/// A delta light, by the part of it that is left at the distance and at the angle.
 Row row_of(LightDescription light, double part) {
   light.falloff = {0.5, 0.25, 0.1};
   light.range = 9;
@@ -213,7 +212,7 @@ SceneDescription floor_under(LightDescription light) {
   return scene;
 }
 
-/// Of the picture's red: the mean, and its standard error.
+/// The mean of the picture's red, and its standard error.
 std::pair<double, double> mean_of(const Image& image) {
   double sum = 0, squares = 0;
   const std::size_t count = image.data.size() / 4;
@@ -245,7 +244,7 @@ TEST_CASE("the irradiance of lights with an extent is that of their closed forms
     const std::vector<Estimate> found = estimate(info, lit);
     for (std::size_t i = 0; i < found.size(); ++i) {
       INFO(i << ": " << found[i].mean << " for " << expected[i]);
-      // Of the mean of independent samples; those in a grid are nearer.
+      // The error of the mean of independent samples; samples in a grid are nearer.
       const auto error = [&](float deviation) { return 3 * double(deviation) / side + 2e-4 * expected[i]; };
       CHECK(std::abs(double(found[i].mean) - expected[i]) < error(found[i].deviation));
       CHECK(std::abs(double(found[i].by_place) - expected[i]) < error(found[i].place_deviation));

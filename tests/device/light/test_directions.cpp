@@ -10,7 +10,7 @@ using namespace sundog;
 
 namespace {
 
-// Of each number as a share of a circle the sine and cosine, of each in [-1, 1] the arc cosine.
+// Writes the sine and cosine of each number as a share of a circle, and the arc cosine of each in [-1, 1].
 const char* const text = R"(
   #include "lib/core/lanes.h"
   #include "plain/path/directions.cl"

@@ -85,7 +85,7 @@ std::vector<float4> draw(const DeviceInfo& info, const EnvironmentDescription& e
   return values;
 }
 
-/// What a ray along `d` sees.
+/// The radiance that a ray along `d` sees.
 dvec3 seen_along(const DeviceInfo& device, SceneDescription scene, const dvec3& d) {
   scene.camera.position = {0, 0, 0};
   scene.camera.target = d;

@@ -1,5 +1,5 @@
-// What fields do to light, in closed form beside a wall x = 0 and a floor: occlusion, soft shadows, glow and
-// the colours of the orbit. The scenes share their kernels: all fields have one formula, and each has all of
+// Light near fields, in closed form beside a wall x = 0 and a floor: occlusion, soft shadows, glow and the
+// colours of the orbit. The scenes share their kernels: all fields have one formula, and each has all of
 // these, some without effect.
 #include <fmt/format.h>
 

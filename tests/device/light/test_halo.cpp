@@ -52,7 +52,7 @@ struct Seen {
   int entered = 0, left = 0;
 };
 
-/// One kind of crystals, a sun without extent.
+/// One kind of crystals under a sun of size 0.
 EnvironmentDescription sky_with(u32 shape, double altitude, double index, double ratio = 1) {
   EnvironmentDescription e;
   e.type = EnvironmentType::halo;

@@ -16,7 +16,7 @@ namespace {
 
 enum class Shown { to_all, off_camera, to_none };
 
-/// What a pixel sees of a light that is straight ahead, or in the mirror that stands there.
+/// The light that a pixel sees straight ahead, or in the mirror that stands there.
 double seen(const DeviceInfo& device, const char* integrator, const std::string& light, Shown shown,
             bool mirrored) {
   const char* keys = shown == Shown::to_all       ? ""

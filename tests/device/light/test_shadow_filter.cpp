@@ -1,4 +1,4 @@
-// What transmissive things leave of a light in their shadow: closed forms.
+// The light in the shadow of transmissive solids, in closed form.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,4 +1,4 @@
-// Shafts to lights with an extent: what surfaces learn from them about shadows is what rays find.
+// Shafts to area lights: they give surfaces the shadows that rays find.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a ray sees, step by step: the attributes of triangles, fog, background and clipping in closed form.
+// A ray's view, step by step: the attributes of triangles, fog, background and clipping in closed form.
 // The scenes share their kernels: each is one triangle under one ambient and one directional light.
 #include <algorithm>
 #include <cmath>

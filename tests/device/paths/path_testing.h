@@ -1,4 +1,4 @@
-// What tests of path tracing share: a scene of one point, lamps, and means with their errors.
+// Shared by tests of path tracing: a scene of one point, lamps, and means with their errors.
 #pragma once
 #include <cmath>
 #include <numbers>

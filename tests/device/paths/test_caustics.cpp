@@ -130,10 +130,19 @@ dvec3 landed_flux(const DeviceInfo& info, const SceneDescription& scene) {
   PhotonMaps maps(compiled);
   LaunchWatch watch;
   REQUIRE(maps.prepare({device, kernels, watch}, {}, 0, 1));
-  std::vector<float4> photons(kernels.tables.photons.count);
-  device.read(kernels.tables.photons, std::span<float4>(photons));
+  const auto read = [&]<class T>(const Buffer<T>& buffer) {
+    std::vector<T> rows(buffer.count);
+    device.read(buffer, std::span<T>(rows));
+    return rows;
+  };
+  const PhotonMap map = read(kernels.tables.photon_maps).front();
+  const std::vector<float4> photons = read(kernels.tables.photons);
+  const u32 landed = read(kernels.tables.photon_cells)[map.cell_mask + 1];
   dvec3 sum(0);
-  for (std::size_t i = 1; i < photons.size(); i += 2) sum += dvec3(photons[i].x, photons[i].y, photons[i].z);
+  for (u32 i = 0; i < landed; ++i) {
+    const float4& flux = photons[map.photons + i];
+    sum += dvec3(flux.x, flux.y, flux.z);
+  }
   return sum;
 }
 

@@ -55,6 +55,29 @@ TEST_CASE("without max_depth paths may have 1024 surfaces, with it as many as it
   CHECK(depth(R"({"integrator": "path", "max_depth": 3})") == 3);
 }
 
+TEST_CASE("surfaces that light passes straight cost no depth, whichever way paths find the light") {
+  MaterialDescription half, pane;
+  half.diffuse = half.ambient = half.specular = dvec3(0);
+  half.opacity = 0.5;
+  pane = half, pane.opacity = 1, pane.transmission = dvec3(0.5);
+  for (const MaterialDescription& above : {half, pane})
+    for (const u32 strategy : {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_SURFACES})
+      for (const int depth : {1, 2, 8}) {
+        SceneDescription scene = path_scene({0, 0.5, 0.5}, {0, 0, 0});
+        scene.render.light_strategy = strategy, scene.render.max_depth = depth;
+        scenes::place(scene, PlaneShape{}, add_matte(scene, 0.8));
+        scene.materials.push_back(above);
+        for (const double height : {1.0, 2.0})
+          scenes::place(scene, PlaneShape{}, 1, glm::translate(glm::dmat4(1), {0, height, 0}));
+        scene.environment.type = EnvironmentType::gradient;
+        scene.environment.bottom = scene.environment.top = dvec3(1);
+        on_picture_devices([&](const DeviceInfo& device) {
+          INFO("strategy " << strategy << ", depth " << depth);
+          check_mean(mean_on(device, scene), 0.8 * 0.25);
+        });
+      }
+}
+
 TEST_CASE("samples brighter than max_component keep their hue") {
   on_picture_devices([&](const DeviceInfo& device) {
     for (const char* integrator : {"whitted", "path"}) {

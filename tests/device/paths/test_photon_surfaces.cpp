@@ -45,12 +45,12 @@ SceneDescription floor_behind_ball(const std::string& lamp, const std::string& f
       lamp, floor, ball));
 }
 
-/// What sends photons on, and what they land on.
+/// The materials of a ball that sends photons on, and of the floor that receives them.
 struct BallOnFloor {
   const char *ball = glass, *floor = white;
 };
 
-/// Of each row of kernels/shared/lobes.h a ball or a floor that has its light alone.
+/// A ball or a floor with a single lobe, for each row of kernels/shared/lobes.h.
 constexpr BallOnFloor with_refraction{}, with_diffuse{};
 constexpr BallOnFloor with_mirror{.ball = R"({"color": [0, 0, 0], "reflection": 0.9})"};
 constexpr BallOnFloor with_ggx{.floor = R"({"color": [0, 0, 0], "reflection": 0.8, "roughness": 0.6})"};

@@ -73,7 +73,7 @@ inline OpenPbr colored() {
   return v;
 }
 
-/// What a surface returns by sums over even directions, and by samples.
+/// The share of light that a surface returns, from its lobes in even directions.
 inline double mean_value(const std::vector<Lobe>& field) {
   double sum = 0;
   for (const Lobe& one : field) sum += one.value.x;

@@ -130,7 +130,7 @@ class Tester {
     set_base(values.base_metalness, values.specular_roughness, values.transmission_weight);
     return layers;
   }
-  /// What the textures have at the place; `coat` is a factor on the coat's weight.
+  /// Sets the textures' values at the place; `coat` is a factor on the coat's weight.
   void set_base(double metalness, double roughness, double glass = 0, double coat = 1) {
     base_ = {float(metalness), float(roughness), float(glass), float(coat)};
     tint_ = {1, 1, 1, 0};

@@ -1,5 +1,5 @@
-// What white microfacets that light meets once make of it, by quadrature in double precision: a reference of
-// its own for both integrators.
+// The albedo of white microfacets that light meets once, by quadrature in double precision: an independent
+// reference for both integrators.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ inline double fresnel_of(double cosine, double eta) {
   return (s * s + p * p) / 2;
 }
 
-/// Of light that comes at `cosine` to the normal; `eta` 0: facets are perfect mirrors. Normals of facets are
+/// The shares of light at `cosine` to the normal; `eta` 0: facets are perfect mirrors. Normals of facets are
 /// taken by the GGX distribution (Walter and others 2007, equations 35 and 36) with 1 - q^2 as its first
 /// number, which leaves nothing unbounded at flat angles.
 inline OnceLight light_met_once(double cosine, double alpha, double eta) {

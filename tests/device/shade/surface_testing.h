@@ -1,5 +1,5 @@
-// What textures make of points of surfaces, without rays, on a plane: small programs that scenes share,
-// because some drivers compile a frame's kernels for half a minute.
+// Shades textured points of a plane without rays: small programs that scenes share, because some drivers
+// compile a frame's kernels for half a minute.
 #pragma once
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace surfaces {
 
 using namespace sundog;
 
-/// What is computed: each is a program of its own, as small as can be, because some drivers compile for long.
+/// The parts of shading, each a program of its own, as small as can be: some drivers compile for long.
 enum class Part { value, relief, metal_rough, parallax, projected };
 
 /// A point of instance 0, whose outward normal is `n`, as a ray along `d` sees it, lit from `wi`.
@@ -29,7 +29,7 @@ struct Point {
   float4 n{0, 1, 0, 0};
 };
 
-/// What shading has of it; what is no matter of the part is zero.
+/// The point as shaded; values outside of the part are zero.
 struct Shaded {
   float4 value;  // of the first texture that material 0 has; relief: x: how even the normals are, y and z: an
                  // exponent of 50 and a highlight of 1 on them
@@ -150,7 +150,7 @@ inline std::string text_of(Part part) {
                      kernel_text);
 }
 
-/// The same for each test that asks.
+/// The lab of a device and part, made once for all tests.
 inline Lab& lab_of(const DeviceInfo& info, Part part, bool images, bool pages) {
   // Left to the end of the process, as drivers may be gone before.
   static auto& labs = *new std::map<std::tuple<std::string, Part, bool, bool>, std::unique_ptr<Lab>>;

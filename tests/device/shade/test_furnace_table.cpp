@@ -141,7 +141,7 @@ SceneDescription floor_of_tiles(const std::vector<Row>& all, double cosine, cons
 
 using Table = std::vector<std::array<double, roughnesses.size()>>;
 
-/// What the middles of the tiles return, a row a material; printed.
+/// The light that the middles of the tiles return, a row a material; printed.
 Table returned(const DeviceInfo& device, const std::vector<Row>& all, double cosine,
                const std::string& integrator, const json& light) {
   const Image image = scenes::render_on(device, floor_of_tiles(all, cosine, integrator, light)).image;

@@ -19,12 +19,14 @@ json material(double roughness, const json& extensions, const json& color = {0, 
           {"extensions", extensions}};
 }
 
-/// What the materials return along the normal, of a white surrounding.
+/// The light that the materials return along the normal in a white surrounding and of lights. `depth`: of their
+/// squares along z, below 0 for mirrored ones.
 std::vector<double> returned(const DeviceInfo& device, const std::vector<json>& materials,
-                             const std::string& integrator) {
+                             const std::string& integrator, double depth = 1,
+                             const json& lights = json::array()) {
   GltfTiles tiles;
   for (std::size_t i = 0; i < materials.size(); ++i)
-    tiles.add(double(i) - double(materials.size() - 1) / 2, 0, 1, materials[i]);
+    tiles.add(double(i) - double(materials.size() - 1) / 2, 0, depth, materials[i]);
   const TemporaryFolder folder;
   tiles.write(folder);
   const json document = {
@@ -36,6 +38,7 @@ std::vector<double> returned(const DeviceInfo& device, const std::vector<json>& 
       {"image", {{"width", 8 * materials.size()}, {"height", 8}}},
       {"render", {{"integrator", integrator}, {"samples", 512}, {"max_depth", 3}, {"cutoff", 0}}},
       {"environment", {{"type", "gradient"}, {"bottom", {1, 1, 1}}, {"top", {1, 1, 1}}}},
+      {"lights", lights},
       {"objects", {{{"type", "model"}, {"file", "tiles.gltf"}}}}};
   const Image image =
       scenes::render_on(device, load_scene(folder.write("tiles.json", document.dump()))).image;
@@ -90,5 +93,20 @@ TEST_CASE("the color of glTF's sheen is that of its texture") {
       if (integrator == std::string("path"))  // whitted has no layers without the extension
         CHECK(seen[3] == Approx(seen[0]).epsilon(0.02));
       CHECK(seen[3] < 0.8 * seen[1]);
+    });
+}
+
+TEST_CASE("glTF's anisotropy is mirrored with its surface") {
+  const json brushed = material(
+      0.4, {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.9}, {"anisotropyRotation", 0.7}}}});
+  for (const char* integrator : {"whitted", "path"})
+    on_picture_devices([&](const DeviceInfo& device) {
+      const auto lit = [&](double depth, double z) {
+        const json sun = {{{"type", "directional"}, {"direction", {0.5, -0.8, z}}, {"intensity", 50}}};
+        return returned(device, {brushed}, integrator, depth, sun)[0];
+      };
+      const double plain = lit(1, 0.4);
+      CHECK(lit(-1, -0.4) == Approx(plain).epsilon(0.01));
+      CHECK(std::abs(lit(-1, 0.4) / plain - 1) > 0.2);
     });
 }

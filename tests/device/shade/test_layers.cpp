@@ -91,8 +91,7 @@ TEST_CASE("what layers leave for those below is what they do not return") {
 TEST_CASE("a coat darkens a matte base as reflections within it do") {
   Tester& tester = tester_on(picture_devices().front(), true);
   const double index = 1.6, albedo = 0.5, turn_back = std::sqrt(1 - 1 / (index * index));
-  // What the inside of the coat sends back of light from all around, with all of it beyond the critical
-  // angle.
+  // The coat's internal reflectance of light from all around: all of it beyond the critical angle.
   double inner = turn_back * turn_back;
   constexpr int steps = 4000;
   for (int i = 0; i < steps; ++i) {

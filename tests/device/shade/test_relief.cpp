@@ -53,7 +53,7 @@ surfaces::Point above(double x = 0.3, double z = 0.2, double footprint = 1e-3) {
 
 dvec3 xyz(const float4& v) { return {double(v.x), double(v.y), double(v.z)}; }
 
-/// What a texture gives at (x, z), where it is the plane's emission.
+/// The texture's value at (x, z), where it is the plane's emission.
 double pattern_at(const DeviceInfo& info, const SceneDescription& scene, double x, double z,
                   double footprint = 1e-4) {
   return double(surfaces::shade(info, surfaces::Part::value, scene, above(x, z, footprint)).value.x);

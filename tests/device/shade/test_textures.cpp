@@ -142,7 +142,7 @@ double greatest_difference(const float4& a, const dvec4& b) {
                    std::abs(double(a.w) - b.w)});
 }
 
-/// The same texels in pages of at least `least` units each.
+/// Splits the scene's texels into pages of at least `least` units each.
 void cut_into_pages(u32 least, CompiledScene& flat) {
   const SharedTable<u32> texels = flat.texels0;
   const std::size_t bytes = texels.size() * sizeof(u32);

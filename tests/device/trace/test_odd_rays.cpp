@@ -21,7 +21,7 @@ const float no_number = std::nanf("");
 
 SceneDescription lone_mesh() { return scene_of(bumpy_sphere(12)); }
 
-/// Of each kind of solid one, turned meshes, a plane.
+/// A solid of each kind, turned meshes, a plane.
 SceneDescription all_shapes() {
   SceneDescription scene = scenes::line_of_sight({0, 0, 5}, {0, 0, 0});
   const int white = scenes::add_white(scene);
@@ -46,7 +46,7 @@ Ray good_ray(std::size_t i) {
 
 using Change = void (*)(Ray&);
 
-/// What makes a ray that hits nothing.
+/// Changes after which a ray hits nothing.
 const std::vector<Change> no_rays = {
     [](Ray& r) { r.ox = no_number; },
     [](Ray& r) { r.oy = no_number; },

@@ -55,7 +55,7 @@ SceneDescription small_picture() {
   return scene;
 }
 
-/// The same with a BVH a mesh: a second object far behind the camera places each.
+/// Gives each mesh its own BVH: a second object far behind the camera places it again.
 SceneDescription apart(SceneDescription scene) {
   const std::size_t count = scene.objects.size();
   for (std::size_t i = 0; i < count; ++i)

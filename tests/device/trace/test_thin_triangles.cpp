@@ -1,4 +1,4 @@
-// What is seen edge on or has no area is not hit beside itself.
+// Rays beside a triangle that is edge-on or has no area do not hit it.
 #include <algorithm>
 #include <array>
 #include <limits>

@@ -1,3 +1,4 @@
+// DriverThreads: threads that a driver still holds are counted and waited for.
 #include <atomic>
 #include <chrono>
 #include <thread>

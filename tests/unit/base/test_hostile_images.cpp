@@ -148,7 +148,7 @@ TEST_CASE("BMP and TGA files are read, the first row above, and damaged ones are
   const std::string bmp = from_hex(
       "424d46000000000000003600000028000000020000000200000001001800000000001000000000000000000000000000"
       "000000000000ff0000ffffff00000000ff00ff000000");
-  // The same from below, and as runs from above with alpha: two red pixels, then green and blue.
+  // These rows from below; then runs from above with alpha: two red pixels, green, blue.
   const std::string tga = from_hex(
       "0000020000000000000000000200020018"
       "00"

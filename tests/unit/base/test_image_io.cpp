@@ -131,7 +131,7 @@ TEST_CASE("an EXR in ACEScg says so, and is read as what was written") {
   CHECK(albedo.data[0] == Approx(0.613097).margin(2e-4));
   CHECK(albedo.data[1] == Approx(0.070194).margin(2e-4));
   CHECK(albedo.data[2] == Approx(0.020616).margin(2e-4));
-  // What says ACEScg and is sRGB's numbers: its red is outside of sRGB, and cut off.
+  // sRGB's numbers labelled ACEScg: the red is outside of sRGB, and cut off.
   std::string exr = read_file(folder / "srgb.exr");
   const std::string aces = read_file(folder / "aces.exr"), name = "chromaticities";
   const std::size_t at = exr.find(name), length = name.size() + 1 + name.size() + 1 + 4 + 32;

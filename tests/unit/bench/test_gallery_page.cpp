@@ -1,3 +1,4 @@
+// The gallery's page of HTML shows its pictures and figures, and escapes its data.
 #include <string>
 
 #include "bench/report/gallery_page.h"

@@ -30,7 +30,7 @@ TEST_CASE("pictures look the same as themselves, black and white as different as
   CHECK(perceived_difference(even(0), even(1)) > 0.9);
   CHECK(perceived_difference(even(0), even(1)) <= 1);
   CHECK(perceived_difference(even(1), even(7)) == 0);  // both white
-  // Of even pictures there are no edges: the paper's own mapping of the distance of grey 0 and 0.1 in CIELab.
+  // Even pictures have no edges: the paper's own mapping of the distance of grey 0 and 0.1 in CIELab.
   const double lightness = 116 * std::cbrt(0.1) - 16;
   const double found = perceived_difference(even(0), even(0.1));
   CHECK(found > 0.3 * std::pow(lightness / 100, 0.7));

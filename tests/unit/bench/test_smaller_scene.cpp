@@ -16,7 +16,7 @@ CompiledScene frame(u32 width, u32 height, u32 samples) {
   return scene;
 }
 
-/// What a frame takes whose pixels cost the same everywhere.
+/// The time of a frame whose pixels cost the same everywhere.
 auto costing(double per_sample) {
   return [=](const CompiledScene& scene) {
     return per_sample * scene.info.width * scene.info.height * scene.info.samples;

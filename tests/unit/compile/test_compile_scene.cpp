@@ -159,7 +159,7 @@ TEST_CASE("a thin wall has an index and no medium, and stops shadow rays where i
   CHECK((rough.materials[0].flags & frosted) == frosted);
   CHECK_FALSE((rough.materials[0].flags & MATERIAL_WALL));
   CHECK(rough.features.thin_walls);
-  // What is not there is seen straight on.
+  // Light passes straight where the surface is cut away.
   for (const char* partly : {R"(, "opacity": 0.5})", R"(, "sides": "front"})"}) {
     const CompiledScene straight = compiled(fixed + partly);
     CHECK_FALSE((straight.materials[0].flags & frosted));

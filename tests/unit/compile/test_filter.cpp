@@ -47,8 +47,7 @@ TEST_CASE(
       const double reach = radius > 0 ? radius : filters[f].radius, below = table[0];
       CHECK(filter_radius(settings) == reach);
       CHECK(table[FILTER_ABOVE + FILTER_STEPS] <= reach * 1.001);
-      // What the samples make of 1, |x|, x^2 and x^4, over what they make of 1. In its long tails the
-      // table has few steps.
+      // The filter's moments: means of |x|, x^2 and so on. In its long tails the table has few steps.
       constexpr int steps = 200'000;
       double whole = 0, expected[5] = {};
       for (int i = 0; i < steps; ++i) {

@@ -97,7 +97,7 @@ TEST_CASE("OpenPBR's values become a material's terms") {
   CHECK(ink.emission == dvec3(2));
   const MediumDescription& inside = scene.media.at(static_cast<std::size_t>(ink.medium));
   CHECK(inside.ior == 1.4);
-  // Of green more is scattered than lost: all colours lose as much more.
+  // The medium scatters more green than it loses: all colours lose as much more.
   CHECK(inside.scattering == dvec3(0.1, 0.25, 0));
   CHECK(inside.anisotropy == 0.3);
   CHECK(inside.absorption.x == Approx(std::log(2) / 2 - 0.1 + 0.25));

@@ -26,7 +26,7 @@ Bounds unit_box() {
   return box;
 }
 
-/// What corners of a cube pass, in the world.
+/// The box that a cube's corners pass through, in the world.
 Bounds passed(const Object& object, int times) {
   Bounds box = Bounds::none();
   for (int i = 0; i <= times; ++i) {

@@ -16,7 +16,7 @@ constexpr double degree = std::numbers::pi / 180;
 
 double candela(const dvec3& c) { return 20000 * (0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z); }
 
-/// Of horizontal ground.
+/// The illuminance of horizontal ground.
 double lux(const Twilight& sky) {
   constexpr int rows = 60, columns = 48;
   double sum = 0;

@@ -1,4 +1,4 @@
-// What a --device SPEC selects, on made-up rows; and which device is the default.
+// A --device SPEC selects devices, from made-up rows; and the default device.
 #include "base/error.h"
 #include "catch.h"
 #include "device/choice.h"

@@ -1,4 +1,4 @@
-// What is read of the build logs of NVIDIA's compiler, and how many threads its figures allow.
+// Reads build logs of NVIDIA's compiler, and computes how many threads their figures allow.
 #include "catch.h"
 #include "device/nvidia.h"
 

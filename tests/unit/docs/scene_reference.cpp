@@ -1,3 +1,4 @@
+// Writes the page of the scene reference from the schema, section by section.
 #include "scene_reference.h"
 
 #include <fmt/format.h>

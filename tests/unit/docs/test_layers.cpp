@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-/// What each layer may include besides itself; "shared" are the structs of kernels/shared.
+/// The layers that each layer may include besides itself; "shared" are the structs of kernels/shared.
 const std::map<std::string, Names> allowed = {
     {"base", {}},
     {"formula", {"base"}},

@@ -1,4 +1,4 @@
-// See plain_text.h.
+// Runs the translator for lanes on text, and returns its text or its error.
 #include "plain_text.h"
 
 #include "base/error.h"

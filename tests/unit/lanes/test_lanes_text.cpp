@@ -1,5 +1,4 @@
-// What is made of plain text: where masks stand, what is left to the preprocessor, and what the explanation
-// says.
+// The translator's text for lanes: where masks stand, what is left to the preprocessor, and the explanation.
 #include <set>
 #include <sstream>
 

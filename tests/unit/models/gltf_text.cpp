@@ -1,4 +1,4 @@
-// See gltf_text.h.
+// Builds glTF documents and their buffers for tests.
 #include "gltf_text.h"
 
 std::string base64(std::string_view bytes) {

@@ -33,7 +33,7 @@ Box bounds_of(const Model& model) {
   return box;
 }
 
-// What a .gltf says itself of its meshes' extents: the min and max of its POSITION accessors.
+// The bounds that a .gltf states: the min and max of its POSITION accessors.
 Box stated_bounds(const fs::path& path) {
   std::ifstream in(path);
   const auto json = nlohmann::json::parse(in);

@@ -10,7 +10,7 @@ using namespace sundog;
 
 namespace {
 
-/// Of the only object, in the file's space, triangle by triangle.
+/// The corners of the only object, in the file's space, triangle by triangle.
 std::vector<dvec3> corners_of(const Model& model) {
   REQUIRE(model.objects.size() == 1);
   std::vector<dvec3> corners;

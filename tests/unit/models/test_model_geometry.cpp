@@ -1,4 +1,4 @@
-// What all model formats share: polygons become triangles, normals are made, files may be gzipped.
+// All model formats: polygons become triangles, normals are made, files may be gzipped.
 #include <numeric>
 
 #include "catch.h"

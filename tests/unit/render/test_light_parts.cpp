@@ -1,3 +1,4 @@
+// Parts of light are fitted to the sum of their pixel.
 #include "render/film/light_parts.h"
 
 #include <cmath>

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int width = 33, height = 18;
 
-/// What a pixel's sample is, the object seen there, and the rays that it takes.
+/// A pixel's sample: its value, the object seen there, and the rays that it takes.
 struct MadeUpPixel {
   float value;
   int object;
@@ -162,7 +162,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the expected error is that of the doublings, the last counting half, and falls with the samples") {
-  // Of one brightness throughout; pixels move by m1 with their second sample, m2 with the third and fourth.
+  // All pixels are equal: each moves by m1 with its second sample, by m2 with the third and fourth.
   const float m1 = 0.2f, m2 = 0.05f;
   const auto moving = [&](int, int, u32 sample) {
     const float sums[] = {1 - m1 - m2, 1 + m1 - m2, 1 + m2, 1 + m2};

@@ -176,7 +176,7 @@ TEST_CASE("a frame of 30 ms has several tiles a device, and a second one never c
         const Outcome both = Simulation(width, height, {fast, slow}, tile_cost, dear).run();
         // A tenth of 10 ms is as long as a tile's own cost.
         CHECK(both.seconds < (seconds > 0.01 || slower < 10 ? 1.0 : 1.1) * alone);
-        // What both could do, with a part of it for tiles.
+        // The ideal time of both, with an allowance for tiles.
         if (seconds >= 0.03) CHECK(both.seconds < alone / (1 + 1 / slower) / 0.8);
         if (seconds >= 0.5) CHECK(both.seconds < alone / (1 + 1 / slower) / 0.95);
         if (seconds >= 0.03 && slower < 2)

@@ -1,4 +1,4 @@
-// What comes from a worker's process is checked where it is read.
+// Values from a worker's process are checked where they are read.
 #include "render/remote/remote_values.h"
 
 #include "base/error.h"

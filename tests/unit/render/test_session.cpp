@@ -17,7 +17,7 @@ namespace {
 
 constexpr int width = 40, height = 24;
 
-/// What a scene's pixels show: its first light's intensity, and where the pixel is; each sample the same.
+/// A pixel's value: the intensity of the scene's first light plus the pixel's index; each sample the same.
 float value_of(float light, int x, int y) { return light + static_cast<float>(y * width + x); }
 
 /// A scene worker that makes value_of() and counts what it is asked for.

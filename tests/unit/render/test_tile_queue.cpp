@@ -25,7 +25,7 @@ std::unique_ptr<TileQueue> two_parts(bool exact) {
 }
 
 /// The first device sits on its tile number `held`, from 1, while the second makes all of its part at once.
-/// What the second is given then; the queue is closed when that is nothing for a while.
+/// Returns the second's next tile; if it gets none for a while, the queue is closed.
 std::optional<TileJob> next_of_second(TileQueue& queue, int held) {
   for (int i = 1; i < held; ++i) {
     const auto job = queue.take(0);

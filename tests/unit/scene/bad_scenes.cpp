@@ -1,4 +1,4 @@
-// See bad_scenes.h.
+// Checks tables of bad scenes against the loader's errors and the schema's.
 #include "bad_scenes.h"
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// Loads scenes from text in a folder of their own.
 #include "scene_text.h"
 
 #include <fmt/format.h>

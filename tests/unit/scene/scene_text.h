@@ -8,8 +8,7 @@
 #include "scene/description.h"
 #include "temporary_folder.h"
 
-/// What load_scene() makes of this text; beside it lies tetra.ply, a tetrahedron without normals or
-/// materials.
+/// Loads this text as a scene file; beside it lies tetra.ply, a tetrahedron without normals or materials.
 sundog::SceneDescription load_scene_text(std::string_view text,
                                          const std::vector<std::string>& overrides = {});
 

@@ -30,7 +30,7 @@ struct Folders : TemporaryFolder {
   }
 };
 
-/// What loading says, with or without leave.
+/// The error of loading, with or without leave; "": none.
 std::string error_of(const fs::path& file, bool outside) {
   try {
     load_scene(file, {}, {.outside_files = outside});

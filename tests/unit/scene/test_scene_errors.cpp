@@ -1,4 +1,4 @@
-// What a scene file may not hold: each error names the place, what was wanted and what was found.
+// Errors in scene files: each names the place, what was wanted and what was found.
 #include <string>
 #include <vector>
 

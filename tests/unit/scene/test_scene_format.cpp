@@ -1,4 +1,4 @@
-// What a scene file says is what the SceneDescription holds.
+// The SceneDescription holds the values of the scene file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -219,6 +219,16 @@ TEST_CASE("a checkerboard's odd cells hold their own colour, whatever the even o
       material(R"({"color": {"checker": [[0, 0, 0], [1, 1, 1]]}, "ambient": {"color": [1, 0, 0]}})");
   CHECK(own.ambient == dvec3(0.1, 0, 0));
   CHECK(own.checker_ambient == dvec3(0.1, 0, 0));
+}
+
+TEST_CASE("a surface's colour as bytes is a warning") {
+  const auto warnings = [](const char* color) {
+    return load_scene_text(scene_with(R"("materials": {"m": {"color": )" + std::string(color) + "}}"))
+        .warnings;
+  };
+  CHECK(warnings("[1, 0.5, 2]").empty());
+  REQUIRE(warnings("[0, 128, 255]").size() == 1);
+  CHECK(warnings("[0, 128, 255]")[0].find("/materials/m/color: ") != std::string::npos);
 }
 
 TEST_CASE("a dielectric has no local terms and clear rays unless it says so") {

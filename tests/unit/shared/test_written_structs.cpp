@@ -73,7 +73,7 @@ std::vector<Parameter> by_value(const Function& function, const Names& structs) 
   return found;
 }
 
-/// What all the project's functions of a name have as parameters.
+/// The parameters of all the project's functions of a name.
 using Signatures = std::map<std::string, std::string>;
 
 void add_signatures(const std::string& code, Signatures& known) {

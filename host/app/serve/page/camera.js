@@ -65,7 +65,7 @@ export function turnAbout(camera, axis, degrees, about) {
           up: tidy(turn(camera.up, axis, degrees))};
 }
 
-/** What a pixel shows, in world units at that depth. */
+/** A pixel's width in world units at that depth. */
 const pixelAt = (camera, height, depth) =>
   camera.orthographic > 0 ? camera.orthographic / height : (2 * depth * Math.tan((camera.fov * Math.PI) / 360)) / height;
 

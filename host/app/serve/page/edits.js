@@ -73,14 +73,14 @@ export class Edits {
     if (answers) this.sent = null;
     this.rebase(before);
   }
-  /** What was sent is refused; what it was. */
+  /** Takes back the sent edit, which the server refused, and returns it. */
   refuse() {
     const sent = this.sent, before = (sent.changes ?? []).reduce(apply, this.confirmed);
     this.sent = null;
     this.rebase(before);
     return sent;
   }
-  /** What waits and means another place by now is dropped. */
+  /** Drops waiting edits whose place in the document has changed. */
   rebase(before) {
     this.waiting = this.waiting.filter(({change}) => !change || leadsToSame(before, this.confirmed, change.at));
   }

@@ -27,7 +27,7 @@ function sliderRange(min, max, value) {
   return null;
 }
 
-/** What is typed into a field: the person's until it is left, or an undo changes the scene. */
+/** The text typed into a field, kept until the field loses focus or an undo changes the scene. */
 function useTyped() {
   const [text, setText] = useState(null);
   const scenes = useStore(store, (s) => s.scenes);

@@ -92,7 +92,7 @@ function Part({schema, at, value, label, help, required, onReset}) {
   return html`<${Json} at=${at} value=${value} label=${label} help=${help} onReset=${onReset} />`;
 }
 
-/** What no widget is made for: its text. */
+/** A value without a widget of its own, as JSON text. */
 function Json({at, value, label, help, onReset}) {
   const send = (event) => {
     try {

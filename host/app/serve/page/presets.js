@@ -6,7 +6,7 @@ import {join} from './pointer.js';
 
 const glossy = (coefficient, exponent) => ({specular: {coefficient, exponent}});
 
-/** Of materials. Those of Phong's model keep the colour that there is; the others are the scene's own presets. */
+/** Presets of materials. Phong's keep the material's colour; the others are the scene's own presets. */
 const painted = {
   matte: {ambient: 0.2, diffuse: 0.9},
   plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
@@ -14,7 +14,7 @@ const painted = {
 };
 export const materials = () => ({...painted, ...Object.fromEntries(presetNames('material').map((preset) => [preset, {preset}]))});
 
-/** Of all lights. */
+/** Presets that replace all lights. */
 export const lights = {
   'Lamp from the left': [{type: 'ambient', intensity: 0.6}, {type: 'point', position: [-3, 4, 3]}],
   'Key, fill and rim': [{type: 'ambient', intensity: 0.4}, {type: 'directional', direction: [-0.8, -1, -0.6], color: [1, 0.95, 0.86], intensity: 0.9},
@@ -23,7 +23,7 @@ export const lights = {
   'Soft window': [{type: 'ambient', intensity: 0.5}, {type: 'rectangle', position: [-3, 3, 2], direction: [1, -1, -0.7], size: [2, 2], intensity: 6, samples: 4}],
 };
 
-/** Of the render's settings: only these keys are set. */
+/** Presets of the render's settings; they set only these keys. */
 export const qualities = {
   Draft: {samples: 1, max_depth: 3},
   Good: {samples: 4, max_depth: 6},

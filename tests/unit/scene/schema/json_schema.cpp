@@ -1,3 +1,4 @@
+// Validates JSON against the keywords that the scenes' schema uses, and fills in defaults.
 #include "json_schema.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Puts types, ranges and defaults of the schema into words.
 #include "schema_words.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// What a choice by "type" is called, and where it leads.
+/// The name of each choice by "type", with its link.
 const std::map<std::string, std::string>& choices() {
   static const std::map<std::string, std::string> all{{"light", "[light](#lights)"},
                                                       {"texture", "[texture](#textures)"},

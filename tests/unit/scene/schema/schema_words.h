@@ -1,4 +1,4 @@
-// What docs/reference/scene-reference.md says of the schema's values.
+// Puts the schema's values into words, for docs/reference/scene-reference.md.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

@@ -22,7 +22,7 @@ export function viewsOf(document) {
   return frames.map((frame) => viewAt(document, frame));
 }
 
-/** What the frame shows; a part without a track stands still. */
+/** The camera's view in a frame; a part without a track stands still. */
 function viewAt(document, frame) {
   const view = {frame};
   for (const part of parts) {
