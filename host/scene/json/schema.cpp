@@ -7,6 +7,7 @@
 #include <deque>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 namespace sundog {
 namespace {
@@ -56,6 +57,8 @@ class Schema {
       for (const json& name : node["enum"]) rule.names.emplace_back(name.get_ref<const std::string&>());
     if (node.contains("const")) rule.names.emplace_back(node["const"].get_ref<const std::string&>());
     if (!rule.names.empty()) rule.type = Type::string;
+    if (node.contains("not") && node["not"].contains("enum")) rule.barred = &node["not"]["enum"];
+    if (node.contains("pattern")) rule.pattern = node["pattern"].get_ref<const std::string&>();
     if (node.contains("anyOf") && !node.contains("properties"))
       for (const json& option : node["anyOf"]) rule.options.push_back(compile(option));
     rule.range = range_of(node);
@@ -131,6 +134,12 @@ const SchemaRule* schema_rule(std::string_view kind) {
   return schema.find(kind);
 }
 
+bool SchemaRule::bars(const json& value) const {
+  if (const auto* text = value.get_ptr<const std::string*>(); text && !pattern.empty())
+    return !std::regex_search(*text, std::regex(pattern.begin(), pattern.end()));
+  return barred && std::find(barred->begin(), barred->end(), value) != barred->end();
+}
+
 const SchemaRule* SchemaRule::as(Type wanted) const {
   if (type == wanted || (wanted == Type::number && type == Type::integer)) return this;
   for (const SchemaRule* option : options)
@@ -152,7 +161,8 @@ std::string SchemaRule::describe(bool limits) const {
   std::string all;
   switch (type) {
     case Type::any:
-      for (const SchemaRule* option : options) all += (all.empty() ? "" : " or ") + option->describe(limits);
+      for (const SchemaRule* option : options)
+        all += (all.empty() ? "" : option == options.back() ? " or " : ", ") + option->describe(limits);
       return all.empty() ? "a value" : all;
     case Type::object:
       return "an object";

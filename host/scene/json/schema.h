@@ -34,6 +34,8 @@ struct SchemaRule {
   Type type = Type::any;
   std::string_view title;                      // completes "wanted "; empty: follows from the rest
   Range range;                                 // of a number
+  const nlohmann::json* barred = nullptr;      // values that are refused
+  std::string_view pattern;                    // of a string; bounded, for std::regex recurs
   std::vector<std::string_view> names;         // of a string; empty: any
   unsigned least_items = 0, most_items = ~0u;  // of an array
   const SchemaRule* items = nullptr;           // of an array
@@ -51,6 +53,7 @@ struct SchemaRule {
   std::vector<KeyPair> needs;            // the first key needs the second
   std::vector<std::string_view> one_of;  // keys of which an object has just one, if each way is one key
 
+  bool bars(const nlohmann::json& value) const;
   /// This rule or its first option for values of that type; nullptr: none.
   const SchemaRule* as(Type wanted) const;
   /// Completes "wanted "; with or without a number's limits.

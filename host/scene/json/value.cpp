@@ -84,7 +84,11 @@ void JsonValue::wanted(std::string_view what) const {
 }
 
 JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const {
-  return {value, *context_, join_pointer(pointer_, key), rule};
+  const JsonValue result(value, *context_, join_pointer(pointer_, key), rule);
+  if (rule && rule->bars(value))
+    result.fail(fmt::format("wanted {}, found {}", rule->describe(),
+                            value.is_string() ? describe(value) : value.dump()));
+  return result;
 }
 
 const SchemaRule& JsonValue::rule_of(SchemaRule::Type type) const {
@@ -158,11 +162,17 @@ glm::dvec3 JsonValue::direction() const {
   return glm::normalize(v);
 }
 
+void JsonValue::wanted_type(std::string_view plain) const {
+  wanted(rule_ && !rule_->options.empty() ? rule_->describe() : plain);
+}
+
 JsonItems JsonValue::items(std::string_view what) const {
   const SchemaRule& rule = rule_of(SchemaRule::Type::array);
-  if (!json_->is_array() || json_->size() < rule.least_items || json_->size() > rule.most_items)
-    wanted(fmt::format("an array of {}{}", rule.count(), what));
-  return JsonItems(*this);
+  if (json_->is_array() && json_->size() >= rule.least_items && json_->size() <= rule.most_items)
+    return JsonItems(*this);
+  const std::string plain = fmt::format("an array of {}{}", rule.count(), what);
+  if (json_->is_array()) wanted(plain);
+  wanted_type(plain);
 }
 
 std::size_t JsonItems::size() const { return array_.json().size(); }
@@ -197,7 +207,7 @@ std::string JsonValue::type() const {
 
 JsonObject::JsonObject(const JsonValue& value, std::string_view kind)
     : value_(value), kind_(kind), rule_(schema_rule(kind)) {
-  if (!value.json().is_object()) value.wanted("an object");
+  if (!value.json().is_object()) value.wanted_type("an object");
   if (rule_) {
     asked_.reserve(rule_->keys.size());
     check_together();
@@ -252,7 +262,8 @@ void JsonObject::fail_missing(std::string_view key, std::string_view beside, std
   const SchemaRule::Key* known = knows(key) ? &rule_->keys.at(key) : nullptr;
   std::string wanted(what);
   if (wanted.empty()) wanted = known->rule->describe(false);
-  if (what.empty() && !known->description.empty()) wanted += ": " + brief(known->description);
+  if (what.empty() && !known->description.empty() && brief(known->description) != wanted)
+    wanted += ": " + brief(known->description);
   value_.fail(fmt::format("missing key \"{}\"{}: wanted {}{}", key,
                           beside.empty() ? "" : fmt::format(" beside \"{}\"", beside), wanted,
                           near ? fmt::format(", found {}", json(*near).dump()) : std::string()));

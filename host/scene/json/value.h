@@ -130,6 +130,8 @@ class JsonValue {
   JsonValue child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const;
   /// The rule for a value of that type; one without limits where the schema has none.
   const SchemaRule& rule_of(SchemaRule::Type type) const;
+  /// Fails by the schema's words where the value may have several types, otherwise by `plain`.
+  [[noreturn]] void wanted_type(std::string_view plain) const;
   void read_numbers(double* to, std::size_t count) const;
   template <glm::length_t N>
   glm::vec<N, double> vector() const {

@@ -21,9 +21,6 @@ Pattern scale(const Pattern& pattern, double coefficient) {
 
 dvec3 read_absorption(const JsonValue& value) {
   if (value.json().is_array()) return value.vec3();
-  if (!value.json().is_object())
-    value.wanted(
-        "absorption per unit of length [r, g, b] or {\"color\": transmittance, \"distance\": its length}");
   return value.object("absorption", [](JsonObject& object) {
     // + 0.0 turns the -0 of a colour of 1 into 0
     return -glm::log(object.at("color").vec3()) / object.at("distance").number() + 0.0;
@@ -100,8 +97,6 @@ Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRu
   refuse_texture_object(value);
   if (value.json().is_number()) return scale(rules.color, value.number());
   if (value.json().is_string()) return scale(read_plain_color(value, textures), rules.coefficient);
-  if (!value.json().is_object())
-    value.wanted("a coefficient, a texture's name or {\"color\": [r, g, b], \"coefficient\": number}");
   return value.object(rules.kind, [&](JsonObject& object) {
     Pattern result = rules.color;
     if (const auto own = object.find("color")) result = read_plain_color(*own, textures);
@@ -123,9 +118,6 @@ Pattern read_color(JsonObject& object, MaterialDescription& material, TextureLib
           "makes a surface that returns many times the light it gets: colours are linear, from 0 to 1");
     return plain;
   }
-  if (!color->json().is_object())
-    color->wanted(
-        "a colour [r, g, b], a texture's name or {\"checker\": [colour, colour], \"size\": number}");
   refuse_texture_object(*color);
   color->object("checker", [&](JsonObject& checker) {
     const auto colors = checker.at("checker").items("colours");
@@ -197,7 +189,6 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
 int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
                 MaterialDescription& material, const char* key, double& number) {
   if (value.json().is_string()) return textures.use(value, use);
-  if (!value.json().is_object()) value.wanted("the name of a texture, or an object");
   return value.object(kind, [&](JsonObject& object) {
     object.read(key, number);
     if (object.knows("edge"))
@@ -254,7 +245,7 @@ void read_surface(JsonObject& object, MaterialDescription& material, TextureLibr
     material.textures.occlusion = textures.use(*occlusion, TextureUse::number);
   std::string sides, shadow;
   object.read("sides", sides, "shadow", shadow, "vertex_color", material.vertex_color);
-  object.read("shadow_catcher", material.shadow_catcher);
+  object.read("shadow_catcher", material.shadow_catcher, "group", material.group);
   if (material.shadow_catcher && (material.medium >= 0 || material.wall_ior > 0))
     object.at("shadow_catcher").fail("a material with a \"medium\" or an \"ior\" catches no shadows");
   material.one_sided = sides == "front";
@@ -316,7 +307,6 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.transmission = transmission.even, material.textures.transmission = transmission.texture;
     read_interior(object, material, medium_names, media);
     read_opacity(object, material, textures);
-    material.group = read_group(object);
     read_surface(object, material, textures);
     return material;
   });

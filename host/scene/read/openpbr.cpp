@@ -47,7 +47,6 @@ MaterialDescription read_openpbr(const JsonValue& value, std::string name,
       material.medium = static_cast<int>(media.size());
       media.push_back(inside);
     }
-    material.group = read_group(object);
     read_surface(object, material, textures);
     return material;
   });

@@ -34,8 +34,6 @@ LightDescription read_light(const JsonValue& value, double unit);
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);
-/// The name of a group of lights, empty without one. Throws SceneError for one that is no name of an AOV.
-std::string read_group(JsonObject& object);
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);

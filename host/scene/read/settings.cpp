@@ -32,8 +32,6 @@ Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
     if (!focal_length) f_number->fail("wanted a camera with a \"focal_length\", or the lens's \"radius\"");
     lens.radius = *focal_length / (2 * f_number->number());
   }
-  if (lens.blades == 1 || lens.blades == 2)
-    object.find("blades")->wanted("3 or more blades, or 0 for a round aperture");
   return lens;
 }
 
@@ -57,8 +55,6 @@ View read_view(JsonObject& object, const Camera& camera) {
 dvec3 read_falloff(JsonObject& object) {
   dvec3 falloff(0);
   object.read("constant", falloff.x, "linear", falloff.y, "quadratic", falloff.z);
-  if (falloff == dvec3(0))
-    object.value().fail("wanted a falloff that is not 0 everywhere: it divides the light");
   return falloff;
 }
 
@@ -195,12 +191,10 @@ ImageSettings read_image(const JsonValue& value) {
     if (!background) return image;
     if (background->json().is_array()) {
       image.background_bottom = image.background_top = background->vec3();
-    } else if (background->json().is_object()) {
+    } else {
       background->object("gradient", [&](JsonObject& gradient) {
         gradient.read("bottom", image.background_bottom, "top", image.background_top);
       });
-    } else {
-      background->wanted("a colour [r, g, b] or {\"bottom\": colour, \"top\": colour}");
     }
     return image;
   });
@@ -256,8 +250,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
     EnvironmentDescription e;
     e.type = *value_named(environment_types, type);
     object.read("color", e.color, "intensity", e.intensity, "rotate", e.rotate, "samples", e.samples);
-    object.read("visible", e.visible, "hidden", e.hidden);
-    e.group = read_group(object);
+    object.read("visible", e.visible, "hidden", e.hidden, "group", e.group);
     if (const auto up = object.find("up")) e.up = up->direction();
     if (e.type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file"));
@@ -274,28 +267,14 @@ EnvironmentDescription read_environment(const JsonValue& value,
   });
 }
 
-std::string read_group(JsonObject& object) {
-  const auto group = object.find("group");
-  if (!group) return "";
-  const std::string name = group->text();
-  const bool plain = std::ranges::all_of(name, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  if (!plain || name == "rest" || name == "groups" || name == "parts")
-    group->wanted("a name of letters, digits, - and _, other than rest, groups and parts");
-  return name;
-}
-
 LightDescription read_light(const JsonValue& value, double unit) {
   const std::string type = value.type();
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
     object.check("name");  // for pointers
-    if (object.knows("group")) light.group = read_group(object);
     const auto read = [&](std::string_view key, auto& to) {
-      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff" && key != "group")
-        object.read(key, to);
+      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
     };
 #define SUNDOG_READ_KEY(of, name, ...) read(#name, light.name);
     LIGHT_KEYS(SUNDOG_READ_KEY)

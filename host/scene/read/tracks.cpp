@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view numbers_text = "a number or an array of numbers";
-
 bool is_numeric(const json& value) {
   return value.is_number() || (value.is_array() && !value.empty() &&
                                std::ranges::all_of(value, [](const json& item) { return item.is_number(); }));
@@ -22,7 +20,6 @@ bool is_numeric(const json& value) {
 
 std::vector<double> numbers(const JsonValue& value) {
   if (value.json().is_number()) return {value.number()};
-  if (!value.json().is_array() || value.json().empty()) value.wanted(numbers_text);
   std::vector<double> result;
   for (const JsonValue& item : value.items("numbers")) result.push_back(item.number());
   return result;

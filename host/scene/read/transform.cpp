@@ -26,12 +26,6 @@ dmat4 read_rotate(JsonObject& object) {
   return glm::rotate(dmat4(1), glm::radians(degrees), axis);
 }
 
-dmat4 read_scale(const JsonValue& value) {
-  const dvec3 factors = value.vec3();
-  if (factors.x * factors.y * factors.z == 0) value.fail("singular transform: wanted factors that are not 0");
-  return glm::scale(dmat4(1), factors);
-}
-
 dmat4 read_matrix(const JsonValue& value) {
   const auto items = value.items("numbers, row by row");
   dmat4 matrix;
@@ -49,7 +43,7 @@ dmat4 read_step(const JsonValue& step) {
     const JsonValue value = *object.find(kind);
     if (kind == "translate") return glm::translate(dmat4(1), value.vec3());
     if (kind == "rotate") return value.object("rotate", read_rotate);
-    return kind == "scale" ? read_scale(value) : read_matrix(value);
+    return kind == "scale" ? glm::scale(dmat4(1), value.vec3()) : read_matrix(value);
   });
   check_transform(matrix, step);
   return matrix;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -117,6 +118,10 @@ class Validator {
     } else if (keyword == "minLength") {
       require(!value.is_string() || value.get<std::string>().size() >= rule.get<std::size_t>(), place,
               keyword);
+    } else if (keyword == "pattern") {
+      require(!value.is_string() ||
+                  std::regex_search(value.get<std::string>(), std::regex(rule.get<std::string>())),
+              place, keyword);
     } else {
       return false;
     }

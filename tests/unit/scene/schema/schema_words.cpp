@@ -31,6 +31,7 @@ const std::map<std::string, std::string>& choices() {
 /// Values that have a name of their own.
 const std::map<std::string, std::string>& value_names() {
   static const std::map<std::string, std::string> all{{"vec3", "[x, y, z]"},
+                                                      {"direction", "[x, y, z]"},
                                                       {"color", "colour"},
                                                       {"share_color", "colour, each 0 to 1"},
                                                       {"formula_text", "formula text"}};
