@@ -141,8 +141,8 @@ static inline void load_rows(__global const float4* rows, REAL3* xyz, REAL* w) {
   __global const float* from = (__global const float*)rows;
   const REAL a = LOAD_LANES(from), b = LOAD_LANES(from + LANES), c = LOAD_LANES(from + 2 * LANES),
              d = LOAD_LANES(from + 3 * LANES);
-  const REAL xz_low = (REAL)(a.even, b.even), xz_high = (REAL)(c.even, d.even),
-             yw_low = (REAL)(a.odd, b.odd), yw_high = (REAL)(c.odd, d.odd);
+  const REAL xz_low = (REAL)(a.even, b.even), xz_high = (REAL)(c.even, d.even), yw_low = (REAL)(a.odd, b.odd),
+             yw_high = (REAL)(c.odd, d.odd);
   *xyz = real3((REAL)(xz_low.even, xz_high.even), (REAL)(yw_low.even, yw_high.even),
                (REAL)(xz_low.odd, xz_high.odd));
   *w = (REAL)(yw_low.odd, yw_high.odd);

@@ -19,8 +19,8 @@ json material(double roughness, const json& extensions, const json& color = {0, 
           {"extensions", extensions}};
 }
 
-/// The light that the materials return along the normal in a white surrounding and of lights. `depth`: of their
-/// squares along z, below 0 for mirrored ones.
+/// The light that the materials return along the normal in a white surrounding and of lights. `depth`: of
+/// their squares along z, below 0 for mirrored ones.
 std::vector<double> returned(const DeviceInfo& device, const std::vector<json>& materials,
                              const std::string& integrator, double depth = 1,
                              const json& lights = json::array()) {
