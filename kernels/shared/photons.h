@@ -33,10 +33,12 @@ SUNDOG_SHARED_SIZE(PhotonTarget, 32)
 
 // 32 bytes: one map. Its photons are hashed by cubes with edges of two radii; those of a cube are contiguous
 // in the table `photons`, in order of their numbers, perhaps mixed with those of colliding cubes: first the
-// places of all, then their light. photon_cells holds the start of each cell's photons, and the end. After
-// them the table has the map's beams, ways of photons through media that scatter, three rows each: where a
-// beam begins and its length; its direction, and its slice of time + PHOTON_SLICES times how often the photon
-// had been sent on; its flux, and the light that the medium scatters of it.
+// places of all, then their light. photon_cells holds the start of each cell's photons, and the end. Cubes in
+// a row along x have cells that follow each other; for rows that go around, the first cell's photons stand a
+// second time after those of the last. After the light the table has the map's beams, ways of photons through
+// media that scatter, three rows each: where a beam begins and its length; its direction, and its slice of
+// time + PHOTON_SLICES times how often the photon had been sent on; its flux, and the light that the medium
+// scatters of it.
 typedef struct PhotonMap {
   u32 number;
   u32 first_cell;      // in photon_cells
