@@ -55,7 +55,7 @@ template <class T>
 Cell told(const std::optional<T>& value) {
   return value ? Cell(static_cast<double>(*value)) : Cell();
 }
-/// The same of what is 0 where it is not known.
+/// Nothing for 0, which stands for an unknown value.
 template <class T>
 Cell told(T value) {
   return value > 0 ? Cell(static_cast<double>(value)) : Cell();

@@ -73,7 +73,7 @@ struct EmbreePeer::State {
 
   RTCScene new_scene(const EmbreeOptions& options) const {
     RTCScene made = rtcNewScene(device);
-    rtcSetSceneBuildQuality(made, options.high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(made, options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     return made;
   }
@@ -103,7 +103,7 @@ struct EmbreePeer::State {
 
 EmbreePeer::EmbreePeer(const SceneDescription& scene, const EmbreeOptions& options)
     : state_(std::make_unique<State>()) {
-  const RTCBuildQuality quality = options.high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+  const RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
   State& state = *state_;
   std::vector<Ball> balls;
   std::vector<u32> placed;  // the objects that are meshes

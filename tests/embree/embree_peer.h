@@ -19,8 +19,7 @@ struct EmbreeHit {
 enum class EmbreeWidth { single, packet16 };
 
 struct EmbreeOptions {
-  bool robust = false;        // watertight tests
-  bool high_quality = false;  // spatial splits; else medium
+  bool robust = false;  // watertight tests
 };
 
 class EmbreePeer {

@@ -80,12 +80,20 @@ void check_options(const NamedCommand& command, int argc, const char* const* arg
     const std::string word = argv[i];
     if (word == "--") return;
     if (word.size() < 2 || word[0] != '-') continue;
+    // An empty text is what "$SAMPLES" is where no such variable is set.
+    const auto refuse_empty = [&](std::string_view name, const OptionWords& option) {
+      throw UsageError(fmt::format("{} wants a value ({}), found an empty text {}", name, option.type,
+                                   see_help(*command.words)));
+    };
+    if (word.starts_with("--") && word.ends_with('=') && word.find('=') == word.size() - 1) {
+      const std::string name = word.substr(0, word.size() - 1);
+      const OptionWords* option = find_option(*command.words, name);
+      if (option && option->takes_value) refuse_empty(name, *option);
+    }
     const OptionWords* option = option_without_value(*command.words, word);
     if (!option || ++i == argc) continue;
     const std::string next = argv[i];
-    if (next.empty())  // as "$SAMPLES" is where no such variable is set
-      throw UsageError(fmt::format("{} wants a value ({}), found an empty text {}", word, option->type,
-                                   see_help(*command.words)));
+    if (next.empty()) refuse_empty(word, *option);
     if (next.size() > 1 && next[0] == '-' && find_option(*command.words, next))
       throw UsageError(fmt::format("{} wants a value ({}), found the option {} {}", word, option->type, next,
                                    see_help(*command.words)));

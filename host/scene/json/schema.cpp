@@ -136,7 +136,7 @@ const SchemaRule* schema_rule(std::string_view kind) {
 
 bool SchemaRule::bars(const json& value) const {
   if (const auto* text = value.get_ptr<const std::string*>(); text && !pattern.empty())
-    return !std::regex_search(*text, std::regex(pattern.begin(), pattern.end()));
+    if (!std::regex_search(*text, std::regex(pattern.begin(), pattern.end()))) return true;
   return barred && std::find(barred->begin(), barred->end(), value) != barred->end();
 }
 

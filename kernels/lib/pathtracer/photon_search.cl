@@ -27,6 +27,7 @@ typedef struct PhotonSearches {
 #endif
   MASK slice;    // of time
   MASK deepest;  // a photon was sent on at most so often
+  UINTS turn;    // by which some of many photons are chosen
   REAL area;     // of each surface that photons are found on
 } PhotonSearches;
 
@@ -86,6 +87,8 @@ static inline PhotonSearches search_photons(const Scene* scene, const LaneSample
 #endif
   searches.slice = photon_slices_of(rays);
   searches.deepest = (MASK)((int)scene->info->max_depth) - depth;
+  const UINTS sample = AS_UINTS(at->sample * 64 + depth);
+  searches.turn = hash_lanes(AS_UINTS(at->x) + hash_lanes(AS_UINTS(at->y) + hash_lanes(sample)));
   return searches;
 }
 
@@ -98,12 +101,6 @@ static inline int3 cube_of_row(const PhotonSearches* searches, u32 i, u32 row) {
   const int3 low = photon_cube(get3(&searches->p, i) - map->radius, map->inverse_edge);
 #endif
   return low + (int3)(0, (int)(row & 1u), (int)(row >> 1));
-}
-
-// Neighbours choose other photons of many.
-static inline u32 hash_point(float3 p) {
-  const uint3 bits = as_uint3(p);
-  return hash_u32(bits.x + hash_u32(bits.y + hash_u32(bits.z)));
 }
 
 // Goes to the next row of cubes. False: there is none.
@@ -119,7 +116,7 @@ static inline bool enter_next_row(const Scene* scene, PhotonSearches* searches, 
     search->at = begins[cell];
     search->end = begins[cell + 1u + (across & 1u)];
     search->stride = (search->end - search->at + PHOTONS_A_ROW - 1u) / PHOTONS_A_ROW;
-    if (search->stride > 1u) search->at += hash_point(get3(&searches->p, i)) % search->stride;
+    if (search->stride > 1u) search->at += (u32)MASK_LANE(searches->turn, i) % search->stride;
     if (search->at < search->end) return true;
   }
   search->row = PHOTON_ROWS;

@@ -134,6 +134,8 @@ static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
   return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
 }
 
+#define MOST_SURFACES 65537  // on any path, with those that it passes straight
+
 // The depth that max_depth limits. What shadow rays pass at no cost has none here either: else the picture
 // would depend on which of the two finds a light.
 static inline int limited_depth(const PathState* path) {

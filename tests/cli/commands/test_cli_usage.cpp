@@ -94,6 +94,7 @@ TEST_CASE("a bad command line is one line on stderr and exit status 2") {
        "the setting /objects/7/radius=1 leads nowhere"},
       {{"render", scene, "--stats", "-o", out}, "--stats wants a value (FILE), found the option -o"},
       {{"render", scene, "-o", out, "--samples", ""}, "--samples wants a value (N), found an empty text"},
+      {{"render", scene, "--samples=", "-o", out}, "--samples wants a value (N), found an empty text"},
       {{"render", scene, "-o", out, "--size", "--quiet"},
        "--size wants a value (WxH), found the option --quiet"},
       {{"render", scene, "-o", out, "--device", "--isolate"},

@@ -32,8 +32,7 @@ CommandResult rendered(const CliFolder& folder, int panes, const std::vector<std
 
 TEST_CASE(
     "camera rays of whitted that max_depth ends behind panes are reported, and none with a greater one; "
-    "paths "
-    "see through") {
+    "paths see through") {
   const CliFolder folder;
   for (const char* integrator : {"whitted", "path"}) {
     INFO(integrator);
@@ -47,6 +46,23 @@ TEST_CASE(
           (integrator == std::string("whitted")));
     CHECK(with("20").err.empty());
   }
+}
+
+TEST_CASE("paths that max_depth ends inside glass are counted, whether shadow rays pass it or not") {
+  const CliFolder folder;
+  const auto ended = [&](const char* shadow) {
+    nlohmann::json scene = nlohmann::json::parse(least_scene);
+    scene["materials"]["glass"] = {{"type", "dielectric"}, {"ior", 1.5}, {"shadow", shadow}};
+    scene["objects"].push_back(
+        {{"type", "sphere"}, {"radius", 1}, {"center", {0, 0.5, 2}}, {"material", "glass"}});
+    const std::string file = folder.write("glass.json", scene.dump()).string(), out = folder.file("a.pfm");
+    const CommandResult result = run_sundog({"render", file, "-o", out, "--integrator", "path", "--max-depth",
+                                             "1", "--stats", folder.file("a.json")});
+    REQUIRE(result.status == 0);
+    return nlohmann::json::parse(read_file(folder / "a.json"))["counters"]["depth_limit"].get<int>();
+  };
+  CHECK(ended("opaque") > 0);
+  CHECK(ended("filter") == ended("opaque"));
 }
 
 TEST_CASE("--seed gives a picture noise of its own, --max-depth any depth to paths alone") {

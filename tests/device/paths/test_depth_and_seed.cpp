@@ -1,4 +1,7 @@
 // How deep paths go, the seed of their numbers, and the limit of samples.
+#include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
+
 #include "path_testing.h"
 #include "same_bits.h"
 #include "scene/integrators.h"
