@@ -112,18 +112,17 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
     if (!((passes && straight) || (filtered && path->scatterings > 0)))
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
-  const bool was_straight = path->straight;
-  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || straight);
   bool going = cut_out;
   if (some && !cut_out) going = survives(scene, path, dimension);
   if (!cut_out) ++path->depth;
   if (HAS_SHADOW_FILTERS && filtered && straight && !cut_out) ++path->passed;
-  const bool ends = limited_depth(path) > (int)scene->info->max_depth + 1 || path->depth > MOST_SURFACES;
-  if (HAS_SHADOW_FILTERS && going && ends) {
+  if (HAS_SHADOW_FILTERS && going &&
+      (limited_depth(path) > (int)scene->info->max_depth + 1 || path->depth > MOST_SURFACES)) {
     count(counts, COUNT_DEPTH_LIMIT);
-    if (was_straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
+    if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
     going = false;
   }
+  path->straight = path->straight && passes && (HAS_CLEAR_GLASS || straight);
   if (!going) return false;
   if (below)
     count(counts, COUNT_REFRACTION);
