@@ -85,7 +85,7 @@ void check_options(const NamedCommand& command, int argc, const char* const* arg
       throw UsageError(fmt::format("{} wants a value ({}), found an empty text {}", name, option.type,
                                    see_help(*command.words)));
     };
-    if (word.starts_with("--") && word.ends_with('=') && word.find('=') == word.size() - 1) {
+    if (word.starts_with("--") && word.find('=') == word.size() - 1) {
       const std::string name = word.substr(0, word.size() - 1);
       const OptionWords* option = find_option(*command.words, name);
       if (option && option->takes_value) refuse_empty(name, *option);

@@ -41,8 +41,8 @@ std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::v
     if (cell != NO_PHOTON) ++begins[(cell & mask) + 1];
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   std::vector<u32> next(begins.begin(), begins.end() - 1);  // of each cell
-  begins.push_back(begins.back() + begins[1]);
-  const std::size_t count = begins.back();
+  const std::size_t landings = begins.back(), again = begins[1], count = landings + again;
+  begins.push_back(static_cast<u32>(count));
   std::vector<float4> sorted(2 * count);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i] == NO_PHOTON) continue;
@@ -50,10 +50,8 @@ std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::v
     sorted[to] = landed[2 * i];
     sorted[count + to] = landed[2 * i + 1];
   }
-  for (u32 i = 0; i < begins[1]; ++i) {
-    sorted[begins.end()[-2] + i] = sorted[i];
-    sorted[count + begins.end()[-2] + i] = sorted[count + i];
-  }
+  for (const std::size_t row : {std::size_t{0}, count})
+    std::copy_n(sorted.begin() + std::ptrdiff_t(row), again, sorted.begin() + std::ptrdiff_t(row + landings));
   return sorted;
 }
 
