@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <sstream>
 
 #include "base/environment.h"
@@ -52,7 +51,7 @@ std::string portable_options(const DeviceInfo& device, const std::string& option
 }
 
 void bypass_driver_caches() {
-  setenv("CUDA_CACHE_DISABLE", "1", 0);  // NVIDIA's
+  set_variable("CUDA_CACHE_DISABLE", "1");  // NVIDIA's
 }
 
 }  // namespace sundog
