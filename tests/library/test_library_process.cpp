@@ -41,7 +41,7 @@ TEST_CASE("several threads may be the first to use the library") {
   }
 }
 
-TEST_CASE("a program that rounds otherwise, or traps divisions by 0, has the same picture and keeps its ways") {
+TEST_CASE("a program that rounds up and traps divisions by 0 has the same picture, and keeps its ways") {
   const TemporaryFolder folder;
   const CommandResult usual = own_process(folder, {"arithmetic"}),
                       other = own_process(folder, {"arithmetic", "other"});
