@@ -3,6 +3,7 @@
 #include <atomic>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "catch.h"
 #include "devices.h"
