@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "render/device/local_worker.h"
-#include "render/frame/final_frame.h"
+#include "render/frame/frame.h"
 #include "render/session/live_session.h"
 
 namespace sundog {
