@@ -3,7 +3,7 @@
 
 #include "render/device/local_worker.h"
 #include "render/frame/frame.h"
-#include "render/session/frame_loop.h"
+#include "render/frame/frame_loop.h"
 
 namespace sundog {
 namespace {

@@ -1,5 +1,5 @@
-// The story of a frame: plan, passes, film, image. The threads of its workers (session/frame_loop.h:
-// run_frame()) make the passes between begin_frame() and finish_frame().
+// The story of a frame: plan, passes, film, image. The threads of its workers (frame_loop.h: run_frame())
+// make the passes between begin_frame() and finish_frame().
 #include "render/frame/frame.h"
 
 #include <algorithm>

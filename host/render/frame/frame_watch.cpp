@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/frame/frame_checkpoint.h"
-#include "render/session/frame_watch.h"
+#include "render/frame/frame_watch.h"
 
 namespace sundog {
 namespace {
