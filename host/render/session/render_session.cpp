@@ -48,7 +48,7 @@ std::string state_text(const Snapshot& now) {
 
 RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_workers(devices)) {}
 
-RenderSession::RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers)
+RenderSession::RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& workers)
     : live_(std::make_shared<LiveSession>()) {
   live_->begin(workers);
 }
