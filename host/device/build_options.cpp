@@ -4,7 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <set>
 #include <sstream>
+#include <vector>
 
 #include "base/environment.h"
 #include "device/device_rules.h"
@@ -15,14 +19,20 @@ namespace {
 // Always requests argument information, so that tests check the program that renders.
 constexpr const char* own_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
 
+std::vector<std::string> words(std::string_view options) {
+  std::istringstream text{std::string(options)};
+  return {std::istream_iterator<std::string>(text), {}};
+}
+
 /// An option up to its value.
 std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
 
 /// Appends those of `more` that `stronger` does not have by the same name.
 void append_options(std::string& options, std::string_view more, const std::string& stronger) {
-  std::istringstream words{std::string(more)};
-  for (std::string option; words >> option;)
-    if (stronger.find(name_of(option)) == std::string::npos) options += " " + option;
+  std::set<std::string> names;
+  for (const std::string& option : words(stronger)) names.insert(name_of(option));
+  for (const std::string& option : words(more))
+    if (!names.contains(name_of(option))) options += " " + option;
 }
 
 }  // namespace
@@ -41,11 +51,11 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, s
 
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
   const DeviceRule& rule = rule_of(device);
-  const std::string own = fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths);
-  std::istringstream words{options};
+  const std::vector<std::string> own =
+      words(fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths));
   std::string kept;
-  for (std::string option; words >> option;)
-    if (!option.starts_with("-cl-") || own.find(option) == std::string::npos)
+  for (const std::string& option : words(options))
+    if (!option.starts_with("-cl-") || std::ranges::count(own, option) == 0)
       kept += (kept.empty() ? "" : " ") + option;
   return kept;
 }
