@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/known_report.h"
+#include "bench/report/machine.h"
 #include "bench/runs/ratio.h"
 
 namespace sundog {
@@ -34,12 +35,15 @@ struct Side {
   std::map<std::string, std::vector<std::vector<Run>>> runs;  // of each row, by call
 };
 
-/// "0:0 platform / name", "0:0 name" and "0:0": what a row may call a device, the longest first.
+constexpr std::size_t title_at = 2;  // in device_names()
+
+/// "0:0 platform / name", "0:0 name", its title and "0:0": what a row may call a device, the longest first.
 std::vector<std::string> device_names(const KnownReport& report, std::size_t row) {
   const auto& cells = report.devices.rows[row];
   const std::string label = known_cell(report.devices, cells, "label");
-  const std::string place = label.substr(0, label.find(' '));
-  return {label, place + " " + known_cell(report.devices, cells, "name"), place};
+  const std::string name = known_cell(report.devices, cells, "name"),
+                    place = label.substr(0, label.find(' '));
+  return {label, place + " " + name, device_title(label, name), place};
 }
 
 std::set<std::string> device_labels(const KnownReport& report) {
@@ -150,9 +154,13 @@ std::vector<Side> read_sides(const std::vector<std::string>& names) {
     for (const KnownReport& call : side.calls)
       for (const MeasuredWay& way : call.ways) {
         std::string name = way.name;
-        for (std::size_t k = 0; !same_devices && k < call.devices.rows.size(); ++k)
-          replace_device(name, device_names(call, k),
-                         call.devices.rows.size() == 1 ? "the device" : fmt::format("device {}", k + 1));
+        for (std::size_t k = 0; k < call.devices.rows.size(); ++k) {
+          const std::vector<std::string> names = device_names(call, k);
+          replace_device(name, names,
+                         same_devices                    ? names[title_at]
+                         : call.devices.rows.size() == 1 ? "the device"
+                                                         : fmt::format("device {}", k + 1));
+        }
         add_way(side, name, way);
       }
   return sides;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/commands/bench_run.h"
+#include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
 #include "device/device.h"
 #include "render/device/kernel_config.h"
@@ -88,10 +89,10 @@ const std::vector<Column> columns{{"kernel", ""},       {"group given", ""}, {"g
 void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info) {
   Device device(info);
   const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
-  Table table{fmt::format("{} on {}, {} tracer", name, info.label(), tracer), columns, {}};
+  Table table{fmt::format("{} on {}, {} tracer", name, device_title(info), tracer), columns, {}};
   for (const KernelFigures& figures : kernel_figures(device, scene)) {
     table.rows.push_back(row(figures, device.nvidia()));
-    std::vector<Cell> all{name, info.label(), tracer};
+    std::vector<Cell> all{name, device_title(info), tracer};
     all.insert(all.end(), table.rows.back().begin(), table.rows.back().end());
     report.measurements.rows.push_back(std::move(all));
   }

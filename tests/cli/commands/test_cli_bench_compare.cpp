@@ -1,4 +1,6 @@
 // `sundog bench compare`: reports that say what they measured, and which differ in nothing or in one thing.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -58,6 +60,23 @@ TEST_CASE("bench compare names a winner between reports of two machines, and non
   CHECK_THAT(result.out, ContainsSubstring("●") && ContainsSubstring("slower in 1") &&
                              ContainsSubstring("Fewer than six calls"));
   CHECK_THAT(sundog::read_file(folder.file("c.html")), ContainsSubstring("<svg xmlns"));
+}
+
+TEST_CASE("bench compare knows a device by each of the names that rows may have for it") {
+  const CliFolder folder;
+  json titled = json::parse(report({"0:0 P / x (LLVM 15)"}, times));
+  titled["devices"][0]["name"] = "x (LLVM 15)";
+  for (const char* name : {"0:0 P / x (LLVM 15)", "0:0 x (LLVM 15)", "0:0 x", "0:0"}) {
+    titled["ways"][0]["name"] = fmt::format("ice on {}, primary rays", name);
+    folder.write("b.json", titled.dump());
+    if (name == std::string("0:0 P / x (LLVM 15)")) folder.write("a.json", titled.dump());
+    const CommandResult result = run_sundog(
+        {"bench", "compare", folder.file("a.json"), folder.file("b.json"), "--json", folder.file("c.json")});
+    CAPTURE(name, result.out, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(json::parse(sundog::read_file(folder.file("c.json"))).at("measurements")[0].at("measured") ==
+          "ice on 0:0 x, primary rays");
+  }
 }
 
 TEST_CASE("bench compare takes the calls in folders, and the devices of one report in turn") {
