@@ -52,7 +52,10 @@ std::string portable_options(const DeviceInfo& device, const std::string& option
 }
 
 void bypass_driver_caches() {
-  setenv("CUDA_CACHE_DISABLE", "1", 0);  // NVIDIA's
+  setenv("CUDA_CACHE_DISABLE", "1", 0);            // NVIDIA's
+  setenv("AMD_COMGR_CACHE", "0", 0);               // AMD's
+  setenv("NEO_CACHE_PERSISTENT", "0", 0);          // Intel's
+  setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);  // Mesa's
 }
 
 }  // namespace sundog

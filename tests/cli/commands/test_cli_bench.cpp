@@ -181,6 +181,8 @@ TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing whe
       CHECK(row.at("registers").is_null());
       CHECK(row.at("spill_stores_B").is_null());
       CHECK(row.at("threads").is_null());
+      CHECK(row.at("build_cold_s") > row.at("build_warm_s"));
+      CHECK(row.at("build_warm_s") > 0);
     }
     CHECK(kernels ==
           std::set<std::string>{"render_whitted", "first_surfaces", "trace_rays", "occluded_rays"});
