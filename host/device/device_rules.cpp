@@ -17,26 +17,34 @@ constexpr std::array rules{
     // most kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32
     // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
     DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
-               "-cl-nv-maxrregcount=64"},
+               "-cl-nv-maxrregcount=64", "",
+               "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
+               "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
     // Ten waves (RDNA 3 and newer) cost plain scenes no spills; with textures, layers or rough glass up to
     // 240 registers, where 5 to 9 waves would fit.
     DeviceRule{"amd", "Advanced Micro Devices", true, false,
-               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10"},
+               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10", "", "",
+               "-DNODE_LOOP=0 -DNODE_LOOP=1 -DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
+               "!-DDEVICE_INLINES_ALL"},
     // Intel's own driver. Its compiler gives programs that spill 256 registers instead of 128, for half the
     // threads, where the GPU has them; render_path and the tracer alone get them always, and the tracer then
     // takes 16 rays a thread without spills, where the compiler chooses 8. GPUs without ignore both options.
     DeviceRule{"intel", "Intel(R) OpenCL", true, false,
                "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 -cl-intel-enable-auto-large-GRF-mode",
-               "-cl-intel-256-GRF-per-thread", "-cl-intel-256-GRF-per-thread"},
+               "-cl-intel-256-GRF-per-thread", "-cl-intel-256-GRF-per-thread",
+               "-DNODE_LOOP=0 -DNODE_LOOP=1 -cl-intel-256-GRF-per-thread !-cl-intel-256-GRF-per-thread "
+               "!-cl-intel-enable-auto-large-GRF-mode !-DDEVICE_INLINES_ALL"},
     // By other drivers, which do not know these options.
-    DeviceRule{"", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
-    DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL"},
+    DeviceRule{"", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2", "", "",
+               "-DNODE_LOOP=0 -DNODE_LOOP=1 !-DDEVICE_INLINES_ALL"},
+    DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL", "", "",
+               "-DNODE_LOOP=1 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL"},
     // Mesa's compilers inline every call: the interpreter of fields (kernels/lib/sdf/interpret.cl) takes
     // minutes.
-    DeviceRule{"", "rusticl", false, false, ""},
-    DeviceRule{"", "Clover", false, false, ""},
-    DeviceRule{"", "", false, true, ""},
+    DeviceRule{"", "rusticl", false, false, "", "", "", "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{"", "Clover", false, false, "", "", "", "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{"", "", false, true, "", "", "", "-DNODE_LOOP=1 -DNODE_LOOP=2"},
 };
 
 }  // namespace
