@@ -33,6 +33,7 @@ struct Side {
   std::vector<KnownReport> calls;
   std::vector<std::string> order;                             // names of its rows
   std::map<std::string, std::vector<std::vector<Run>>> runs;  // of each row, by call
+  bool in_turn = false;                                       // with those of the other sides
 };
 
 constexpr std::size_t title_at = 2;  // in device_names()
@@ -75,7 +76,7 @@ void add_way(Side& side, const std::string& name, const MeasuredWay& way) {
 
 /// A report, or the reports in a folder, which several calls of one bench wrote.
 Side read_side(const std::string& name) {
-  Side side{fs::path(name).stem().string(), {}, {}, {}};
+  Side side{fs::path(name).stem().string(), {}, {}, {}, false};
   std::vector<std::string> files{name};
   std::error_code none;
   if (fs::is_directory(name, none)) {
@@ -89,11 +90,12 @@ Side read_side(const std::string& name) {
   return side;
 }
 
-/// The devices of one report, which took turns.
+/// The devices of one report; those of bench devices took turns, others were measured one after the other.
 std::vector<Side> sides_of(const KnownReport& report, const std::string& file) {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < report.devices.rows.size(); ++i) {
-    Side& side = sides.emplace_back(Side{device_names(report, i).front(), {}, {}, {}});
+    Side& side =
+        sides.emplace_back(Side{device_names(report, i)[title_at], {}, {}, {}, report.bench == "devices"});
     for (const MeasuredWay& way : report.ways) {
       std::string name = way.name;
       if (replace_device(name, device_names(report, i), "the device")) {
@@ -256,7 +258,7 @@ int bench_compare(const CompareOptions& options) {
   report.name = "compare";
   report.title = "Compared with " + base.name;
   Tally tally;
-  tally.in_turn = base.calls.empty();
+  tally.in_turn = base.in_turn;
   for (std::size_t i = 1; i < sides.size(); ++i) add_side(report, base, sides[i], tally);
   report.notes.emplace_back(
       "Ratio: the time over that of the base, with an interval that holds it with 95 % confidence. Of twenty "

@@ -89,15 +89,20 @@ TEST_CASE("bench compare takes the calls in folders, and the devices of one repo
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("faster in 1 of 1 rows") && ContainsSubstring("by bootstrap"));
-  folder.write("two.json", report({"0:0 P / first", "0:0/1 P / first"}, times));
-  result = run_sundog({"bench", "compare", folder.file("two.json"), "--json", folder.file("c.json")});
-  CAPTURE(result.out, result.err);
-  REQUIRE(result.status == 0);
-  const json rows = json::parse(sundog::read_file(folder.file("c.json"))).at("measurements");
-  REQUIRE(rows.size() == 1);
-  CHECK(rows[0].at("other") == "0:0/1 P / first");
-  CHECK(rows[0].at("ratio").at("median") == 2);
-  CHECK(rows[0].at("verdict") == "slower");
+  for (const char* bench : {"rays", "devices"}) {  // the devices of the second alone took turns
+    json two = json::parse(report({"0:0 P / first", "0:0/1 P / first"}, times));
+    two["bench"] = bench;
+    folder.write("two.json", two.dump());
+    result = run_sundog({"bench", "compare", folder.file("two.json"), "--json", folder.file("c.json")});
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.status == 0);
+    const json rows = json::parse(sundog::read_file(folder.file("c.json"))).at("measurements");
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].at("other") == "0:0/1 x");
+    CHECK(rows[0].at("ratio").at("median") == Approx(2));
+    CHECK(rows[0].at("verdict") == "slower");
+    CHECK((result.out.find("The devices took turns") != std::string::npos) == (bench[0] == 'd'));
+  }
 }
 
 TEST_CASE("bench compare refuses what does not match, and says what differs") {
