@@ -234,6 +234,7 @@ struct SamplesOptions : BenchOptions {
   std::string counts = "1,5,17,26";
   int reference = 0;                        // 0: four times the most
   std::string adaptive = "0.01,0.02,0.05";  // thresholds
+  double budget = 0;                        // seconds; 0: no limit
 };
 
 /// Even frames of each count; adaptive frames, with up to four times the greatest count a pixel; subsampled
@@ -272,13 +273,15 @@ int bench_samples(const SamplesOptions& options) {
       "spread evenly over the pixel and do better.",
       options.repeat, reference));
   const std::vector<DeviceInfo> devices = run.devices();
+  const double parts = static_cast<double>(options.scenes.size() * devices.size());
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
       const auto compile_with = [&run, file](const std::vector<std::string>& overrides) {
         return run.compiled(file, overrides);
       };
-      run.measure(std::make_shared<SampleTimes>(
-          SampleScaling{scene_name(file), compile_with, device, sample_ways(options, counts), reference}));
+      run.measure(std::make_shared<SampleTimes>(SampleScaling{scene_name(file), compile_with, device,
+                                                              sample_ways(options, counts), reference}),
+                  options.budget / parts);
     }
   return run.publish();
 }
@@ -296,6 +299,9 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
       ->range(2, 1 << 18);
   value(app, "--adaptive", "LIST", options->adaptive,
         "thresholds of the adaptive frames (default 0.01,0.02,0.05)");
+  value(app, "--budget", "SECONDS", options->budget,
+        "about how long it may take: then further runs, and ways, are left out (default: no limit)")
+      ->range(0, 1e6);
 }
 
 }  // namespace sundog
