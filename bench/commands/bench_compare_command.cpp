@@ -157,9 +157,9 @@ std::vector<Side> read_sides(const std::vector<std::string>& names) {
       for (const MeasuredWay& way : call.ways) {
         std::string name = way.name;
         for (std::size_t k = 0; k < call.devices.rows.size(); ++k) {
-          const std::vector<std::string> names = device_names(call, k);
-          replace_device(name, names,
-                         same_devices                    ? names[title_at]
+          const std::vector<std::string> known = device_names(call, k);
+          replace_device(name, known,
+                         same_devices                    ? known[title_at]
                          : call.devices.rows.size() == 1 ? "the device"
                                                          : fmt::format("device {}", k + 1));
         }
