@@ -71,7 +71,7 @@ std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const ScenePro
   return result;
 }
 
-/// What is known of each device's programs: a second build of one would find it in the driver.
+/// Figures of each device's programs: a second build of one would find it in the driver.
 using KnownFigures = std::map<std::pair<std::string, SceneProgram>, std::vector<KernelFigures>>;
 
 /// Nothing where it is not known: 0 would be a figure.
@@ -111,7 +111,7 @@ const std::vector<Column> columns{
     {"local", "B"},  {"registers", ""},   {"stack", "B"},      {"spill stores", "B"}, {"spill loads", "B"},
     {"threads", ""}, {"occupancy", "%"},  {"build cold", "s"}, {"build warm", "s"}};
 
-/// Of frames' kernels, with and without AOVs, and those of `bench rays` where something is traced.
+/// Adds frames' kernels, with and without AOVs, and those of `bench rays` where something is traced.
 void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info,
                 KnownFigures& known) {
   const auto nvidia = Device(info).nvidia();

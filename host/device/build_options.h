@@ -18,8 +18,8 @@ struct BuildWish {
 /// (HostEnvironment, such as -cl-nv-maxrregcount=64). Later ones take the place of earlier by the same name.
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry);
 
-/// What a tuning may build `entry` with on the device: for each name the options, or "!OPTION", that change a
-/// build. Options of other names may be combined.
+/// Options that a tuning may build `entry` with on the device: a list for each name, of options and "!OPTION"
+/// that change a build. Options of different names may be combined.
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry);
 
 /// `options` without those of its maker that the device's rule gives, which an older driver may refuse.

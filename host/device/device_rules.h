@@ -18,7 +18,7 @@ struct DeviceRule {
   std::string_view options{};    // for its compiler; definitions that kernels have defaults for
   std::string_view of_tracer{};  // of entry/trace_rays.cl, in place of options by the same name
   std::string_view of_paths{};   // of entry/render_path.cl, likewise
-  std::string_view tries{};      // what `sundog tune` may build with: options_to_try()
+  std::string_view tries{};      // alternatives for `sundog tune`: options_to_try()
   bool matches(const DeviceInfo& device) const;
   /// The options that a program has in place of, or beside, the general ones.
   std::string_view of_entry(std::string_view entry) const;
