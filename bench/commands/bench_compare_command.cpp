@@ -13,6 +13,7 @@
 #include "app/options/option_helpers.h"
 #include "app/process/exit_status.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/known_report.h"
 #include "bench/report/machine.h"
@@ -82,7 +83,7 @@ Side read_side(const std::string& name) {
   if (fs::is_directory(name, none)) {
     files.clear();
     for (const auto& entry : fs::directory_iterator(name, none))
-      if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+      if (lower_extension(entry.path()) == ".json") files.push_back(entry.path().string());
     std::ranges::sort(files);
     if (files.empty()) throw UsageError(name + ": the folder has no report (.json) in it");
   }

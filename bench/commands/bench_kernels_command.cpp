@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
@@ -139,7 +138,7 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  ::unsetenv("POCL_CACHE_DIR");  // where PoCL finds what earlier processes built
+  set_variable("POCL_CACHE_DIR", "", true);  // where PoCL finds what earlier processes built
   KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
   Report& report = run.head();

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/environment.h"
+#include "base/file.h"
 #include "models/model.h"
 #include "render/device/kernel_config.h"
 #include "scene/load.h"
@@ -13,7 +14,7 @@ namespace {
 
 /// One model's meshes where they lie, without lights; or a .json scene as it is.
 SceneDescription scene_of_model(const std::string& path) {
-  if (path.ends_with(".json")) return load_scene(path, {}, {.outside_files = true});
+  if (lower_extension(path) == ".json") return load_scene(path, {}, {.outside_files = true});
   Model model = load_model(path, {.for_paths = false});
   SceneDescription scene;
   scene.file = path;

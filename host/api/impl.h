@@ -6,6 +6,7 @@
 #include <sundog/render.h>
 #include <sundog/scene.h>
 
+#include <cfenv>
 #include <mutex>
 
 /// Hides a nested class of a public one from programs.
@@ -20,9 +21,26 @@ const char* version_text() noexcept;
 /// Rethrows the current exception as an Error; exceptions of callbacks stay as they are.
 [[noreturn]] void throw_public();
 
+/// Usual rounding and no traps while it lives, for threads started meanwhile too: a program may have set
+/// others for its own arithmetic.
+class UsualArithmetic {
+ public:
+  UsualArithmetic() noexcept {
+    std::fegetenv(&programs_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~UsualArithmetic() { std::fesetenv(&programs_); }
+  UsualArithmetic(const UsualArithmetic&) = delete;
+  UsualArithmetic& operator=(const UsualArithmetic&) = delete;
+
+ private:
+  std::fenv_t programs_;
+};
+
 /// Calls f() and turns the host's exceptions into Errors.
 template <class F>
 auto translated(const F& f) -> decltype(f()) {
+  const UsualArithmetic arithmetic;
   try {
     return f();
   } catch (...) {

@@ -8,6 +8,7 @@
 
 #include "api/impl.h"
 #include "base/clock.h"
+#include "base/file.h"
 #include "scene/shot.h"
 
 namespace sundog {
@@ -195,7 +196,7 @@ std::vector<std::string> Film::aovs() const {
 void Film::save(const std::filesystem::path& file) const {
   translated([&] {
     if (width() < 1) throw UsageError("the film has no pixels to save");
-    const bool all = file.extension() == ".exr" || file.extension() == ".EXR";
+    const bool all = lower_extension(file) == ".exr";
     AovImages aovs;
     if (all)
       for (const auto& [name, image] : impl_->aovs) aovs.emplace(name, *image.impl()->image);

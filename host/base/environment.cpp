@@ -3,8 +3,10 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <thread>
@@ -96,6 +98,19 @@ HostEnvironment read_environment(const std::function<void(const std::string& kin
     environment.faults = std::make_shared<Faults>(faults, end_process);
   environment.drivers = driver_variables();
   return environment;
+}
+
+void set_variable(const std::string& name, const std::string& value, bool replaces) {
+  if (const char* present = std::getenv(name.c_str()); present && (replaces ? present == value : *present))
+    return;
+  static auto& kept = *new std::vector<std::vector<char*>>;  // lists that a getenv() may still be reading
+  const std::string start = name + "=";
+  std::vector<char*> list{::strdup((start + value).c_str())};
+  for (char** entry = environ; entry && *entry; ++entry)
+    if (!std::string_view(*entry).starts_with(start)) list.push_back(*entry);
+  list.push_back(nullptr);
+  kept.push_back(std::move(list));
+  std::atomic_ref(environ).store(kept.back().data(), std::memory_order_release);
 }
 
 EnvironmentPtr plain_environment() { return std::make_shared<const HostEnvironment>(read_environment()); }

@@ -69,7 +69,7 @@ const std::vector<std::string>& image_formats() {
   return formats;
 }
 
-bool drops_alpha(const fs::path& path) { return path.extension() != ".exr" && path.extension() != ".EXR"; }
+bool drops_alpha(const fs::path& path) { return lower_extension(path) != ".exr"; }
 
 bool is_png(const fs::path& path) { return lower_extension(path) == ".png"; }
 

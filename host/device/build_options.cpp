@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
 #include <sstream>
+#include <vector>
 
 #include "base/environment.h"
 #include "device/device_rules.h"
@@ -17,14 +20,23 @@ namespace {
 // Always requests argument information, so that tests check the program that renders.
 constexpr const char* own_options = "-cl-std=CL1.2 -cl-kernel-arg-info";
 
-/// An option up to its value.
-std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
+std::vector<std::string> words(std::string_view options) {
+  std::istringstream text{std::string(options)};
+  return {std::istream_iterator<std::string>(text), {}};
+}
+
+/// An option up to its value, without the mark of one that is left out.
+std::string name_of(std::string option) {
+  if (option.starts_with('!')) option.erase(0, 1);
+  return option.substr(0, option.find('='));
+}
 
 /// Appends those of `more` that `stronger` does not have by the same name, nor takes away.
 void append_options(std::string& options, std::string_view more, const std::string& stronger) {
-  std::istringstream words{std::string(more)};
-  for (std::string option; words >> option;)
-    if (option[0] != '!' && stronger.find(name_of(option)) == std::string::npos) options += " " + option;
+  std::set<std::string> names;
+  for (const std::string& option : words(stronger)) names.insert(name_of(option));
+  for (const std::string& option : words(more))
+    if (option[0] != '!' && !names.contains(name_of(option))) options += " " + option;
 }
 
 }  // namespace
@@ -44,10 +56,8 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, s
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry) {
   const std::string usual = all_build_options(device, {}, entry);
   std::map<std::string, std::vector<std::string>> by_name;
-  std::istringstream words{std::string(rule_of(device).tries)};
-  for (std::string option; words >> option;)
-    if (all_build_options(device, {option}, entry) != usual)
-      by_name[name_of(option[0] == '!' ? option.substr(1) : option)].push_back(option);
+  for (const std::string& option : words(rule_of(device).tries))
+    if (all_build_options(device, {option}, entry) != usual) by_name[name_of(option)].push_back(option);
   std::vector<std::vector<std::string>> all;
   for (auto& [name, options] : by_name) all.push_back(std::move(options));
   return all;
@@ -55,20 +65,20 @@ std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, s
 
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
   const DeviceRule& rule = rule_of(device);
-  const std::string own = fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths);
-  std::istringstream words{options};
+  const std::vector<std::string> own =
+      words(fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths));
   std::string kept;
-  for (std::string option; words >> option;)
-    if (!option.starts_with("-cl-") || own.find(option) == std::string::npos)
+  for (const std::string& option : words(options))
+    if (!option.starts_with("-cl-") || std::ranges::count(own, option) == 0)
       kept += (kept.empty() ? "" : " ") + option;
   return kept;
 }
 
 void bypass_driver_caches() {
-  setenv("CUDA_CACHE_DISABLE", "1", 0);            // NVIDIA's
-  setenv("AMD_COMGR_CACHE", "0", 0);               // AMD's
-  setenv("NEO_CACHE_PERSISTENT", "0", 0);          // Intel's
-  setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);  // Mesa's
+  set_variable("CUDA_CACHE_DISABLE", "1");            // NVIDIA's
+  set_variable("AMD_COMGR_CACHE", "0");               // AMD's
+  set_variable("NEO_CACHE_PERSISTENT", "0");          // Intel's
+  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa's
 }
 
 }  // namespace sundog

@@ -143,9 +143,9 @@ DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : proces
     const std::string folder = make_folder(environment);
     if (folder.empty()) return;
     own_ = folder;
-    ::setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+    set_variable("POCL_CACHE_DIR", folder);
     const bool temporary = fs::path(folder).filename().string().starts_with(temporary_name);
-    if (temporary) ::setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);  // keep the user's
+    if (temporary) set_variable("MESA_SHADER_CACHE_DIR", folder);  // keep the user's
   } catch (const std::exception&) {
     // PoCL's own folder works too, while it is writable and undamaged.
   }

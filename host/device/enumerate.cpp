@@ -8,7 +8,6 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <cstdlib>
 #include <thread>
 
 #include "base/environment.h"
@@ -198,7 +197,7 @@ void enlarge_thread_stacks() {
 /// than the process's environment.
 bool prepare_drivers(const HostEnvironment& environment) {
   for (const auto& [name, value] : environment.drivers)
-    setenv(name.c_str(), value.c_str(), name == "PATH" ? 1 : 0);  // folders may have been appended
+    set_variable(name, value, name == "PATH");  // folders may have been appended
   if (!environment.build_log.empty()) bypass_driver_caches();
   (void)driver_folder(environment);
   describe_machine_to_drivers(environment);

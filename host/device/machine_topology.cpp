@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <thread>
 
 #include "base/environment.h"
@@ -41,7 +40,7 @@ std::string synthetic_machine() {
 
 void describe_machine_to_drivers(const HostEnvironment& environment) {
   if (!has_topology() && !user_describes_machine(environment))
-    ::setenv("HWLOC_SYNTHETIC", synthetic_machine().c_str(), 0);
+    set_variable("HWLOC_SYNTHETIC", synthetic_machine());
 }
 
 std::string topology_note() {

@@ -2,8 +2,8 @@
 #include "render/render.h"
 
 #include "render/device/local_worker.h"
-#include "render/frame/final_frame.h"
-#include "render/session/frame_loop.h"
+#include "render/frame/frame.h"
+#include "render/frame/frame_loop.h"
 
 namespace sundog {
 namespace {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "models/model.h"
 #include "scene/animate.h"
 #include "scene/document.h"
@@ -102,7 +103,7 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
     if (is_model_file(path)) {
       read_model(source, overrides, options.outside_files);
       return source;
-    } else if (path.extension() == ".json") {
+    } else if (lower_extension(path) == ".json") {
       source.document = read_json_file(path, options.faults);
     } else {
       throw SceneError(path.string(), "",

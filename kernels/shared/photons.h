@@ -36,9 +36,11 @@ SUNDOG_SHARED_SIZE(PhotonTarget, 32)
 // places of all, then their light. photon_cells holds the start of each cell's photons, and the end. Cubes in
 // a row along x have cells that follow each other; for rows that go around, the first cell's photons stand a
 // second time after those of the last. After the light the table has the map's beams, ways of photons through
-// media that scatter, three rows each: where a beam begins and its length; its direction, and its slice of
-// time + PHOTON_SLICES times how often the photon had been sent on; its flux, and the light that the medium
-// scatters of it.
+// media that scatter, in groups, as many for each of the samples that use the map. The beams of a group lie
+// in a cone: its first two rows are a point of its axis, and the radius there; the axis's direction, and how
+// much the radius grows on a unit of it. Each beam has three: where it begins and its length (0: none); its
+// direction, and its slice of time + PHOTON_SLICES times how often the photon had been sent on; its flux, and
+// the light that the medium scatters of it.
 typedef struct PhotonMap {
   u32 number;
   u32 first_cell;      // in photon_cells
@@ -46,10 +48,13 @@ typedef struct PhotonMap {
   float radius;        // photons within it count
   float inverse_edge;  // 1 / a cube's edge
   u32 first_beam;      // its first row in photons
-  u32 beams;
-  u32 photons;  // rows from a photon's place to its light
+  u32 beam_groups;     // for one sample
+  u32 photons;         // rows from a photon's place to its light
 } PhotonMap;
 SUNDOG_SHARED_SIZE(PhotonMap, 32)
+
+#define BEAM_GROUP 16u                          // beams of a group
+#define BEAM_GROUP_ROWS (2u + 3u * BEAM_GROUP)  // in photons
 
 #define NO_PHOTON 0xffffffffu  // the cell of a photon that did not land
 

@@ -41,6 +41,16 @@ TEST_CASE("several threads may be the first to use the library") {
   }
 }
 
+TEST_CASE("a program that rounds up and traps divisions by 0 has the same picture, and keeps its ways") {
+  const TemporaryFolder folder;
+  const CommandResult usual = own_process(folder, {"arithmetic"}),
+                      other = own_process(folder, {"arithmetic", "other"});
+  CAPTURE(other.err);
+  CHECK(other.status == 0);
+  CHECK(usual.out.find("kept") != std::string::npos);
+  CHECK(other.out == usual.out);
+}
+
 TEST_CASE("two copies of the library may be first used at once") {
   const TemporaryFolder folder;
   const std::string first = copy_of_library(folder, "first.so"),

@@ -1,10 +1,14 @@
 // Uses of the library that need a process of their own: first use, fork(), dlclose(). Prints a line for each
-// that goes as it should: `own_process first_use|copies|unload|fork [LIBRARY]...`.
+// that goes as it should: `own_process first_use|copies|unload|fork [LIBRARY]...`, or
+// `own_process arithmetic [other]`.
 #include <dlfcn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <sundog/sundog.h>
+#include <bit>
+#include <cfenv>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -35,6 +39,22 @@ int first_use() {
     render_ball();
   });
   std::puts("rendered");
+  return 0;
+}
+
+/// Prints the sum of a picture's bits, made where a program rounds up and traps divisions by 0, or does not.
+int arithmetic(bool other) {
+  const sundog::Scene scene = sundog::Scene::from_json(ball);
+  if (other) {
+    std::fesetround(FE_UPWARD);
+    ::feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
+  }
+  const sundog::Image image = sundog::render(scene).image();
+  const bool kept = !other || (std::fegetround() == FE_UPWARD && ::fegetexcept() != 0);
+  std::fesetenv(FE_DFL_ENV);
+  std::uint64_t sum = 0;
+  for (const float value : image.pixels()) sum = 31 * sum + std::bit_cast<std::uint32_t>(value);
+  std::printf("%llx %s\n", static_cast<unsigned long long>(sum), kept ? "kept" : "lost");
   return 0;
 }
 
@@ -121,6 +141,7 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   try {
     if (what == "first_use") return first_use();
+    if (what == "arithmetic") return arithmetic(argc > 2);
     if (what == "copies") return copies({argv + 2, argv + argc});
     if (what == "unload" && argc == 3) return unload(argv[2]);
     if (what == "fork") return fork_before_and_after();

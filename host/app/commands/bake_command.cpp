@@ -18,6 +18,7 @@
 #include "app/process/progress.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/image_io.h"
 
 namespace sundog {
 namespace {
@@ -47,7 +48,7 @@ double usual_cage(const std::vector<LowTriangle>& triangles) {
 }
 
 void check_map_name(const std::string& name) {
-  if (std::filesystem::path(name).extension() != ".png")
+  if (!is_png(name))
     throw UsageError(fmt::format("{}: wanted a name that ends with .png: maps are written as PNG", name));
   check_writable(name);
 }

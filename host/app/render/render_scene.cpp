@@ -54,7 +54,7 @@ void check_extras(const RenderCommand& command) {
 
 /// Refuses outputs that could not be written, before the render rather than after it.
 void check_outputs(const RenderCommand& command) {
-  if (command.part && !command.out.ends_with(".part"))
+  if (command.part && lower_extension(command.out) != ".part")
     throw UsageError(
         fmt::format("{}: with --tiles, OUT is a part of the frame and ends in .part", command.out));
   if (job_rank() >= 0 && is_standard_stream(command.out))

@@ -22,7 +22,7 @@ constexpr std::size_t most_files = 2000, most_entries = 50'000;
 constexpr int most_depth = 6;
 
 bool is_scene(const fs::path& file) {
-  return is_model_file(file) || (file.extension() == ".json" && file.filename() != "scene.schema.json");
+  return is_model_file(file) || (lower_extension(file) == ".json" && file.filename() != "scene.schema.json");
 }
 
 bool is_below(const fs::path& folder, const fs::path& file) {

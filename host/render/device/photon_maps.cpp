@@ -1,4 +1,4 @@
-// Traces photons in launches, sorts them by cell and draws beams on the host, and uploads as many maps as
+// Traces photons in launches, sorts them by cell on the host, and uploads as many maps as
 // fit; radii shrink after Knaus and Zwicker (2011).
 #include "render/device/photon_maps.h"
 
@@ -11,6 +11,7 @@
 
 #include "base/environment.h"
 #include "base/faults.h"
+#include "render/device/photon_beams.h"
 #include "shared/sampler.h"
 
 namespace sundog {
@@ -55,38 +56,12 @@ std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::v
   return sorted;
 }
 
-template <class T>
-void append(std::vector<T>& list, const std::vector<T>& more) {
-  list.insert(list.end(), more.begin(), more.end());
-}
-
 /// Each sample of a map looks at all of its share of the beams.
 std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
 
-/// Selects the photons' beams that are there, in order; if there are more than `most`, it draws so many at
-/// even steps in the light that media scatter of them.
-std::vector<float4> draw_beams(const std::vector<float4>& beams, std::size_t most, u32 number) {
-  const auto light_of = [&](std::size_t i) { return std::isfinite(beams[i].w) ? double(beams[i].w) : 0; };
-  std::size_t count = 0;
-  double all = 0;
-  for (std::size_t i = 2; i < beams.size(); i += 3) {
-    count += light_of(i) > 0;
-    all += light_of(i);
-  }
-  const double step = count > most ? all / static_cast<double>(most) : 0;
-  double next = step * hash_u32(number) * 0x1p-32, sum = 0;
-  std::vector<float4> drawn;
-  for (std::size_t i = 2; i < beams.size(); i += 3) {
-    const double light = light_of(i), times = step > 0 ? std::ceil((sum + light - next) / step) : 1;
-    sum += light;
-    if (!(light > 0 && times > 0)) continue;
-    next += times * step;
-    const auto factor = static_cast<float>(step > 0 ? times * step / light : 1);
-    float4 flux = beams[i];
-    flux.x *= factor, flux.y *= factor, flux.z *= factor;
-    append(drawn, {beams[i - 2], beams[i - 1], flux});
-  }
-  return drawn;
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+  list.insert(list.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -157,8 +132,9 @@ PhotonMaps::Made PhotonMaps::make(const PhotonTracer& tracer, u32 number) {
   made.photons = sort_photons(landed, cells, made.map.cell_mask, made.cells);
   made.map.first_beam = static_cast<u32>(made.photons.size());
   made.map.photons = made.map.first_beam / 2;
-  append(made.photons, draw_beams(beams, beams_of(plan_.count), number));
-  made.map.beams = static_cast<u32>(made.photons.size() - made.map.first_beam) / 3;
+  const std::vector<float4> groups = group_beams(beams, beams_of(plan_.count), number, made.map.radius);
+  append(made.photons, groups);
+  made.map.beam_groups = static_cast<u32>(groups.size()) / (BEAM_GROUP_ROWS * PHOTON_MAP_SAMPLES);
   return made;
 }
 

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/file.h"
 #include "base/image_io.h"
 #include "base/memory.h"
 #include "render/film/film.h"
 
 namespace sundog {
-namespace fs = std::filesystem;
 namespace {
 
 // Sums, weight, and whether it is done; the vectors of AOVs that passes ask for.
@@ -24,12 +24,12 @@ std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.ao
 /// Bytes a pixel that an encoder allocates beside the image: converted samples, and the file, taken as
 /// incompressible noise. A growing buffer counts twice.
 std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
-  const fs::path extension = fs::path(output.file).extension();
+  const std::string extension = lower_extension(output.file);
   if (output.file.empty()) return 0;
   if (!drops_alpha(output.file)) return 16 + aovs;
   if (is_png(output.file)) return static_cast<std::uint64_t>(output.channels * output.bits / 8 + 1);
-  if (extension == ".hdr" || extension == ".HDR") return 12 + 2 * 4;
-  return extension == ".pfm" || extension == ".PFM" ? 12 : 3 + 2 * 3;
+  if (extension == ".hdr") return 12 + 2 * 4;
+  return extension == ".pfm" ? 12 : 3 + 2 * 3;
 }
 
 // Further bytes a pixel of a frame in passes: the film of all passes, surfaces, states, colours; between
@@ -53,7 +53,7 @@ std::uint64_t bytes_a_pixel(const FrameOutput& output) {
   std::uint64_t aovs = 0;
   for (const std::string& name : output.aovs) aovs += 4 * aov_channels(name);
   const auto channels = static_cast<std::uint64_t>(output.channels), image = 4 * channels;
-  const bool part = output.file.ends_with(".part");
+  const bool part = lower_extension(output.file) == ".part";
   const std::uint64_t encoder = encoder_bytes(output, aovs);
   const std::uint64_t at_end =
       film + (part ? film

@@ -1,84 +1,57 @@
-// A worker's part of a frame, on its own thread: takes tiles from the queue, renders them, puts them into the
-// film.
+// The story of a frame: plan, passes, film, image. The threads of its workers (frame_loop.h: run_frame())
+// make the passes between begin_frame() and finish_frame().
 #include "render/frame/frame.h"
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "device/cl_status.h"
-#include "render/frame/frame_tiles.h"
+#include "render/frame/frame_checkpoint.h"
+#include "render/frame/frame_end.h"
+#include "render/frame/frame_plan.h"
+#include "render/frame/frame_worker.h"
+#include "render/plan/subsample.h"
 
 namespace sundog {
+
+// The plan.
+
+std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                   const RenderOptions& options) {
+  check_frame(scene, devices, options);
+  std::shared_ptr<Frame> frame = plan_frame(scene, devices, options);
+  bool continues = false;
+  try {
+    continues = continue_checkpoint(*frame);
+  } catch (const std::exception& error) {
+    if (!options.renews_checkpoint) throw;
+    frame.reset();  // its workers are made again
+    frame = plan_frame(scene, devices, options);
+    frame->checkpoint_left = error.what();
+  }
+  if (!continues) begin_pass(*frame, next_pass(frame->film, frame->plan));
+  frame->pixels_kept = frame->pixels_done;
+  plan_next_pass(*frame);
+  return frame;
+}
+
+// The passes: each is cut into tiles, which workers take; the film takes each tile, and plans the next pass.
+
+void begin_pass(Frame& frame, std::optional<Pass> next) {
+  frame.pass = next ? std::move(*next) : Pass();
+  frame.pass_film = Film();
+  if (!next) return frame.queue.no_more();
+  frame.pass_film = film_of_pass(frame.film, frame.pass);
+  frame.pixels_kept = ~std::uint64_t{0};
+  continue_pass(frame);
+}
+
+void continue_pass(Frame& frame) {
+  frame.since_pass = Stopwatch();
+  frame.pass_pixels = frame.pass_film.done.size();
+  frame.pixels_done = static_cast<std::uint64_t>(std::ranges::count(frame.pass_film.done, std::uint8_t{1}));
+  frame.queue.refill(frame.tiles(frame.pass_film));
+}
+
 namespace {
-
-using Phase = Frame::Phase;
-
-// Below so many pixels, a tile for which resources do not suffice is not made smaller.
-constexpr std::uint64_t least_pixels = 1024;
-
-void set_phase(Frame& frame, std::size_t i, Phase phase) {
-  const std::lock_guard lock(frame.mutex);
-  frame.workers[i].phase = phase;
-  frame.changed.notify_all();
-}
-
-/// The pixels of a tile, one each.
-template <class Visit>
-void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
-  std::size_t at = 0;
-  for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width);
-    for (int x = tile.x; x < tile.x + tile.width; ++x) visit(at++, row + static_cast<std::size_t>(x));
-  }
-}
-
-/// The request for a tile, with the earlier samples of its pixels; nothing when the frame is over.
-std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
-  TileRequest request;
-  request.tile = tile;
-  const std::lock_guard lock(frame.mutex);
-  if (frame.over) return std::nullopt;
-  const Pass& pass = frame.pass;
-  const Film& film = frame.film;
-  request.first_sample = pass.first_sample, request.sample_count = pass.sample_count;
-  request.surfaces = pass.surfaces, request.costs = pass.costs;
-  const std::size_t pixels = pixel_count(tile);
-  if (!pass.pixels.empty()) {
-    request.pixels.resize(pixels);
-    for_each_pixel(frame.pass_film, tile,
-                   [&](std::size_t at, std::size_t i) { request.pixels[at] = pass.pixels[i]; });
-  }
-  if (pass.first_sample == 0) return request;
-  request.sums.resize(pixels);
-  request.weights.resize(pixels);
-  request.rays.resize(film.rays.empty() ? 0 : pixels);
-  const std::size_t vectors = pass.surfaces ? film.layout.vectors() : 0;
-  request.aovs.resize(vectors * pixels);
-  for_each_pixel(frame.pass_film, tile, [&](std::size_t at, std::size_t i) {
-    prefetch_sums(film, pass, i + pixels_ahead);
-    const std::int64_t found = image_index(film, pass, i);
-    if (found < 0) return;
-    const auto p = static_cast<std::size_t>(found);
-    request.sums[at] = film.sums[p];
-    request.weights[at] = film.weights[p];
-    if (!request.rays.empty()) request.rays[at] = film.rays[p];
-    std::copy_n(film.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * p), vectors,
-                request.aovs.begin() + static_cast<std::ptrdiff_t>(vectors * at));
-  });
-  return request;
-}
-
-void take_figures(Frame& frame, std::size_t i) {
-  const WorkerFigures figures = frame.workers[i].device->figures();
-  const std::lock_guard lock(frame.mutex);
-  DeviceReport& report = frame.workers[i].report;
-  report.kernels = figures.kernels;
-  report.notes = figures.notes;
-  report.tables_uploaded = figures.tables_uploaded;
-  report.bytes_uploaded = figures.bytes_uploaded;
-  report.kernels_built = figures.kernels_built;
-  frame.readback = std::max(frame.readback, figures.readback_seconds);
-}
 
 /// Puts a tile, or the finished rows of one, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
@@ -90,40 +63,6 @@ void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   report_progress(frame);
   look_for_stop(frame);
   look_at_clock(frame);
-}
-
-/// Takes a failure down. Returns false when the worker has failed too often.
-bool note_failure(Frame& frame, std::size_t i, const char* what) {
-  const std::lock_guard lock(frame.mutex);
-  DeviceReport& report = frame.workers[i].report;
-  report.messages.push_back(what);
-  return ++report.failures < frame.workers[i].device->failures_allowed();
-}
-
-/// Opens the worker; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
-/// would mend is thrown at once: kernels that do not build, a process that is gone.
-RenderTimes open(Frame& frame, std::size_t i) {
-  while (true) {
-    try {
-      return frame.workers[i].device->open();
-    } catch (const DeviceError& error) {
-      if (error.status == 0 || frame.stop || !note_failure(frame, i, error.what())) throw;
-    }
-  }
-}
-
-/// Has the worker render a tile of the frame, which lies somewhere in the picture.
-TileResult render_in_picture(const Frame& frame, DeviceWorker& worker, TileRequest request,
-                             const StopFlags& flags) {
-  if (!frame.options.region) return worker.render(request, flags);
-  const Tile asked = request.tile;
-  if (request.pixels.empty()) request.tile.x += frame.area.x, request.tile.y += frame.area.y;
-  const u32 corner = static_cast<u32>(frame.area.x) | static_cast<u32>(frame.area.y) << 16;
-  for (u32& pixel : request.pixels)
-    if (pixel != NO_PIXEL) pixel += corner;
-  TileResult made = worker.render(request, flags);
-  made.tile.x = asked.x, made.tile.y = asked.y;
-  return made;
 }
 
 /// Makes one tile; throws what the worker throws.
@@ -142,94 +81,68 @@ void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   (first ? frame.workers[i].report.tiles : frame.workers[i].report.outrun) += whole || !first;
 }
 
-/// Takes tiles until there are none, the frame is stopped, or the worker has failed too often (which throws).
-void work(Frame& frame, std::size_t i) {
+}  // namespace
+
+void make_tiles(Frame& frame, std::size_t i) {
   while (const std::optional<TileJob> job = frame.queue.take(i)) {
     if (frame.between_tiles) frame.between_tiles(i);
     try {
       make_tile(frame, i, *job);
       if (frame.live) take_figures(frame, i);
     } catch (const DeviceError& error) {
-      const bool too_large = is_out_of_resources(error.status) && pixel_count(job->tile) > least_pixels;
-      if (too_large) frame.queue.halve(i, job->tile);
-      frame.queue.failed(i, *job);
-      if (frame.stop) return;
-      if (!too_large && !note_failure(frame, i, error.what())) throw;
-      open(frame, i);  // a driver that has failed once may have lost more than the launch
+      if (!recover(frame, i, *job, error)) return;
     }
   }
 }
 
-/// A device that is expected to be of little use beside a fast one on the same cores takes only idle ones.
-void be_nice(const Frame& frame, std::size_t i) {
-  const auto estimate = [&](std::size_t k) { return frame.workers[k].device->info().estimate; };
-  const int processor = frame.workers[i].device->processor();
-  for (std::size_t k = 0; k < frame.workers.size(); ++k)
-    if (processor >= 0 && frame.workers[k].device->processor() == processor &&
-        estimate(k) > burden_factor * estimate(i))
-      return frame.workers[i].device->be_nice();
+namespace {
+
+/// The film takes the complete pass. Returns the one after it, as the film wants it.
+std::optional<Pass> following_pass(Frame& frame) {
+  if (frame.coarse.block > 0) {
+    if (std::optional<Pass> finer = finer_pass(frame)) return finer;
+  } else {
+    measure_pixels(frame);
+    add_pass(frame.film, frame.pass, std::move(frame.pass_film), true);
+  }
+  return next_pass(frame.film, frame.plan, frame.pass);
 }
 
-void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
-  const std::lock_guard lock(frame.mutex);
-  frame.workers[i].report.kernels_cached = times.cached;
-  frame.workers[i].report.ready = true;
-  if (!frame.timed) {
-    frame.times = times;
-    frame.timed = i;
-  }
-  frame.workers[i].phase = Phase::working;
+/// Puts what is done of the pass in hand into the film of the passes before.
+Film joined(const Frame& frame, Film film, Film made) {
+  if (!made.done.empty() && frame.coarse.block == 0) add_pass(film, frame.pass, std::move(made), false);
+  if (film.sums.empty()) film.allocate();
+  if (frame.plan.settings.subsample && !frame.pass.is_none()) interpolate_rest(film);
+  return film;
 }
 
 }  // namespace
 
-Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::vector<DeviceSpeed>& speeds)
-    : options(std::move(options_)),
-      plan(std::move(plan_)),
-      film(std::move(film_)),
-      queue({.lists = std::vector<WaitingTiles>(1)}, speeds) {
-  std::vector<double> estimates;
-  for (const DeviceSpeed& speed : speeds) estimates.push_back(speed.estimate);
-  tiles = [this, estimates](const Film& of_pass) { return plan_tiles(options, of_pass, estimates); };
-  queue.expect_more();
+void plan_next_pass(Frame& frame) {
+  while (frame.queue.waits_for_more()) begin_pass(frame, following_pass(frame));
 }
 
-void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
-  frame.queue.retire(i);
+// The film.
+
+Film film_so_far(const Frame& frame) { return joined(frame, frame.film, frame.pass_film); }
+
+Film take_film(Frame& frame) { return joined(frame, std::move(frame.film), std::move(frame.pass_film)); }
+
+// The image.
+
+RenderResult finish_frame(Frame& frame) {
   const std::lock_guard lock(frame.mutex);
-  Frame::Worker& worker = frame.workers[i];
-  if (worker.failed) return;
-  worker.failed = worker.report.retired = true;
-  if (worker.report.messages.empty() || worker.report.messages.back() != why)
-    worker.report.messages.push_back(why);
-  frame.last_error = std::move(error);
-  if (std::ranges::all_of(frame.workers, &Frame::Worker::failed)) frame.queue.close();
-}
-
-void work_on_frame(Frame& frame, std::size_t i) {
-  try {
-    be_nice(frame, i);
-    if (frame.queue.wait_until_needed(i)) {
-      const RenderTimes times = open(frame, i);
-      begin_work(frame, i, times);
-      frame.queue.ready(i);
-      work(frame, i);
-    }
-  } catch (const std::exception& error) {
-    retire_worker(frame, i, error.what(), std::current_exception());
-  }
-  take_figures(frame, i);
-}
-
-void leave_frame(Frame& frame, std::size_t i, bool closes) {
-  set_phase(frame, i, Phase::closing);
-  try {
-    DeviceWorker& worker = *frame.workers[i].device;
-    closes ? worker.close() : worker.keep_programs();
-  } catch (const std::exception&) {
-    // The device is gone either way; the frame keeps its finished tiles.
-  }
-  set_phase(frame, i, Phase::gone);
+  RenderResult result;
+  note_end(frame, result);
+  const bool is_lost = result.failure && !(frame.options.keep_failed && has_pixels(frame));
+  keep_checkpoint(frame, result);
+  if (is_lost) std::rethrow_exception(result.failure);
+  // With what there is of another pass, parts of the picture would have twice the samples of others.
+  if (result.time_limited && frame.film.stage > 0) frame.pass_film = Film();
+  result.film = take_film(frame);
+  develop(frame, result);
+  note_figures(frame, result);
+  return result;
 }
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
-// A frame at work: a session's threads, one a worker, take tiles from the queue, while another watches for
-// the end, for an interrupt and for drivers that hang. Internal to the render layer.
+// A frame from its plan to its image: a session's threads, one a worker, take tiles from the queue, while
+// another watches for the end, for an interrupt and for drivers that hang. Internal to the render layer.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "compile/compiled_scene.h"
 #include "render/frame/device_worker.h"
+#include "render/frame/result.h"
 #include "render/frame/tile_queue.h"
 #include "render/plan/coarse.h"
 #include "render/plan/passes.h"
@@ -75,6 +77,15 @@ inline const std::filesystem::path& checkpoint_path(const RenderOptions& options
   return options.checkpoint.empty() ? options.resume : options.checkpoint;
 }
 
+/// Plans the frame and begins its first pass, or continues its checkpoint. Throws what render() does
+/// (render.h).
+std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                   const RenderOptions& options);
+
+/// Gathers what was made of a frame that is over. Throws the failure of the last device when the frame is
+/// lost.
+RenderResult finish_frame(Frame& frame);
+
 /// Plans the next pass when all tiles of the one in hand are done; without another the frame is complete.
 /// The caller holds the frame's mutex, or is alone with it, here and below.
 void plan_next_pass(Frame& frame);
@@ -88,9 +99,20 @@ void continue_pass(Frame& frame);
 /// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
 void begin_coarse(Frame& frame, int block);
 
+/// Ends a coarse pass, whose picture may now be looked at. Returns the next one, or nothing when the frame's
+/// own follow.
+std::optional<Pass> finer_pass(Frame& frame);
+
+/// Notes how long a pixel of the frame's first pass took.
+void measure_pixels(Frame& frame);
+
 /// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
 /// fails too often is retired. What it throws is kept in the frame.
 void work_on_frame(Frame& frame, std::size_t i);
+
+/// Makes tiles by worker i until there are none, the frame is stopped, or the worker has failed too often
+/// (which throws).
+void make_tiles(Frame& frame, std::size_t i);
 
 /// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
 void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);

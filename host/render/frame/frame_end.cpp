@@ -1,10 +1,11 @@
-// How far a frame is, and what ends it early.
+// How far a frame is, what ends it early, and what is made of it then.
+#include "render/frame/frame_end.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/frame/frame.h"
 
 namespace sundog {
 namespace {
@@ -17,6 +18,37 @@ bool may_end(const Frame& frame) {
   return frame.film.stage > 0 && std::ranges::any_of(frame.workers, [](const Frame::Worker& worker) {
            return worker.report.pixels > 0;
          });
+}
+
+std::vector<DeviceReport> reports(const Frame& frame) {
+  std::vector<DeviceReport> result;
+  std::uint64_t pixels = 0;
+  for (const Frame::Worker& worker : frame.workers) pixels += worker.report.pixels;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+    DeviceReport report = frame.workers[i].report;
+    report.busy_seconds = frame.queue.work(i).busy_seconds;
+    report.share =
+        static_cast<double>(report.pixels) / static_cast<double>(std::max<std::uint64_t>(1, pixels));
+    result.push_back(std::move(report));
+  }
+  return result;
+}
+
+double frame_efficiency(const Frame& frame) {
+  std::vector<DeviceWork> work;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) work.push_back(frame.queue.work(i));
+  return efficiency(work);
+}
+
+/// Leaves an area alone of what the frame has made.
+void cut_to(const Tile& area, RenderResult& result) {
+  const auto cut = [&](Image& image) {
+    image.data = cut_pixels(image.data, image.width, area, static_cast<std::size_t>(image.channels));
+    image.width = area.width, image.height = area.height;
+  };
+  result.film = result.film.cut(area);
+  cut(result.image);
+  for (auto& [name, image] : result.aovs) cut(image);
 }
 
 }  // namespace
@@ -49,6 +81,35 @@ void look_for_stop(Frame& frame) {
   if (!frame.options.stop || !frame.options.stop->load()) return;
   frame.stop = true;
   frame.queue.close();
+}
+
+void note_end(const Frame& frame, RenderResult& result) {
+  const bool stopped = frame.options.stop && frame.options.stop->load();
+  result.key = frame.key;
+  result.complete = frame.queue.complete();
+  result.time_limited = frame.limited && !result.complete;
+  result.checkpoint_left = frame.checkpoint_left;
+  if (!result.complete && !stopped) result.failure = frame.last_error;
+}
+
+void note_figures(const Frame& frame, RenderResult& result) {
+  result.devices = reports(frame);
+  result.efficiency = frame_efficiency(frame);
+  result.counts = frame.counts;
+  result.times = frame.times;
+  RenderTimes& times = result.times;
+  if (frame.timed) times.build_kernels += first_launch_seconds(frame.workers[*frame.timed].report.kernels);
+  times.readback = frame.readback;
+  times.render = std::max(0.0, frame.clock.seconds() - times.build_kernels - times.upload - frame.readback);
+}
+
+void develop(const Frame& frame, RenderResult& result) {
+  const RenderOptions& options = frame.options;
+  if (options.channels > 0) {
+    result.image = result.film.develop(options.channels);
+    for (const std::string& name : options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  }
+  if (options.region) cut_to(frame.inner, result);
 }
 
 }  // namespace sundog

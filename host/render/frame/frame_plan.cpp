@@ -95,6 +95,17 @@ std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const
 
 }  // namespace
 
+Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::vector<DeviceSpeed>& speeds)
+    : options(std::move(options_)),
+      plan(std::move(plan_)),
+      film(std::move(film_)),
+      queue({.lists = std::vector<WaitingTiles>(1)}, speeds) {
+  std::vector<double> estimates;
+  for (const DeviceSpeed& speed : speeds) estimates.push_back(speed.estimate);
+  tiles = [this, estimates](const Film& of_pass) { return plan_tiles(options, of_pass, estimates); };
+  queue.expect_more();
+}
+
 void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                  const RenderOptions& options) {
   check_aovs(options.aovs);

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "render/film/group_names.h"
-#include "render/session/frame_watch.h"
+#include "render/frame/frame_watch.h"
 #include "render/session/live_session.h"
 #include "scene/integrators.h"
 #include "scene/light_groups.h"
@@ -156,7 +156,7 @@ void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   }
   retire(std::exchange(current, std::move(made)));
   if (draft) return note();
-  current->times.compiled = order.clock.seconds();
+  drawn()->times.compiled = order.clock.seconds();
   set_state(SessionState::preparing);
 }
 
@@ -214,7 +214,7 @@ void LiveSession::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
 
 /// Ends the generation if nobody is left to draw it.
 void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
-  const std::shared_ptr<SessionFrame> mine = current;
+  const std::shared_ptr<SessionFrame> mine = drawn();
   lock.unlock();
   Frame& frame = *mine->frame;
   retire_hanging(frame);
@@ -235,7 +235,8 @@ void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
 // The device threads.
 
 void LiveSession::after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
-                              const std::shared_ptr<SessionFrame>& mine) {
+                              const std::shared_ptr<FrameTask>& task) {
+  const auto mine = std::static_pointer_cast<SessionFrame>(task);
   lock.unlock();
   Frame& frame = *mine->frame;
   const bool draft = thread.of_scenes->draws_draft();

@@ -5,8 +5,8 @@
 #include <future>
 #include <thread>
 
-#include "render/session/frame_loop.h"
-#include "render/session/render_session.h"
+#include "render/frame/frame_loop.h"
+#include "render/session/session_frame.h"
 
 namespace sundog {
 
@@ -54,6 +54,8 @@ struct LiveSession : FrameLoop {
   mutable std::uint64_t picture_passes = 0, picture_pixels = 0;
   mutable std::vector<glm::vec3> picture_balance;
 
+  /// The frame in hand, all of which are a session's.
+  std::shared_ptr<SessionFrame> drawn() const { return std::static_pointer_cast<SessionFrame>(current); }
   void set_state(SessionState next) {
     state = next;
     note();
@@ -90,15 +92,16 @@ struct LiveSession : FrameLoop {
   }
   void run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) override;
   void after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
-                   const std::shared_ptr<SessionFrame>& mine) override;
+                   const std::shared_ptr<FrameTask>& task) override;
   void note_progress(const std::shared_ptr<SessionFrame>& mine);
   bool is_draft(const std::shared_ptr<SessionFrame>& frame) const;
   void end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
                  const std::shared_ptr<SessionFrame>& mine);
   /// The frame in hand may bring its first picture before a newer one takes its place.
   bool is_awaited() const {
-    return current && !current->final && !current->frame->stop && current->times.first < 0 &&
-           current->times.settled < 0 && current->begun.seconds() < current->settings.patience;
+    const std::shared_ptr<const SessionFrame> mine = drawn();
+    return mine && !mine->final && !mine->frame->stop && mine->times.first < 0 && mine->times.settled < 0 &&
+           mine->begun.seconds() < mine->settings.patience;
   }
   /// A frame that is rendered to its end is let go of by its caller.
   bool is_held() const { return current && current->final; }

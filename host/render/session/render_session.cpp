@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "render/device/local_worker.h"
-#include "render/frame/final_frame.h"
+#include "render/frame/frame.h"
 #include "render/session/live_session.h"
 
 namespace sundog {
@@ -48,7 +48,7 @@ std::string state_text(const Snapshot& now) {
 
 RenderSession::RenderSession(const std::vector<DeviceInfo>& devices) : RenderSession(make_workers(devices)) {}
 
-RenderSession::RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers)
+RenderSession::RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& workers)
     : live_(std::make_shared<LiveSession>()) {
   live_->begin(workers);
 }
@@ -121,7 +121,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
     snapshot.error = s.error;
     snapshot.prepared = s.rested == s.newest && s.newest > 0;
     for (const auto& thread : s.threads) workers.push_back(thread->of_scenes);
-    current = s.current;
+    current = s.drawn();
     shown = s.shown;
     snapshot.draft = current && s.is_draft(current);
     const std::shared_ptr<SessionFrame>& times = current && current->generation == s.newest ? current : shown;
@@ -213,9 +213,9 @@ std::optional<Picked> RenderSession::pick(int x, int y) {
     const Generation mine = s.newest;
     s.changed.wait(lock, [&] {
       return s.closing || s.newest != mine || is_at_rest(s.state) || s.state == SessionState::idle ||
-             (s.current && s.current->generation == mine);
+             (s.current && s.drawn()->generation == mine);
     });
-    if (s.newest != mine || !s.current || s.current->generation != mine || s.state == SessionState::failed)
+    if (s.newest != mine || !s.current || s.drawn()->generation != mine || s.state == SessionState::failed)
       return std::nullopt;
     const SceneInfo& info = s.current->flat->info;
     if (x < 0 || y < 0 || x >= static_cast<int>(info.width) || y >= static_cast<int>(info.height))

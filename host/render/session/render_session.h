@@ -124,7 +124,7 @@ class RenderSession {
   /// Opens nothing: each device's thread opens it at the first start(). Throws DeviceError without devices.
   explicit RenderSession(const std::vector<DeviceInfo>& devices);
   /// For other workers than this process's devices.
-  explicit RenderSession(std::vector<std::shared_ptr<SceneWorker>> workers);
+  explicit RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& workers);
   /// Stops drawing: waits for launches (about 50 ms), not for a driver that hangs or compiles.
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;

@@ -4,21 +4,17 @@
 #include <memory>
 
 #include "compile/scene_compiler.h"
-#include "render/frame/frame.h"
+#include "render/frame/frame_loop.h"
 #include "render/session/render_session.h"
 
 namespace sundog {
 
 /// The scene and the frame do not change who they are; the rest is for the session's mutex.
-struct SessionFrame {
+struct SessionFrame : FrameTask {
   Generation generation = 0;
   std::shared_ptr<const SceneDescription> scene;
-  std::shared_ptr<const CompiledScene> flat;  // null: the workers have the scene
-  std::shared_ptr<Frame> frame;
-  bool final = false;   // a caller waits for its end; it is never a draft, and no snapshot shows it
-  bool closes = false;  // so is the session: workers are closed behind it
-  Stopwatch clock;      // since start()
-  Stopwatch begun;      // since it can be drawn
+  Stopwatch clock;  // since start()
+  Stopwatch begun;  // since it can be drawn
   SessionSettings settings;
   SessionTimes times;
   CompileWork compiled;  // for this generation

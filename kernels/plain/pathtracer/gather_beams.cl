@@ -29,6 +29,18 @@ static inline void scatter_beam(const PathState* path, const MediumSegment* s,
   }
 }
 
+// Whether the segment's line may meet the cone of a group of beams. At a distance x from where line and axis
+// come nearest, their distance is sqrt(apart^2 + x^2 sine^2), and the cone's radius grows by growth x cosine.
+HAVING(HAS_CAUSTICS)
+static inline bool may_meet_beams(const MediumSegment* s, UNIFORM __global const float4* group) {
+  const float4 point = group[0], way = group[1];
+  const float3 to = point.xyz - s->o, normal = cross(s->d, way.xyz);
+  const float sine2 = dot(normal, normal), apart = dot(to, normal),
+              radius = fma(point.w, sine2, way.w * dot(cross(to, s->d), normal)),
+              steep = sine2 - way.w * way.w * (1.0f - sine2);
+  return !(steep > 1e-7f) || (radius >= 0.0f && radius * radius >= apart * apart * steep);
+}
+
 // The light of photons that the segment scatters towards its beginning. Each sample of a pixel looks at its
 // quarter of the beams of its map, which all pixels share.
 HAVING(HAS_CAUSTICS)
@@ -39,11 +51,14 @@ static SampledSpectrum gather_beams(UNIFORM const Scene* scene, PathState* path,
   float radius = 1.0f;
   EACH_ALIKE(u32, sample, (u32)path->at.sample) {
     __global const PhotonMap* map = map_of_sample(scene, sample);
-    const u32 turn = sample % PHOTON_MAP_SAMPLES;
+    const u32 groups = map->beam_groups, first = groups * (sample % PHOTON_MAP_SAMPLES);
     radius = map->radius;
-    for (u32 i = map->beams * turn / PHOTON_MAP_SAMPLES; i < map->beams * (turn + 1u) / PHOTON_MAP_SAMPLES;
-         ++i)
-      scatter_beam(path, s, scene->photons + map->first_beam + 3u * i, map->radius, slice, deepest, &sum);
+    for (u32 i = first; i < first + groups; ++i) {
+      __global const float4* group = scene->photons + map->first_beam + BEAM_GROUP_ROWS * i;
+      if (may_meet_beams(s, group))
+        for (u32 k = 0; k < BEAM_GROUP; ++k)
+          scatter_beam(path, s, group + 2u + 3u * k, map->radius, slice, deepest, &sum);
+    }
   }
   const float factor = (float)(PHOTON_MAP_SAMPLES * PHOTON_SLICES) / (2.0f * radius);
   const SampledSpectrum light = path->throughput * s->scattering * sum * factor;

@@ -193,9 +193,9 @@ TEST_CASE("the user's options reach the compiler and are part of what the cache 
   const std::string text = add_kernel +
                            "#ifndef FROM_OUTSIDE\n#error not defined\n#endif\n"
                            "__kernel void tell(__global uint* value) { value[0] = FROM_OUTSIDE; }\n";
-  on_every_device([&](const DeviceInfo& device) {
+  on_every_device([&](const DeviceInfo& tested) {
     const OwnCache cache;
-    const DeviceInfo info = cache.with(device);
+    const DeviceInfo info = cache.with(tested);
     const auto told = [&](const char* options, bool* cached) {
       Device device(changed(info, [&](HostEnvironment& e) { e.build_options = options; }));
       BuildReport report;

@@ -2,6 +2,9 @@
 #include "device/choice.h"
 #include "sdf_values.h"
 
+using namespace sundog;
+using glm::dvec3;
+
 namespace {
 
 SdfNode joint(SdfNode::Kind kind, double smooth, std::vector<SdfNode> children) {

@@ -61,7 +61,7 @@ SceneDescription mist_scene(Shining shining, int samples) {
   scene.camera.target = {-0.05, 0.02, 0};
   scene.camera.fov = 6;
   scene.image.width = scene.image.height = 24;
-  scene.render.photons = 16384;
+  scene.render.photons = 65536;
   scene.render.photon_radius = 0.02;
   scene.materials[static_cast<std::size_t>(scene.objects[0].material)].diffuse = dvec3(0);
   scenes::place(scene, BoxShape{{1.5, 0.6, 1.5}}, scenes::add_dielectric(scene, 1, {0.1, 0.1, 0.1}, -1),

@@ -165,6 +165,7 @@ TEST_CASE("photons that every perfect lobe sends on bring to every scattering on
 TEST_CASE("layered and glossy surfaces have from photons, and narrow lobes from paths, what paths find") {
   const char* floors[] = {
       R"({"type": "openpbr", "base_color": [0.4, 0.4, 0.4], "coat_weight": 1, "coat_roughness": 0.2})",
+      R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.1})",
       R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.3})",
       R"({"type": "openpbr", "base_color": [0.8, 0.8, 0.8], "base_metalness": 1, "specular_roughness": 0.5})",
       R"({"color": [0.2, 0.2, 0.2], "diffuse": 1, "reflection": 0.3, "roughness": 0.3})",
@@ -276,5 +277,11 @@ TEST_CASE("a plane without end between the sun and everything stops photons, as 
         scene.render.caustics = false;  // the ground far beyond a box is lit, and seen in the glass
         CHECK(brought == Approx(mean_on(device, scene).value.x).epsilon(0.05));
       }
+    const std::string beyond =
+        R"({"type": "plane", "point": [0, 0, 9], "normal": [0, 0, -1], "material": "white"})";
+    SceneDescription scene = behind(beyond, "");
+    const double brought = mean_on(device, scene).value.x;
+    scene.render.caustics = false;
+    CHECK(brought > 1.05 * mean_on(device, scene).value.x);
   });
 }

@@ -1,6 +1,7 @@
 // sample_lobes() and the sampler behind it: means over many directions have closed forms, perfect reflection
 // and refraction their laws.
 #include <cmath>
+#include <glm/glm.hpp>
 #include <numbers>
 #include <vector>
 

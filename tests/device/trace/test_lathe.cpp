@@ -1,5 +1,6 @@
 // Exact lathes against their profile's polynomials in double precision, on all kinds of rays.
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <random>
 

@@ -21,10 +21,10 @@ struct Fresnel {
   Complex reflected, passed;
 };
 
-Fresnel across(double n, Complex cos_n, double m, Complex cos_m) {
+Fresnel field_across(double n, Complex cos_n, double m, Complex cos_m) {
   return {(n * cos_n - m * cos_m) / (n * cos_n + m * cos_m), 2.0 * n * cos_n / (n * cos_n + m * cos_m)};
 }
-Fresnel along(double n, Complex cos_n, double m, Complex cos_m) {
+Fresnel field_along(double n, Complex cos_n, double m, Complex cos_m) {
   return {(m * cos_n - n * cos_m) / (m * cos_n + n * cos_m), 2.0 * n * cos_n / (m * cos_n + n * cos_m)};
 }
 
@@ -57,7 +57,8 @@ TEST_CASE("a film reflects what the sum of its reflections is") {
       for (const double wavelength : {420.0, 550.0, 680.0}) {
         INFO(film.thickness << " nm at " << cosine << ", " << wavelength << " nm");
         const double sum =
-            (summed(film, cosine, wavelength, across) + summed(film, cosine, wavelength, along)) / 2;
+            (summed(film, cosine, wavelength, field_across) + summed(film, cosine, wavelength, field_along)) /
+            2;
         CHECK(film_reflectance(film, cosine, wavelength) == Approx(sum).epsilon(1e-9));
       }
 }

@@ -84,3 +84,14 @@ TEST_CASE("without its maker's options a device is built for with all the others
   const std::string options = options_of(any, "render_path");
   CHECK(portable_options(any, options) == options);
 }
+
+TEST_CASE("an option that begins with a rule's option replaces none") {
+  DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA"), amd = gpu("Advanced Micro Devices", "AMD");
+  HostEnvironment environment;
+  environment.build_options = "-DNODE_LOOP2=1 -DMORE=-DDEVICE_WAVES -cl-nv-maxrregcount=12 -cl-nv";
+  nvidia.environment = amd.environment = std::make_shared<const HostEnvironment>(environment);
+  CHECK_THAT(options_of(amd, "render_path"), ContainsSubstring(" -DNODE_LOOP=2 -DDEVICE_WAVES=10 "));
+  const std::string own = options_of(nvidia, "render_path");
+  CHECK_THAT(own, !ContainsSubstring("maxrregcount=128") && !ContainsSubstring("maxrregcount=64"));
+  CHECK_THAT(portable_options(nvidia, own), ContainsSubstring(" -cl-nv-maxrregcount=12 -cl-nv"));
+}

@@ -165,24 +165,3 @@ TEST_CASE("the schema and the pages name every format of models") {
       CHECK(read_file(root / name).find(format) != std::string::npos);
     }
 }
-
-TEST_CASE("the page of variables has every variable that a source reads, and names no other of sundog's") {
-  const std::string page = read_file(root / "docs/reference/variables.md");
-  const std::regex read(R"re(\b(?:getenv|variable|seconds_of)\("([A-Z_]+)")re"), own(R"(\bSUNDOG_[A-Z_]+)");
-  std::set<std::string> known{"SUNDOG_TEST_DEVICES"};  // of the tests
-  for (const auto& entry : fs::recursive_directory_iterator(root / "host")) {
-    if (entry.path().extension() != ".cpp") continue;
-    const std::string text = read_file(entry.path());
-    for (std::sregex_iterator it(text.begin(), text.end(), read), end; it != end; ++it)
-      known.insert((*it)[1]);
-  }
-  CHECK(known.size() > 15);
-  for (const std::string& name : known) {
-    CAPTURE(name);
-    CHECK(std::regex_search(page, std::regex("`" + name + "\\b")));
-  }
-  for (std::sregex_iterator it(page.begin(), page.end(), own), end; it != end; ++it) {
-    CAPTURE(it->str());
-    CHECK(known.count(it->str()) == 1);
-  }
-}

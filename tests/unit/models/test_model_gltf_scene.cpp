@@ -1,6 +1,7 @@
 // The parts of a glTF that are no mesh: materials, lights, cameras.
 #include <numbers>
 
+#include "base/error.h"
 #include "catch.h"
 #include "gltf_text.h"
 #include "model_files.h"

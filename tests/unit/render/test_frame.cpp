@@ -1,5 +1,5 @@
 // A frame's threads without a device: workers that are made up take tiles, fail, hang and are stopped.
-#include "render/session/frame_loop.h"
+#include "render/frame/frame_loop.h"
 
 #include <chrono>
 #include <thread>

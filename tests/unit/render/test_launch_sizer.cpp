@@ -162,22 +162,22 @@ TEST_CASE("failures are answered by less, until there is nothing less") {
     CHECK(asked > 3);
   }
   SECTION("loops that are cut short make fewer samples at a time, at last groups of one") {
-    LaunchSizer sizer(cpu(1), {}, {}, false);
+    LaunchSizer single(cpu(1), {}, {}, false);
     const Tile small{0, 0, 16, 16};
-    run(sizer, small, 64, 1e-8);  // launches have grown to many samples
-    sizer.begin(small, 64);
-    REQUIRE(sizer.next()->launch.sample_count > 2);
-    unsigned samples = sizer.tile_samples();
+    run(single, small, 64, 1e-8);  // launches have grown to many samples
+    single.begin(small, 64);
+    REQUIRE(single.next()->launch.sample_count > 2);
+    unsigned samples = single.tile_samples();
     while (samples > 1) {
-      REQUIRE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
-      sizer.begin(small, 64);
-      REQUIRE(sizer.next()->launch.sample_count <= samples / 2);
-      samples = sizer.tile_samples();
+      REQUIRE(single.ask_less(LaunchFailure::loops_cut_short, "why"));
+      single.begin(small, 64);
+      REQUIRE(single.next()->launch.sample_count <= samples / 2);
+      samples = single.tile_samples();
     }
-    REQUIRE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
-    sizer.begin(small, 64);
-    CHECK(sizer.next()->size.local_x == 1);
-    CHECK_FALSE(sizer.ask_less(LaunchFailure::loops_cut_short, "why"));
+    REQUIRE(single.ask_less(LaunchFailure::loops_cut_short, "why"));
+    single.begin(small, 64);
+    CHECK(single.next()->size.local_x == 1);
+    CHECK_FALSE(single.ask_less(LaunchFailure::loops_cut_short, "why"));
   }
 }
 

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/image_io.h"
 #include "catch.h"
+#include "render/film/frame_memory.h"
 #include "scene/json/parse.h"
 #include "scene/load.h"
 #include "scene_text.h"
@@ -127,4 +129,18 @@ TEST_CASE("a bad mesh file is named by itself") {
     CHECK(error.file == (folder.path() / "bad.ply").string());
     CHECK(error.place == "line 3");
   }
+}
+
+TEST_CASE("a format is known by its extension, whatever its case") {
+  const TemporaryFolder folder;
+  for (const char* name : {"A.JSON", "b.Json"})
+    CHECK_NOTHROW(load_scene(folder.write(name, R"({"objects": []})")));
+  CHECK_FALSE(drops_alpha("picture.Exr"));
+  const auto bytes = [](const char* name) {
+    FrameOutput output;
+    output.file = name;
+    return bytes_a_pixel(output);
+  };
+  for (const auto& [name, other] : {std::pair("a.PFM", "a.pfm"), {"a.Hdr", "a.hdr"}, {"a.Part", "a.part"}})
+    CHECK(bytes(name) == bytes(other));
 }

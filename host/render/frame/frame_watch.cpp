@@ -2,8 +2,8 @@
 // leaves the threads that stay.
 #include <algorithm>
 
-#include "render/film/checkpoint.h"
-#include "render/session/frame_watch.h"
+#include "render/frame/frame_checkpoint.h"
+#include "render/frame/frame_watch.h"
 
 namespace sundog {
 namespace {
@@ -37,30 +37,6 @@ void show_progress(Frame& frame) {
   if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
-/// Keeps what is done against what gives no warning: a process killed, a machine that goes down.
-void keep_checkpoint(Frame& frame) {
-  const RenderOptions& options = frame.options;
-  const bool now = options.keep_now && options.keep_now->exchange(false);
-  if (checkpoint_path(options).empty()) return;
-  if (!now && frame.since_checkpoint.seconds() < options.checkpoint_seconds) return;
-  frame.since_checkpoint = Stopwatch();
-  Film film, made;
-  Pass pass;
-  {
-    const std::lock_guard lock(frame.mutex);
-    if (frame.pixels_done == frame.pixels_kept) return;
-    frame.pixels_kept = frame.pixels_done;
-    film = frame.film;
-    pass = frame.pass;
-    made = frame.pass_film;
-  }
-  try {
-    write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
-  } catch (const IoError&) {
-    // If the frame is interrupted, the last write reports the same error.
-  }
-}
-
 /// Waits until the frame is over, and retires workers that hang.
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_seconds)) {
@@ -70,7 +46,7 @@ void watch(Frame& frame) {
       const std::lock_guard lock(frame.mutex);
       look_at_clock(frame);
     }
-    keep_checkpoint(frame);
+    renew_checkpoint(frame);
     show_picture(frame);
     retire_hanging(frame);
   }

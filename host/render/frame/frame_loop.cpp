@@ -1,6 +1,6 @@
 // Starts the threads, gives each its turn in the frame, and leaves those in a driver behind at the end.
-#include "render/session/frame_loop.h"
-#include "render/session/frame_watch.h"
+#include "render/frame/frame_loop.h"
+#include "render/frame/frame_watch.h"
 
 namespace sundog {
 namespace {
@@ -22,7 +22,7 @@ void FrameLoop::add_thread(std::shared_ptr<DeviceWorker> worker) {
   });
 }
 
-void FrameLoop::run(const std::shared_ptr<SessionFrame>& mine, bool wait) {
+void FrameLoop::run(const std::shared_ptr<FrameTask>& mine, bool wait) {
   look_for_stop(*mine->frame);
   {
     const std::lock_guard lock(mutex);
@@ -102,8 +102,8 @@ void FrameLoop::run_thread(DeviceThread& thread) {
 }
 
 void FrameLoop::serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index) {
-  const std::shared_ptr<SessionFrame> mine = current;
-  std::shared_ptr<SessionFrame> before = std::exchange(thread.seen, mine);
+  const std::shared_ptr<FrameTask> mine = current;
+  std::shared_ptr<FrameTask> before = std::exchange(thread.seen, mine);
   thread.opening = true;
   lock.unlock();
   Frame& frame = *mine->frame;
@@ -124,7 +124,7 @@ void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
     const std::lock_guard lock(loop->mutex);
     for (const Frame::Worker& worker : frame->workers) loop->add_thread(worker.device);
   }
-  const auto mine = std::make_shared<SessionFrame>();
+  const auto mine = std::make_shared<FrameTask>();
   mine->frame = frame;
   mine->final = mine->closes = true;
   loop->run(mine, wait);
