@@ -11,7 +11,7 @@ if [[ ! -w $root && ! -w $build ]]; then  # a clone that cannot be written
 fi
 sundog=$build/sundog
 stamp=$build/built-program  # younger than every source: there is nothing to do
-sources=("$root"/{host,kernels,cmake,third_party,CMakeLists.txt,CMakePresets.json})
+sources=("$root"/{host,bench,kernels,cmake,third_party,CMakeLists.txt,CMakePresets.json})
 
 if [[ ! -x $sundog || ! -e $stamp || -n $(find "${sources[@]}" -newer "$stamp" -print -quit) ]]; then
   "$root/cmake/prepare.sh" program "$build" >&2

@@ -4,7 +4,7 @@
 # From a clone it runs build/release/sundog (or that of the folder SUNDOG_BUILD), from a bundle the bundle's. In this order: the devices;
 # `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); builds of kernels, cold and warm; `bench rays`
 # of three models, or of MODEL..., by each way through a node (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers
-# too; samples a second of six scenes; times by work-group size; the roofline; registers, memory and build logs of every kernel; watts and joules where
+# too; samples a second of six scenes; times by work-group size; the roofline; registers, memory, build logs and builds (cold, warm) of every kernel; watts and joules where
 # nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
 # OUT_DIR as soon as it is there, and summary.txt names it; one that fails does not keep the others from running, and those that would begin
 # after N seconds (480) are left out. SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.

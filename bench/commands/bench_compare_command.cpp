@@ -16,6 +16,7 @@
 #include "base/file.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/known_report.h"
+#include "bench/report/machine.h"
 #include "bench/runs/ratio.h"
 
 namespace sundog {
@@ -33,14 +34,18 @@ struct Side {
   std::vector<KnownReport> calls;
   std::vector<std::string> order;                             // names of its rows
   std::map<std::string, std::vector<std::vector<Run>>> runs;  // of each row, by call
+  bool in_turn = false;                                       // with those of the other sides
 };
 
-/// "0:0 platform / name", "0:0 name" and "0:0": what a row may call a device, the longest first.
+constexpr std::size_t title_at = 2;  // in device_names()
+
+/// "0:0 platform / name", "0:0 name", its title and "0:0": what a row may call a device, the longest first.
 std::vector<std::string> device_names(const KnownReport& report, std::size_t row) {
   const auto& cells = report.devices.rows[row];
   const std::string label = known_cell(report.devices, cells, "label");
-  const std::string place = label.substr(0, label.find(' '));
-  return {label, place + " " + known_cell(report.devices, cells, "name"), place};
+  const std::string name = known_cell(report.devices, cells, "name"),
+                    place = label.substr(0, label.find(' '));
+  return {label, place + " " + name, device_title(label, name), place};
 }
 
 std::set<std::string> device_labels(const KnownReport& report) {
@@ -72,7 +77,7 @@ void add_way(Side& side, const std::string& name, const MeasuredWay& way) {
 
 /// A report, or the reports in a folder, which several calls of one bench wrote.
 Side read_side(const std::string& name) {
-  Side side{fs::path(name).stem().string(), {}, {}, {}};
+  Side side{fs::path(name).stem().string(), {}, {}, {}, false};
   std::vector<std::string> files{name};
   std::error_code none;
   if (fs::is_directory(name, none)) {
@@ -86,11 +91,12 @@ Side read_side(const std::string& name) {
   return side;
 }
 
-/// The devices of one report, which took turns.
+/// The devices of one report; those of bench devices took turns, others were measured one after the other.
 std::vector<Side> sides_of(const KnownReport& report, const std::string& file) {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < report.devices.rows.size(); ++i) {
-    Side& side = sides.emplace_back(Side{device_names(report, i).front(), {}, {}, {}});
+    Side& side =
+        sides.emplace_back(Side{device_names(report, i)[title_at], {}, {}, {}, report.bench == "devices"});
     for (const MeasuredWay& way : report.ways) {
       std::string name = way.name;
       if (replace_device(name, device_names(report, i), "the device")) {
@@ -151,9 +157,13 @@ std::vector<Side> read_sides(const std::vector<std::string>& names) {
     for (const KnownReport& call : side.calls)
       for (const MeasuredWay& way : call.ways) {
         std::string name = way.name;
-        for (std::size_t k = 0; !same_devices && k < call.devices.rows.size(); ++k)
-          replace_device(name, device_names(call, k),
-                         call.devices.rows.size() == 1 ? "the device" : fmt::format("device {}", k + 1));
+        for (std::size_t k = 0; k < call.devices.rows.size(); ++k) {
+          const std::vector<std::string> known = device_names(call, k);
+          replace_device(name, known,
+                         same_devices                    ? known[title_at]
+                         : call.devices.rows.size() == 1 ? "the device"
+                                                         : fmt::format("device {}", k + 1));
+        }
         add_way(side, name, way);
       }
   return sides;
@@ -249,7 +259,7 @@ int bench_compare(const CompareOptions& options) {
   report.name = "compare";
   report.title = "Compared with " + base.name;
   Tally tally;
-  tally.in_turn = base.calls.empty();
+  tally.in_turn = base.in_turn;
   for (std::size_t i = 1; i < sides.size(); ++i) add_side(report, base, sides[i], tally);
   report.notes.emplace_back(
       "Ratio: the time over that of the base, with an interval that holds it with 95 % confidence. Of twenty "

@@ -25,11 +25,15 @@ namespace {
 
 constexpr double visible = 0.02;  // in linear colour
 
-std::string names(const std::vector<DeviceInfo>& devices) {
-  std::vector<std::string> places;
-  for (const DeviceInfo& device : devices) places.push_back(device_place(device));
-  const std::string text = fmt::format("{}", fmt::join(places, " + "));
-  return devices.size() == 1 ? fmt::format("{} {}", text, devices[0].name) : text;
+std::string joined(const std::vector<DeviceInfo>& devices, std::string (*name_of)(const DeviceInfo&)) {
+  std::vector<std::string> all;
+  for (const DeviceInfo& device : devices) all.push_back(name_of(device));
+  return fmt::format("{}", fmt::join(all, " + "));
+}
+std::string names(const std::vector<DeviceInfo>& devices) { return joined(devices, device_title); }
+/// For a bar, which has room for one name.
+std::string short_names(const std::vector<DeviceInfo>& devices) {
+  return devices.size() == 1 ? names(devices) : joined(devices, device_place);
 }
 
 /// Whether two choices have a compute unit in common.
@@ -157,8 +161,8 @@ class DeviceRanking {
                 {"differing pixels", "", static_cast<double>(made.differing)}};
         shown.insert(shown.end(), {{"time", "ms", ms}, {"of the best", "", ms.median / (1e3 * best)}});
         shown.insert(shown.end(), more.begin(), more.end());
-        plot.bars.push_back({names(made.devices).substr(0, 40), ms,
-                             made.devices.size() > 1 ? made.shares_text(subject) : ""});
+        plot.bars.push_back(
+            {short_names(made.devices), ms, made.devices.size() > 1 ? made.shares_text(subject) : ""});
       }
       add_row(table, shown, subject);
       add_measured(report, subject, {{"scene", "", name_}, devices}, more);

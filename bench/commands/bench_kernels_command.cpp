@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
+#include "base/environment.h"
 #include "bench/commands/bench_run.h"
+#include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
 #include "device/device.h"
 #include "render/device/kernel_config.h"
@@ -22,33 +26,52 @@ struct KernelFigures {
       0;                  // that sundog gives it: the kernel's limit, and room on a processor's stack
   PtxasFigures compiler;  // by the build log, where the driver tells
   std::optional<unsigned> resident_threads;  // on a multiprocessor, by its registers alone; NVIDIA's devices
+  double cold_seconds = 0;             // to build its program from source and to keep it in sundog's cache
+  std::optional<double> warm_seconds;  // to load that; nothing without a cache
 };
 
-/// Builds the kernels from their source: those of frames, with and without AOVs, and those of `bench rays`
-/// where something is traced. On NVIDIA's devices with -cl-nv-verbose. Throws DeviceError, BuildError.
-std::vector<KernelFigures> kernel_figures(Device& device, const CompiledScene& scene) {
+/// The device with sundog's cache, which it does not read while logs are kept (SUNDOG_BUILD_LOG).
+DeviceInfo with_cache(DeviceInfo info) {
+  HostEnvironment environment = value_of(info.environment);
+  environment.build_log.clear();
+  info.environment = std::make_shared<const HostEnvironment>(std::move(environment));
+  return info;
+}
+
+/// Builds a program from its source, then loads it on the device opened anew. `room`: the largest work-group
+/// that its stack has room for; 0: any. On NVIDIA's devices with -cl-nv-verbose. Throws DeviceError,
+/// BuildError.
+std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source,
+                                          std::size_t room) {
+  Device device(info), again(with_cache(info));
   const auto nvidia = device.nvidia();
-  device.build_with({nvidia ? "-cl-nv-verbose" : "", true});
-  const KernelConfig config = make_kernel_config(scene, device.info());
-  const std::size_t room = greatest_work_group(config, device.info());
+  const BuildWish wish{nvidia ? "-cl-nv-verbose" : "", true};
+  BuildReport report, loaded;
+  device.build_with(wish);
+  const Stopwatch building;
+  const Program program = device.build(source.entry, source.defines, &report, source.generated);
+  device.save_programs(true);
+  const double cold_seconds = building.seconds();
+  again.build_with({wish.options});
+  again.build(source.entry, source.defines, &loaded, source.generated);
+  auto compiler = read_ptxas_log(report.log);
   std::vector<KernelFigures> result;
-  for (const auto& [entry, defines, generated] : scene_programs(scene, device.info())) {
-    BuildReport report;
-    const Program program = device.build(entry, defines, &report, generated);
-    auto compiler = read_ptxas_log(report.log);
-    for (const std::string& name : program.kernel_names()) {
-      KernelFigures& figures = result.emplace_back();
-      figures.kernel = name;
-      figures.limits = device.limits(program.kernel<>(name));
-      figures.greatest_group =
-          room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
-      figures.compiler = compiler[name];
-      if (nvidia && figures.compiler.registers)
-        figures.resident_threads = resident_threads(*figures.compiler.registers, *nvidia);
-    }
+  for (const std::string& name : program.kernel_names()) {
+    KernelFigures& figures = result.emplace_back();
+    figures.kernel = name;
+    figures.limits = device.limits(program.kernel<>(name));
+    figures.greatest_group = room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
+    figures.compiler = compiler[name];
+    if (nvidia && figures.compiler.registers)
+      figures.resident_threads = resident_threads(*figures.compiler.registers, *nvidia);
+    figures.cold_seconds = cold_seconds;
+    if (loaded.cached) figures.warm_seconds = loaded.seconds;
   }
   return result;
 }
+
+/// Figures of each device's programs: a second build of one would find it in the driver.
+using KnownFigures = std::map<std::pair<std::string, SceneProgram>, std::vector<KernelFigures>>;
 
 /// Nothing where it is not known: 0 would be a figure.
 template <class T>
@@ -77,26 +100,35 @@ std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLi
           told(figures.compiler.spill_stores),
           told(figures.compiler.spill_loads),
           told(figures.resident_threads),
-          occupancy};
+          occupancy,
+          told(figures.cold_seconds),
+          told(figures.warm_seconds)};
 }
 
-const std::vector<Column> columns{{"kernel", ""},       {"group given", ""}, {"group limit", ""},
-                                  {"multiple", ""},     {"private", "B"},    {"local", "B"},
-                                  {"registers", ""},    {"stack", "B"},      {"spill stores", "B"},
-                                  {"spill loads", "B"}, {"threads", ""},     {"occupancy", "%"}};
+const std::vector<Column> columns{
+    {"kernel", ""},  {"group given", ""}, {"group limit", ""}, {"multiple", ""},      {"private", "B"},
+    {"local", "B"},  {"registers", ""},   {"stack", "B"},      {"spill stores", "B"}, {"spill loads", "B"},
+    {"threads", ""}, {"occupancy", "%"},  {"build cold", "s"}, {"build warm", "s"}};
 
-void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info) {
-  Device device(info);
+/// Adds frames' kernels, with and without AOVs, and those of `bench rays` where something is traced.
+void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info,
+                KnownFigures& known) {
+  const auto nvidia = Device(info).nvidia();
+  const std::size_t room = greatest_work_group(make_kernel_config(scene, info), info);
   const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
-  Table table{fmt::format("{} on {}, {} tracer", name, info.label(), tracer), columns, {}};
-  for (const KernelFigures& figures : kernel_figures(device, scene)) {
-    table.rows.push_back(row(figures, device.nvidia()));
-    std::vector<Cell> all{name, info.label(), tracer};
-    all.insert(all.end(), table.rows.back().begin(), table.rows.back().end());
-    report.measurements.rows.push_back(std::move(all));
+  Table table{fmt::format("{} on {}, {} tracer", name, device_title(info), tracer), columns, {}};
+  for (const SceneProgram& program : scene_programs(scene, info)) {
+    std::vector<KernelFigures>& all_figures = known[{info.label(), program}];
+    if (all_figures.empty()) all_figures = kernel_figures(info, program, room);
+    for (const KernelFigures& figures : all_figures) {
+      table.rows.push_back(row(figures, nvidia));
+      std::vector<Cell> all{name, device_title(info), tracer};
+      all.insert(all.end(), table.rows.back().begin(), table.rows.back().end());
+      report.measurements.rows.push_back(std::move(all));
+    }
   }
   report.parts.emplace_back(std::move(table));
-  if (const auto limits = device.nvidia())
+  if (const auto& limits = nvidia)
     report.notes.push_back(fmt::format(
         "{}: `threads` is how many threads a multiprocessor can hold if only the kernel's registers limit "
         "them: {} registers, a quarter for each of four schedulers, allocated to warps of {} in steps of "
@@ -106,6 +138,8 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
+  set_variable("POCL_CACHE_DIR", "", true);  // where PoCL finds what earlier processes built
+  KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
   Report& report = run.head();
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
@@ -115,13 +149,15 @@ int bench_kernels(const BenchOptions& options) {
     const auto scene = run.compiled(file);
     for (const DeviceInfo& info : devices) {
       show_step(options, fmt::format("{} on {}", scene_name(file), info.label()));
-      if (!run.is_stopped()) add_device(report, scene_name(file), *scene, info);
+      if (!run.is_stopped()) add_device(report, scene_name(file), *scene, info, known);
     }
   }
   report.notes.push_back(
       "`group given` is the largest work-group that sundog uses. `group limit`, `multiple`, `private` (for a "
       "work-item) and `local` (for a group) come from the driver. Registers, stack and spills come from the "
-      "build log of NVIDIA's compiler; other drivers do not report them. An empty cell: not known.");
+      "build log of NVIDIA's compiler; other drivers do not report them. `build cold` is from the source, "
+      "without the caches of sundog and of drivers, until the program is in sundog's cache; `build warm` "
+      "loads it from there. Kernels of one program are built together. An empty cell: not known.");
   return run.publish();
 }
 

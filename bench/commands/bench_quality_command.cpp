@@ -16,6 +16,7 @@
 #include "bench/commands/bench_run.h"
 #include "bench/frames/frame_runner.h"
 #include "bench/quality/perceived_difference.h"
+#include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/runs/measure.h"
 #include "compile/compiled_scene.h"
@@ -72,9 +73,9 @@ class QualityTimes {
           return std::make_shared<FrameRunner>(std::vector{frame_worker(plan_.device, scene)}, scene);
         };
         const auto first = [this, time](const FrameRunner& frames) { compare(*time, plan_, frames.image()); };
-        subjects_.push_back(frame_subject(
-            fmt::format("{} on {}, {}, {} samples", plan_.scene, plan_.device.label(), name_of(way), samples),
-            {open, first, {}}));
+        subjects_.push_back(frame_subject(fmt::format("{} on {}, {}, {} samples", plan_.scene,
+                                                      device_title(plan_.device), name_of(way), samples),
+                                          {open, first, {}}));
       }
   }
 
@@ -83,14 +84,14 @@ class QualityTimes {
   void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
   /// Adds tables, curves and measurements.
   void add_to(Report& report) const {
-    Table table{fmt::format("{} on {}: error by time", plan_.scene, plan_.device.label()), {}, {}};
+    Table table{fmt::format("{} on {}: error by time", plan_.scene, device_title(plan_.device)), {}, {}};
     for (std::size_t i = 0; i < times_.size(); ++i) {
       const QualityTime& time = *times_[i];
       const bool good = subjects_[i].is_good();
       std::vector<Field> shown{{"integrator", "", time.way.integrator},
                                {"sampler", "", time.way.sampler},
                                {"samples", "", static_cast<double>(time.samples)}};
-      std::vector<Field> row{{"scene", "", plan_.scene}, {"device", "", plan_.device.label()}};
+      std::vector<Field> row{{"scene", "", plan_.scene}, {"device", "", device_title(plan_.device)}};
       row.insert(row.end(), shown.begin(), shown.end());
       const std::vector<Field> errors{{"rms error", "", good ? Cell(time.rms) : Cell()},
                                       {"perceived difference", "", good ? Cell(time.perceived) : Cell()}};
@@ -133,10 +134,10 @@ class QualityTimes {
   }
 
   Table goal_table() const {
-    Table table{
-        fmt::format("{} on {}: time to an error of {:g}", plan_.scene, plan_.device.label(), plan_.goal),
-        {{"integrator", ""}, {"sampler", ""}, {"time", "ms"}},
-        {}};
+    Table table{fmt::format("{} on {}: time to an error of {:g}", plan_.scene, device_title(plan_.device),
+                            plan_.goal),
+                {{"integrator", ""}, {"sampler", ""}, {"time", "ms"}},
+                {}};
     for (const auto& group : by_way()) {
       if (group.empty()) continue;
       std::vector<ErrorCost> measured;

@@ -9,6 +9,7 @@
 #include "app/options/option_helpers.h"
 #include "bench/commands/bench_run.h"
 #include "bench/rays/ray_times.h"
+#include "bench/report/machine.h"
 #include "bench/roofline/device_peaks.h"
 #include "bench/roofline/ray_work.h"
 #include "render/device/kernel_config.h"
@@ -71,7 +72,7 @@ class Roofline {
     const auto memory = peaks_.best("read memory"), cache = peaks_.best("read cache"),
                peak = peaks_.best("float");
     if (traced_.empty() && memory && cache && peak)
-      report.parts.emplace_back(plot_of(fmt::format("Roofline of {}", info_.label()),
+      report.parts.emplace_back(plot_of(fmt::format("Roofline of {}", device_title(info_)),
                                         {{"cache", *cache}, {"memory", *memory}}, *peak, {}));
     for (const Traced& traced : traced_) {
       Report rays;
@@ -88,7 +89,7 @@ class Roofline {
   };
   void add_scene(Report& report, const Traced& traced) const {
     const bool compact = traces_compact(*traced.scene.scene, info_);
-    Table table{fmt::format("{} on {}: work of a ray", traced.scene.name, info_.label()), {}, {}};
+    Table table{fmt::format("{} on {}: work of a ray", traced.scene.name, device_title(info_)), {}, {}};
     std::vector<Curve> points;
     const auto memory = peaks_.best("read memory"), cache = peaks_.best("read cache"),
                peak = peaks_.best("float");
@@ -111,7 +112,7 @@ class Roofline {
         shown.push_back({"of the roof", "%", 100 * operations.median / bound});
       }
       add_row(table, shown);
-      std::vector<Field> row{{"scene", "", traced.scene.name}, {"device", "", info_.label()}};
+      std::vector<Field> row{{"scene", "", traced.scene.name}, {"device", "", device_title(info_)}};
       row.insert(row.end(), shown.begin(), shown.end());
       row.push_back({"rays", "Mrays/s", timed.rate});
       add_row(report.measurements, row);
@@ -121,7 +122,7 @@ class Roofline {
     report.parts.emplace_back(std::move(table));
     if (cache && memory && peak)
       report.parts.emplace_back(
-          plot_of(fmt::format("{} under the roofline of {}", traced.scene.name, info_.label()),
+          plot_of(fmt::format("{} under the roofline of {}", traced.scene.name, device_title(info_)),
                   {{"cache", *cache}, {"memory", *memory}}, *peak, points));
   }
 

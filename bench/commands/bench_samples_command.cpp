@@ -13,6 +13,7 @@
 #include "base/image_compare.h"
 #include "bench/commands/bench_run.h"
 #include "bench/frames/frame_runner.h"
+#include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/runs/measure.h"
 #include "compile/compiled_scene.h"
@@ -77,7 +78,7 @@ class SampleTimes {
         *figures = figures_of(frames, *reference, *samples);
       };
       subjects_.push_back(frame_subject(
-          fmt::format("{} on {}, {}, {}", plan_.scene, plan_.device.label(), way.family, way.setting),
+          fmt::format("{} on {}, {}, {}", plan_.scene, device_title(plan_.device), way.family, way.setting),
           {open, first, {}}));
     }
   }
@@ -120,7 +121,7 @@ class SampleTimes {
       }
       add_measured(report, subjects_[i],
                    {{"scene", "", plan_.scene},
-                    {"device", "", plan_.device.label()},
+                    {"device", "", device_title(plan_.device)},
                     {"way", "",
                      way.family == even_family ? way.family : fmt::format("{}, {}", way.family, way.setting)},
                     {"samples", "", good ? Cell(figures_[i]->samples) : Cell()},
@@ -142,9 +143,10 @@ class SampleTimes {
   }
 
   Table even_table() const {
-    Table table{fmt::format("{} on {}: time and error by samples a pixel", plan_.scene, plan_.device.label()),
-                {{"samples", ""}, {"time", "ms"}},
-                {}};
+    Table table{
+        fmt::format("{} on {}: time and error by samples a pixel", plan_.scene, device_title(plan_.device)),
+        {{"samples", ""}, {"time", "ms"}},
+        {}};
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       if (plan_.ways[i].family != even_family) continue;
       std::vector<Field> row{{"samples", "", plan_.ways[i].setting}};
@@ -159,9 +161,10 @@ class SampleTimes {
   }
 
   Table way_table() const {
-    Table table{fmt::format("{} on {}: samples where they are needed", plan_.scene, plan_.device.label()),
-                {{"samples", ""}, {"a pixel", ""}, {"time", "ms"}},
-                {}};
+    Table table{
+        fmt::format("{} on {}: samples where they are needed", plan_.scene, device_title(plan_.device)),
+        {{"samples", ""}, {"a pixel", ""}, {"time", "ms"}},
+        {}};
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       const SampleWay& way = plan_.ways[i];
       if (way.family == even_family) continue;
@@ -180,7 +183,7 @@ class SampleTimes {
 
   CurvePlot even_curves(const std::string& what, const std::string& unit,
                         const std::function<Spread(std::size_t way)>& value) const {
-    Curve curve{plan_.device.label().substr(0, plan_.device.label().find(' ')), {}};
+    Curve curve{device_title(plan_.device), {}};
     for (std::size_t i = 0; i < subjects_.size(); ++i)
       if (plan_.ways[i].family == even_family && subjects_[i].is_good())
         curve.points.push_back({figures_[i]->samples, value(i)});
@@ -231,6 +234,7 @@ struct SamplesOptions : BenchOptions {
   std::string counts = "1,5,17,26";
   int reference = 0;                        // 0: four times the most
   std::string adaptive = "0.01,0.02,0.05";  // thresholds
+  double budget = 0;                        // seconds; 0: no limit
 };
 
 /// Even frames of each count; adaptive frames, with up to four times the greatest count a pixel; subsampled
@@ -269,13 +273,15 @@ int bench_samples(const SamplesOptions& options) {
       "spread evenly over the pixel and do better.",
       options.repeat, reference));
   const std::vector<DeviceInfo> devices = run.devices();
+  const double parts = static_cast<double>(options.scenes.size() * devices.size());
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
       const auto compile_with = [&run, file](const std::vector<std::string>& overrides) {
         return run.compiled(file, overrides);
       };
-      run.measure(std::make_shared<SampleTimes>(
-          SampleScaling{scene_name(file), compile_with, device, sample_ways(options, counts), reference}));
+      run.measure(std::make_shared<SampleTimes>(SampleScaling{scene_name(file), compile_with, device,
+                                                              sample_ways(options, counts), reference}),
+                  options.budget / parts);
     }
   return run.publish();
 }
@@ -293,6 +299,9 @@ void add_bench_samples(Arguments& bench, Command& chosen) {
       ->range(2, 1 << 18);
   value(app, "--adaptive", "LIST", options->adaptive,
         "thresholds of the adaptive frames (default 0.01,0.02,0.05)");
+  value(app, "--budget", "SECONDS", options->budget,
+        "about how long it may take: then further runs, and ways, are left out (default: no limit)")
+      ->range(0, 1e6);
 }
 
 }  // namespace sundog

@@ -34,7 +34,7 @@ SceneDescription without_textures(SceneDescription scene) {
 class TextureCost {
  public:
   TextureCost(std::string scene_name, const SceneDescription& scene, const DeviceInfo& device)
-      : scene_(std::move(scene_name)), device_(device_place(device)) {
+      : scene_(std::move(scene_name)), device_(device_title(device)) {
     const auto add = [&](const char* what, const SceneDescription& described) {
       const auto flat = std::make_shared<const CompiledScene>(compile(described));
       const auto rays = rays_.emplace_back(std::make_shared<double>());

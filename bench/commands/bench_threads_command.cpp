@@ -151,7 +151,11 @@ class ThreadTimes {
     report.parts.push_back(pivot("efficiency (speed-up by threads)", "", [&](int size, unsigned count) {
       return count ? gain_cell(1.0 / count, size, count) : Cell();
     }));
-    CurvePlot plot{plan_.scene + ": speed-up by threads", "threads", "times as fast", {}, true};
+    CurvePlot plot{fmt::format("{}: speed-up by threads of {}", plan_.scene, device_title(plan_.device)),
+                   "threads",
+                   "times as fast",
+                   {},
+                   true};
     for (const int size : plan_.sizes) {
       Curve curve{fmt::format("{0} × {0}", size), {}};
       for (const unsigned count : plan_.counts)
@@ -165,7 +169,7 @@ class ThreadTimes {
       const auto gain = threads ? speed_up(size, threads) : std::nullopt;
       add_measured(report, subjects_[i],
                    {{"scene", "", plan_.scene},
-                    {"device", "", threads ? plan_.device.label() : "plain C++"},
+                    {"device", "", threads ? device_title(plan_.device) : "plain C++"},
                     {"size", "pixels", static_cast<double>(size)},
                     {"threads", "", threads ? static_cast<double>(threads) : 1.0}},
                    {{"speed-up", "", gain ? Cell(gain->median) : Cell()}});
@@ -210,7 +214,9 @@ class ThreadTimes {
   /// A row a size and a column a count, of what `cell` makes of them.
   Table pivot(const std::string& title, const std::string& unit,
               const std::function<Cell(int, unsigned)>& cell) const {
-    Table table{fmt::format("{}: {}", plan_.scene, title), {{"pixels a side", ""}}, {}};
+    Table table{fmt::format("{}: {} on {}", plan_.scene, title, device_title(plan_.device)),
+                {{"pixels a side", ""}},
+                {}};
     for (const int size : plan_.sizes) {
       std::vector<Field> row{{"pixels a side", "", static_cast<double>(size)}};
       if (plan_.plain) row.push_back({threads_text(0), unit, cell(size, 0)});

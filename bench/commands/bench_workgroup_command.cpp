@@ -146,7 +146,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
     for (const DeviceInfo& device : devices)
       for (const std::string& name : kernels) {
         head.scene = scene_name(file);
-        head.device = device_place(device);
+        head.device = device_title(device);
         head.name = is_frame(name) ? integrator_kernel(*scene) : name;
         const auto open = [=, rays = options.rays] {
           TimedKernel kernel = head;

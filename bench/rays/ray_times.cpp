@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "bench/report/machine.h"
 #include "render/device/kernel_config.h"
 #include "render/film/hash.h"
 
@@ -48,7 +49,7 @@ std::string RayTimes::check(Kind& kind) {
 void RayTimes::measure(const MeasureOptions& options) {
   if (options.on_step) options.on_step("making rays", 0);
   Subject all;
-  all.name = fmt::format("{} on {}", name_, info_.label());
+  all.name = fmt::format("{} on {}", name_, device_title(info_));
   subjects_ = {all};
   std::vector<RaySet> sets;
   const auto open = [&] {
@@ -96,10 +97,10 @@ std::vector<RayTimes::Timed> RayTimes::timed() const {
 
 void RayTimes::add_to(Report& report) const {
   const std::string tracer = traces_compact(*scene_, info_) ? "compact" : "wide";
-  Table table{fmt::format("{} on {}, {} tracer", name_, info_.label(), tracer), {}, {}};
+  Table table{fmt::format("{} on {}, {} tracer", name_, device_title(info_), tracer), {}, {}};
   BarPlot bars{table.title, "Mrays/s", {}};
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    std::vector<Field> row{{"scene", "", name_}, {"device", "", info_.label()}, {"tracer", "", tracer}};
+    std::vector<Field> row{{"scene", "", name_}, {"device", "", device_title(info_)}, {"tracer", "", tracer}};
     std::vector<Field> shown;
     if (i < kinds_.size()) {
       const Kind& kind = *kinds_[i];

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <regex>
 #include <thread>
 
 #include "base/environment.h"
@@ -96,6 +97,16 @@ std::string device_place(const DeviceInfo& device) {
   const std::string label = device.label();
   return label.substr(0, label.find(' '));
 }
+
+std::string device_title(const std::string& label, const std::string& name) {
+  static const std::regex noise(R"(\((R|TM|C)\)| (CPU|Processor)\b| @ .*| \(.*\)$)");
+  constexpr std::size_t most = 40;  // letters
+  std::string title = label.substr(0, label.find(' ')) + " " + std::regex_replace(name, noise, "");
+  if (title.size() > most) title = title.substr(0, most - 3) + "...";
+  return title;
+}
+
+std::string device_title(const DeviceInfo& device) { return device_title(device.label(), device.name); }
 
 void add_device_row(Table& table, const DeviceInfo& device) {
   const auto number = [](auto value) { return Cell(static_cast<double>(value)); };

@@ -29,6 +29,11 @@ std::string pocl_fact(const HostEnvironment& environment);
 /// "0:0/1@1": the device, or its part, by its place.
 std::string device_place(const DeviceInfo& device);
 
+/// "1:0 NVIDIA H200": what tables, plots and names of rows call a device: its place, and its name without the
+/// marks and versions that drivers add.
+std::string device_title(const std::string& label, const std::string& name);
+std::string device_title(const DeviceInfo& device);
+
 /// Appends what a paper must say of it.
 void add_device_row(Table& table, const DeviceInfo& device);
 

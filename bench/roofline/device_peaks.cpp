@@ -119,7 +119,7 @@ DevicePeaks::DevicePeaks(DeviceInfo device, unsigned megabytes)
 void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& make) {
   const std::string chains = peak.chains > 0 ? fmt::format(", {} chains", peak.chains) : "";
   Subject& subject = subjects_.emplace_back();
-  subject.name = fmt::format("{} on {}, width {}{}", peak.what, device_place(info_), peak.width, chains);
+  subject.name = fmt::format("{} on {}, width {}{}", peak.what, device_title(info_), peak.width, chains);
   const auto& shared = peaks_.emplace_back(std::make_shared<Peak>(std::move(peak)));
   const auto work = std::make_shared<Work>();
   subject.prepare = [=, peak = shared] {
@@ -205,7 +205,7 @@ void DevicePeaks::add_launches() {
 
 void DevicePeaks::measure(const MeasureOptions& options) {
   subjects_.resize(1);
-  subjects_.front().name = fmt::format("peaks of {}", info_.label());
+  subjects_.front().name = fmt::format("peaks of {}", device_title(info_));
   if (!prepared(subjects_, [&] { opened_ = std::make_shared<Opened>(info_, megabytes_); })) return;
   subjects_.clear();
   for (const unsigned width : widths) {
@@ -249,7 +249,7 @@ std::optional<Spread> DevicePeaks::best(const std::string& what) const {
 }
 
 Table DevicePeaks::table() const {
-  Table table{fmt::format("Peaks of {}", info_.label()), {{"", ""}, {"chains", ""}, {"unit", ""}}, {}};
+  Table table{fmt::format("Peaks of {}", device_title(info_)), {{"", ""}, {"chains", ""}, {"unit", ""}}, {}};
   for (const unsigned width : widths) table.columns.push_back({fmt::format("width {}", width), ""});
   std::vector<std::pair<std::string, unsigned>> rows;
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
@@ -270,7 +270,7 @@ Table DevicePeaks::table() const {
 
 void DevicePeaks::add_to(Report& report) const {
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    std::vector<Field> row{{"device", "", info_.label()}};
+    std::vector<Field> row{{"device", "", device_title(info_)}};
     if (i < peaks_.size()) {
       const Peak& peak = *peaks_[i];
       const auto measured = figure(i);

@@ -15,8 +15,10 @@
 #include "bench/frames/smaller_scene.h"
 #include "bench/report/samples.h"
 #include "bench/tune/tune_search.h"
+#include "device/build_options.h"
 #include "render/device/kernel_config.h"
 #include "render/device/tuning.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -35,16 +37,31 @@ struct Choices {
   std::vector<std::pair<unsigned, unsigned>> shapes{{0, 0}};
   std::vector<unsigned> packets{0};
   std::vector<double> launches{0}, tiles{0};
+  std::vector<std::vector<std::string>> options;  // an axis for each name of an option
 
   std::vector<std::size_t> sizes() const {
-    return {groups.size(), shapes.size(), packets.size(), launches.size(), tiles.size()};
+    std::vector<std::size_t> all{groups.size(), shapes.size(), packets.size(), launches.size(), tiles.size()};
+    for (const auto& values : options) all.push_back(values.size());
+    return all;
   }
   Tuning at(const TunePoint& point) const {
     const WorkGroup& group = groups[point[0]];
     if (kernel == surfaces_kernel) return {{}, group, 0, 0, 0, 0, 0};
     const auto [w, h] = shapes[point[1]];
-    return {group, {}, w, h, packets[point[2]], launches[point[3]], tiles[point[4]]};
+    Tuning tuning{group, {}, w, h, packets[point[2]], launches[point[3]], tiles[point[4]]};
+    for (std::size_t i = 0; i < options.size(); ++i)
+      if (const std::string& option = options[i][point[first_option + i]]; !option.empty())
+        tuning.options += (tuning.options.empty() ? "" : " ") + option;
+    return tuning;
   }
+  /// The part of a point that makes another program.
+  static TunePoint program_of(const TunePoint& point) {
+    TunePoint program{point[1], point[2]};
+    program.insert(program.end(), point.begin() + first_option, point.end());
+    return program;
+  }
+
+  static constexpr std::ptrdiff_t first_option = 5;  // in a point
 };
 
 std::size_t group_limit(const DeviceInfo& device, const CompiledScene& scene) {
@@ -65,6 +82,11 @@ Choices choices_of_frame(const DeviceInfo& device, const CompiledScene& scene) {
   }
   choices.launches.insert(choices.launches.end(), {10, 25, 100, 200});
   choices.tiles.insert(choices.tiles.end(), {50, 100, 500, 1000});
+  for (std::vector<std::string>& values : options_to_try(device, find_integrator(scene.integrator)->entry)) {
+    if (values.front().starts_with("-DNODE_LOOP") && !traces_compact(scene, device)) continue;
+    values.insert(values.begin(), "");
+    choices.options.push_back(std::move(values));
+  }
   return choices;
 }
 
@@ -153,14 +175,13 @@ class TimeLeft {
     frame_ = frame_seconds;
     return left() > 0;
   }
-  /// `program`: the part of a point that makes another program.
-  bool is_enough_for(const std::pair<std::size_t, std::size_t>& program) const {
+  bool is_enough_for(const TunePoint& program) const {
     constexpr double caution = 1.25, slower = 1.5;
     const double start = built_.count(program) ? open() : compile();
     const double again = open() + 2 * runs_at_the_end * frame_;
     return left() > caution * start + slower * 2 * runs * frame_ + again;
   }
-  void add(const Candidate& candidate, const std::pair<std::size_t, std::size_t>& program) {
+  void add(const Candidate& candidate, const TunePoint& program) {
     candidate.add_to(costs_);
     built_.insert(program);
   }
@@ -173,7 +194,7 @@ class TimeLeft {
 
   double budget_, frame_ = 0;
   TuneCosts& costs_;
-  std::set<std::pair<std::size_t, std::size_t>> built_;
+  std::set<TunePoint> built_;  // Choices::program_of()
   Stopwatch clock_;
 };
 
@@ -181,12 +202,11 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
                         Choices choices, double budget, TuneCosts& costs, const TuneListener& listener) {
   TimeLeft time(budget, costs);
   const auto tell = [&](const std::string& what) { listener.on_step(choices.kernel + ": " + what); };
-  const auto program_of = [](const TunePoint& point) { return std::pair(point[1], point[2]); };
   tell("the defaults");
   TuneProblem problem;
   problem.start.assign(choices.sizes().size(), 0);
   Candidate usual(device, scene, choices, problem.start);
-  time.add(usual, program_of(problem.start));
+  time.add(usual, Choices::program_of(problem.start));
   // Only the built kernels tell how large their groups may be.
   std::erase_if(choices.groups, [most = usual.greatest_group()](const WorkGroup& group) {
     return most > 0 && group.kind == fixed && group.x * group.y > most;
@@ -196,7 +216,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   usual.expect(expected);
   const double first_seconds = usual.run();
   const double default_seconds = time.has_started_in_time(first_seconds) ? usual.median(runs) : first_seconds;
-  problem.affordable = [&](const TunePoint& point) { return time.is_enough_for(program_of(point)); };
+  problem.affordable = [&](const TunePoint& point) { return time.is_enough_for(Choices::program_of(point)); };
   std::vector<std::string> rejected;
   problem.measure = [&](const TunePoint& point) -> std::optional<double> {
     if (point == problem.start) return default_seconds;
@@ -208,7 +228,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
     tell(settings);
     try {
       Candidate candidate(device, scene, choices, point);
-      time.add(candidate, program_of(point));
+      time.add(candidate, Choices::program_of(point));
       if (!are_same(candidate.film(), expected)) return reject("another picture than with the defaults");
       candidate.expect(expected);
       // The default beside it: a machine that has become slower meanwhile slows both.

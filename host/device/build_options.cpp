@@ -1,11 +1,12 @@
-// Joins sundog's options, the device rule's, the entry's, the environment's and the caller's; the
-// environment's replace those of a rule by the same name.
+// Joins sundog's options, the device rule's, the entry's, the caller's and the environment's; the last two
+// replace those of a rule by the same name.
 #include "device/build_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -24,15 +25,18 @@ std::vector<std::string> words(std::string_view options) {
   return {std::istream_iterator<std::string>(text), {}};
 }
 
-/// An option up to its value.
-std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
+/// An option up to its value, without the mark of one that is left out.
+std::string name_of(std::string option) {
+  if (option.starts_with('!')) option.erase(0, 1);
+  return option.substr(0, option.find('='));
+}
 
-/// Appends those of `more` that `stronger` does not have by the same name.
+/// Appends those of `more` that `stronger` does not have by the same name, nor takes away.
 void append_options(std::string& options, std::string_view more, const std::string& stronger) {
   std::set<std::string> names;
   for (const std::string& option : words(stronger)) names.insert(name_of(option));
   for (const std::string& option : words(more))
-    if (!names.contains(name_of(option))) options += " " + option;
+    if (option[0] != '!' && !names.contains(name_of(option))) options += " " + option;
 }
 
 }  // namespace
@@ -41,12 +45,22 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, s
   const HostEnvironment& environment = value_of(device.environment);
   const DeviceRule& rule = rule_of(device);
   const std::string of_entry(rule.of_entry(entry));
+  const std::string &users = environment.build_options, stronger = users + " " + wish.options;
   std::string options = own_options;
-  append_options(options, rule.options, environment.build_options + " " + of_entry);
-  append_options(options, of_entry, environment.build_options);
-  for (const std::string& more : {environment.build_options, wish.options})
-    if (!more.empty()) options += " " + more;
-  return options;
+  append_options(options, rule.options, stronger + " " + of_entry);
+  append_options(options, of_entry, stronger);
+  append_options(options, wish.options, users);
+  return users.empty() ? options : options + " " + users;
+}
+
+std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry) {
+  const std::string usual = all_build_options(device, {}, entry);
+  std::map<std::string, std::vector<std::string>> by_name;
+  for (const std::string& option : words(rule_of(device).tries))
+    if (all_build_options(device, {option}, entry) != usual) by_name[name_of(option)].push_back(option);
+  std::vector<std::vector<std::string>> all;
+  for (auto& [name, options] : by_name) all.push_back(std::move(options));
+  return all;
 }
 
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
@@ -61,7 +75,10 @@ std::string portable_options(const DeviceInfo& device, const std::string& option
 }
 
 void bypass_driver_caches() {
-  set_variable("CUDA_CACHE_DISABLE", "1");  // NVIDIA's
+  set_variable("CUDA_CACHE_DISABLE", "1");            // NVIDIA's
+  set_variable("AMD_COMGR_CACHE", "0");               // AMD's
+  set_variable("NEO_CACHE_PERSISTENT", "0");          // Intel's
+  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa's
 }
 
 }  // namespace sundog

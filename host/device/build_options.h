@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sundog {
 
@@ -9,13 +10,17 @@ struct DeviceInfo;
 
 /// Settings of a device's future builds.
 struct BuildWish {
-  std::string options;       // in addition to sundog's and the user's (HostEnvironment)
+  std::string options{};     // in place of the device's by the same name; "!OPTION": without that
   bool from_source = false;  // do not use caches, which lose the log
 };
 
-/// All options of a build of `entry`: sundog's, the device's (device_rules.h), the user's (HostEnvironment,
-/// such as -cl-nv-maxrregcount=64), which take the place of the device's by the same name, and `wish`'s.
+/// All options of a build of `entry`: sundog's, the device's (device_rules.h), `wish`'s, and the user's
+/// (HostEnvironment, such as -cl-nv-maxrregcount=64). Later ones take the place of earlier by the same name.
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry);
+
+/// Options that a tuning may build `entry` with on the device: a list for each name, of options and "!OPTION"
+/// that change a build. Options of different names may be combined.
+std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry);
 
 /// `options` without those of its maker that the device's rule gives, which an older driver may refuse.
 std::string portable_options(const DeviceInfo& device, const std::string& options);

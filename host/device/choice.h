@@ -8,7 +8,7 @@
 namespace sundog {
 
 /// Whether a device traces many rays per work-item with explicit vectors (the "wide" tracer) instead of one
-/// ray per lane (the "compact" one).
+/// ray per lane (the "compact" one): device_rules.h.
 bool wants_vectors(const DeviceInfo& device);
 
 /// Whether the compiler keeps function calls (device_rules.h): without, the interpreter of fields

@@ -198,10 +198,10 @@ Program Device::build(const std::string& entry, const KernelDefines& defines, Bu
   return Program(programs_.back());
 }
 
-void Device::save_programs() noexcept {
+void Device::save_programs(bool all) noexcept {
   for (const auto& program : programs_) {
     try {
-      save_program(*program);
+      save_program(*program, all);
     } catch (const std::exception&) {
       program->cache_file.clear();  // the cache only saves time
     }

@@ -205,8 +205,9 @@ class Device {
   void forget_times() { times_.clear(); }
 
   /// Stores in the binary cache what was compiled since the last call (some drivers compile at the first
-  /// launch of each local size). Also called by the destructor. Never throws.
-  void save_programs() noexcept;
+  /// launch of each local size), with `all` also programs that were not launched, which PoCL compiles for
+  /// that. Also called by the destructor. Never throws.
+  void save_programs(bool all = false) noexcept;
 
  private:
   template <class T>

@@ -1,4 +1,6 @@
-// Holds the table; its first matching row counts. docs/measurements/gpu-compilers.md has the figures.
+// Holds the table; its first matching row counts. docs/measurements/gpu-compilers.md has the figures. Kernels
+// alone (kernels/lib/core/config.h) know what only a compiler's macros tell: the generation of an AMD GPU,
+// for DEVICE_WAVES, and whether Intel's extension for DEVICE_SUBGROUP is there.
 #include "device/device_rules.h"
 
 #include <fmt/format.h>
@@ -16,27 +18,50 @@ constexpr std::array rules{
     // Inlined, frames keep their structs in registers. With 128 registers a multiprocessor holds 16 warps;
     // most kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32
     // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
-    DeviceRule{"nvidia", "NVIDIA", true, false, "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
-               "-cl-nv-maxrregcount=64"},
+    DeviceRule{.name = "nvidia",
+               .reports = "NVIDIA",
+               .of_gpus = true,
+               .options = "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
+               .of_tracer = "-cl-nv-maxrregcount=64",
+               .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
+                        "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
     // Ten waves (RDNA 3 and newer) cost plain scenes no spills; with textures, layers or rough glass up to
     // 240 registers, where 5 to 9 waves would fit.
-    DeviceRule{"amd", "Advanced Micro Devices", true, false,
-               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10"},
+    DeviceRule{.name = "amd",
+               .reports = "Advanced Micro Devices",
+               .of_gpus = true,
+               .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10",
+               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
+                        "!-DDEVICE_INLINES_ALL"},
     // Intel's own driver. Its compiler gives programs that spill 256 registers instead of 128, for half the
     // threads, where the GPU has them; render_path and the tracer alone get them always, and the tracer then
     // takes 16 rays a thread without spills, where the compiler chooses 8. GPUs without ignore both options.
-    DeviceRule{"intel", "Intel(R) OpenCL", true, false,
-               "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 -cl-intel-enable-auto-large-GRF-mode",
-               "-cl-intel-256-GRF-per-thread", "-cl-intel-256-GRF-per-thread"},
+    DeviceRule{.name = "intel",
+               .reports = "Intel(R) OpenCL",
+               .of_gpus = true,
+               .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 "
+                          "-cl-intel-enable-auto-large-GRF-mode",
+               .of_tracer = "-cl-intel-256-GRF-per-thread",
+               .of_paths = "-cl-intel-256-GRF-per-thread",
+               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -cl-intel-256-GRF-per-thread "
+                        "!-cl-intel-256-GRF-per-thread !-cl-intel-enable-auto-large-GRF-mode "
+                        "!-DDEVICE_INLINES_ALL"},
     // By other drivers, which do not know these options.
-    DeviceRule{"", "Intel", true, false, "-DDEVICE_INLINES_ALL -DNODE_LOOP=2"},
-    DeviceRule{"", "", true, false, "-DDEVICE_INLINES_ALL"},
+    DeviceRule{.reports = "Intel",
+               .of_gpus = true,
+               .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2",
+               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 !-DDEVICE_INLINES_ALL"},
+    DeviceRule{.of_gpus = true,
+               .options = "-DDEVICE_INLINES_ALL",
+               .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL"},
     // Mesa's compilers inline every call: the interpreter of fields (kernels/lib/sdf/interpret.cl) takes
     // minutes.
-    DeviceRule{"", "rusticl", false, false, ""},
-    DeviceRule{"", "Clover", false, false, ""},
-    DeviceRule{"", "", false, true, ""},
+    DeviceRule{.reports = "rusticl", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{.reports = "Clover", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    // Vectors: by PoCL with AVX-512 the wide tracer traces 7 times as many primary rays a second as the
+    // compact one, and 3 times as many bounce rays. There a loop is slower (NODE_LOOP).
+    DeviceRule{.calls = true, .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
 };
 
 }  // namespace
@@ -59,6 +84,10 @@ const DeviceRule& rule_of(const DeviceInfo& device) {
 }
 
 bool calls_functions(const DeviceInfo& device) { return rule_of(device).calls; }
+
+bool wants_vectors(const DeviceInfo& device) {
+  return rule_of(device).vectors && device.native_vector_width > 1;
+}
 
 DeviceInfo typical_gpu(std::string_view name) {
   const auto rule = std::ranges::find(rules, name, &DeviceRule::name);

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "device/choice.h"
-
 namespace sundog {
 namespace {
 
@@ -33,10 +31,6 @@ double lanes(const DeviceInfo& device) {
 
 DeviceClass device_class(const DeviceInfo& device) {
   return device.type == "cpu" || device.native_vector_width > 1 ? DeviceClass::cpu : DeviceClass::gpu;
-}
-
-bool wants_vectors(const DeviceInfo& device) {
-  return device.device_class == DeviceClass::cpu && device.native_vector_width > 1;
 }
 
 double estimate_speed(const DeviceInfo& device, unsigned host_threads) {

@@ -292,10 +292,10 @@ bool begin_program(const DeviceInfo& info, const ProgramSource& source, const Bu
   return prepared.begun.has_value();
 }
 
-void save_program(ProgramRecord& record) {
+void save_program(ProgramRecord& record, bool unlaunched) {
   const bool complete = std::ranges::includes(record.stored_variants, record.launched_variants);
-  // A program that was never launched is not stored: PoCL would have to compile it now.
-  if (record.cache_file.empty() || record.launched_variants.empty() || (record.stored && complete)) return;
+  if (record.cache_file.empty() || (record.stored && complete)) return;
+  if (record.launched_variants.empty() && !unlaunched) return;  // PoCL would have to compile it now
   cl_int status = CL_SUCCESS;
   const auto binaries = record.program.getInfo<CL_PROGRAM_BINARIES>(&status);
   check_cl(status, record.device, fmt::format("{}: CL_PROGRAM_BINARIES", record.entry()));

@@ -63,7 +63,8 @@ bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, cons
 bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared);
 
-/// Updates the cache if it lacks a launched variant. Throws DeviceError, IoError.
-void save_program(ProgramRecord& record);
+/// Updates the cache if it lacks a launched variant; of a program that was never launched only with
+/// `unlaunched`. Throws DeviceError, IoError.
+void save_program(ProgramRecord& record, bool unlaunched);
 
 }  // namespace sundog

@@ -137,10 +137,11 @@ bool covers(const std::string& definition, unsigned has, unsigned wants, bool ma
 
 /// Whether kernels of `has` cover all definitions of `wanted`.
 bool cover(const KernelConfig& has, const KernelConfig& wanted, bool may_round) {
-  return std::ranges::equal(has.numbers, wanted.numbers, [&](const auto& one, const auto& other) {
+  const auto covers_it = [&](const auto& one, const auto& other) {
     return one == other || (one.first == other.first &&
                             covers(one.first, one.second, other.second, may_round, wanted.numbers));
-  });
+  };
+  return has.options == wanted.options && std::ranges::equal(has.numbers, wanted.numbers, covers_it);
 }
 
 /// The kernels of the scene's features with secondary rays of at least `depth` levels.
@@ -274,6 +275,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   KernelConfig config;
   const bool vectors = !traces_compact(scene, device);
   if (!vectors) config.tile_w = config.tile_h = 1;
+  config.options = tuning.options;
   if (tuning.tile_w > 0) {
     config.tile_w = tuning.tile_w;
     config.tile_h = tuning.tile_h;

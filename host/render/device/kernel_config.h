@@ -19,13 +19,14 @@ struct KernelConfig {
   KernelNumbers numbers;            // the definitions
   GeneratedFiles generated;         // the scene's formulas as kernel code
   bool has_programs = false;        // the scene also has its fields as programs
+  std::string options{};            // Tuning::options
   KernelDefines defines() const;
   friend bool operator==(const KernelConfig&, const KernelConfig&) = default;
 };
 
 /// Whether they build the same programs.
 inline bool same_kernels(const KernelConfig& a, const KernelConfig& b) {
-  return a.numbers == b.numbers && a.generated == b.generated;
+  return a.numbers == b.numbers && a.generated == b.generated && a.options == b.options;
 }
 
 /// Whether the kernels interpret any scene's field programs, slowly, instead of a scene's generated code.

@@ -1,5 +1,6 @@
 // All programs that drawing a scene may need.
 #pragma once
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct SceneProgram {
   std::string entry;
   KernelDefines defines;
   GeneratedFiles generated;
+  friend auto operator<=>(const SceneProgram&, const SceneProgram&) = default;
 };
 
 /// The programs of the integrator and of AOVs; of photons and camera media if the scene has them; of `bench

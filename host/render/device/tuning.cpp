@@ -21,18 +21,20 @@ using nlohmann::json;
 using enum WorkGroup::Kind;
 
 json entry_json(const TuningEntry& entry) {
-  return {{"kernel", entry.kernel},
-          {"class", entry.scene_class},
-          {"scene", entry.scene},
-          {"work_group", work_group_text(entry.tuning.work_group)},
-          {"surfaces_group", work_group_text(entry.tuning.surfaces_group)},
-          {"tile_w", entry.tuning.tile_w},
-          {"tile_h", entry.tuning.tile_h},
-          {"packet_least", entry.tuning.packet_least},
-          {"launch_ms", entry.tuning.launch_ms},
-          {"tile_ms", entry.tuning.tile_ms},
-          {"default_ms", entry.default_ms},
-          {"tuned_ms", entry.tuned_ms}};
+  json result{{"kernel", entry.kernel},
+              {"class", entry.scene_class},
+              {"scene", entry.scene},
+              {"work_group", work_group_text(entry.tuning.work_group)},
+              {"surfaces_group", work_group_text(entry.tuning.surfaces_group)},
+              {"tile_w", entry.tuning.tile_w},
+              {"tile_h", entry.tuning.tile_h},
+              {"packet_least", entry.tuning.packet_least},
+              {"launch_ms", entry.tuning.launch_ms},
+              {"tile_ms", entry.tuning.tile_ms},
+              {"default_ms", entry.default_ms},
+              {"tuned_ms", entry.tuned_ms}};
+  if (!entry.tuning.options.empty()) result["options"] = entry.tuning.options;
+  return result;
 }
 
 }  // namespace
@@ -53,6 +55,7 @@ std::string tuning_text(const Tuning& tuning) {
   if (tuning.packet_least) parts.push_back(fmt::format("packets of more than {}", tuning.packet_least));
   if (tuning.launch_ms > 0) parts.push_back(fmt::format("launches of {} ms", tuning.launch_ms));
   if (tuning.tile_ms > 0) parts.push_back(fmt::format("tiles of {} ms", tuning.tile_ms));
+  if (!tuning.options.empty()) parts.push_back("compiled with " + tuning.options);
   return parts.empty() ? "the defaults" : fmt::format("{}", fmt::join(parts, ", "));
 }
 

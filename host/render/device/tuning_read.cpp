@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 
 #include "render/device/tuning.h"
@@ -42,6 +43,14 @@ WorkGroup work_group_from(const JsonValue& value) {
   return {fixed, x, y};
 }
 
+/// Definitions and options of compilers, or "!OPTION" to leave one out: nothing that names a file.
+std::string options_from(const JsonValue& value) {
+  static const std::regex options(R"((!?-(D|cl-)[\w-]+(=\w+)?( |$))*)");
+  const std::string text = value.text();
+  if (!std::regex_match(text, options)) value.wanted("options such as \"-DNODE_LOOP=1 !-DDEVICE_WAVES\"");
+  return text;
+}
+
 TuningEntry entry_from(JsonObject& entry) {
   constexpr Range milliseconds{.low = 0, .high = 10000};
   constexpr std::array<std::string_view, 2> kernels = {frame_kernel, surfaces_kernel};
@@ -67,6 +76,7 @@ TuningEntry entry_from(JsonObject& entry) {
   tuning.packet_least = whole("packet_least", 64);
   tuning.launch_ms = entry.at("launch_ms", kept).number(milliseconds);
   tuning.tile_ms = entry.at("tile_ms", kept).number(milliseconds);
+  if (const auto options = entry.find("options")) tuning.options = options_from(*options);
   result.default_ms = entry.at("default_ms", kept).number(at_least_0);
   result.tuned_ms = entry.at("tuned_ms", kept).number(at_least_0);
   return result;

@@ -1,5 +1,7 @@
 // Tuning parameters of a render.
 #pragma once
+#include <string>
+
 #include "render/values/work_group.h"
 
 namespace sundog {
@@ -12,6 +14,7 @@ struct Tuning {
   unsigned packet_least = 0;        // packets with fewer rays are traced ray by ray
   double launch_ms = 0;             // target length of a launch: determines the rays in flight
   double tile_ms = 0;               // target length of a tile: determines the pixels between transfers
+  std::string options{};            // of the integrator's and the photons' build (BuildWish)
   friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

@@ -229,6 +229,21 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   json* member_ = nullptr;           // the value of key_
 };
 
+/// A script in the folder of a missing file that names it, and so may write it; empty: none.
+fs::path maker_of(const fs::path& file) {
+  constexpr std::uintmax_t most = 1 << 20;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(file.parent_path(), failed)) {
+    const fs::path& script = entry.path();
+    if (script.extension() != ".py" && script.extension() != ".sh") continue;
+    try {
+      if (read_regular_file(script, most).find(file.filename().string()) != std::string::npos) return script;
+    } catch (const IoError&) {  // another one may name it
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 json parse_json(std::string_view text, const fs::path& file) {
@@ -254,7 +269,9 @@ void require_readable(const fs::path& file, const fs::path& named_in, std::strin
   const fs::file_status found = fs::status(file, status);
   if (!fs::exists(found)) {
     if (status && status != std::errc::no_such_file_or_directory) fail(status.message());
-    fail("does not exist");
+    const fs::path maker = file == named_in ? fs::path() : maker_of(file);
+    fail(maker.empty() ? "does not exist"
+                       : fmt::format("does not exist: run {}, which names it", maker.string()));
   }
   if (fs::is_directory(found)) fail("is a folder, wanted a file");
   if (::access(file.c_str(), R_OK) != 0) fail(fmt::format("cannot be read: {}", std::strerror(errno)));

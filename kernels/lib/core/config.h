@@ -41,8 +41,8 @@
 #define NEVER_INLINE static __attribute__((noinline))
 #endif
 
-// Waves of a SIMD that the registers of both integrators leave room for, photons' two more, on GPUs where
-// plain scenes need no spills for that (host/device/device_rules.cpp).
+// Waves of a SIMD that the registers of both integrators leave room for (host/device/device_rules.cpp),
+// photons' two more, on RDNA 3 and newer, where plain scenes need no spills for that.
 #if defined(DEVICE_WAVES) && (defined(__GFX11__) || defined(__GFX12__))
 #define FOR_WAVES(more) __attribute__((amdgpu_waves_per_eu(DEVICE_WAVES + more)))
 #else

@@ -181,6 +181,8 @@ TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing whe
       CHECK(row.at("registers").is_null());
       CHECK(row.at("spill_stores_B").is_null());
       CHECK(row.at("threads").is_null());
+      CHECK(row.at("build_cold_s") > row.at("build_warm_s"));
+      CHECK(row.at("build_warm_s") > 0);
     }
     CHECK(kernels ==
           std::set<std::string>{"render_whitted", "first_surfaces", "trace_rays", "occluded_rays"});
@@ -205,6 +207,28 @@ TEST_CASE("bench workgroup tries no group that a kernel's own limit forbids") {
     sizes.insert(row.at("work-group"));
   }
   CHECK(sizes == std::set<std::string>{"default (8)", "driver's choice", "1", "2", "4", "7"});
+}
+
+TEST_CASE("bench workgroup names each of several devices in tables, rows and LaTeX") {
+  const CliFolder folder;
+  CommandOptions options;
+  options.environment["POCL_DEVICES"] = "basic pthread";
+  const CommandResult result =
+      run_sundog({"bench", "workgroup", folder.scene, "--device", "all", "--device", "!rusticl?", "--rays",
+                  "16", "--repeat", "1", "--kernel", "occluded_rays", "--sizes", "2", "--json",
+                  folder.file("w.json"), "--latex", folder.file("w.tex")},
+                 options);
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  std::set<std::string> devices;
+  const json report = json::parse(sundog::read_file(folder.file("w.json")));
+  for (const json& row : report.at("measurements")) devices.insert(row.at("device"));
+  const std::string latex = sundog::read_file(folder.file("w.tex"));
+  for (const std::string place : {"0:0 basic", "0:1 pthread"}) {
+    CHECK(std::ranges::any_of(devices, [&](const auto& name) { return name.starts_with(place); }));
+    CHECK_THAT(latex, ContainsSubstring("occluded\\_rays on " + place));
+    CHECK_THAT(result.out, ContainsSubstring("occluded_rays on " + place));
+  }
 }
 
 TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {

@@ -1,4 +1,6 @@
 // `sundog bench compare`: reports that say what they measured, and which differ in nothing or in one thing.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -60,6 +62,23 @@ TEST_CASE("bench compare names a winner between reports of two machines, and non
   CHECK_THAT(sundog::read_file(folder.file("c.html")), ContainsSubstring("<svg xmlns"));
 }
 
+TEST_CASE("bench compare knows a device by each of the names that rows may have for it") {
+  const CliFolder folder;
+  json titled = json::parse(report({"0:0 P / x (LLVM 15)"}, times));
+  titled["devices"][0]["name"] = "x (LLVM 15)";
+  for (const char* name : {"0:0 P / x (LLVM 15)", "0:0 x (LLVM 15)", "0:0 x", "0:0"}) {
+    titled["ways"][0]["name"] = fmt::format("ice on {}, primary rays", name);
+    folder.write("b.json", titled.dump());
+    if (name == std::string("0:0 P / x (LLVM 15)")) folder.write("a.json", titled.dump());
+    const CommandResult result = run_sundog(
+        {"bench", "compare", folder.file("a.json"), folder.file("b.json"), "--json", folder.file("c.json")});
+    CAPTURE(name, result.out, result.err);
+    REQUIRE(result.status == 0);
+    CHECK(json::parse(sundog::read_file(folder.file("c.json"))).at("measurements")[0].at("measured") ==
+          "ice on 0:0 x, primary rays");
+  }
+}
+
 TEST_CASE("bench compare takes the calls in folders, and the devices of one report in turn") {
   const CliFolder folder;
   for (int call = 0; call < 6; ++call)
@@ -70,15 +89,20 @@ TEST_CASE("bench compare takes the calls in folders, and the devices of one repo
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("faster in 1 of 1 rows") && ContainsSubstring("by bootstrap"));
-  folder.write("two.json", report({"0:0 P / first", "0:0/1 P / first"}, times));
-  result = run_sundog({"bench", "compare", folder.file("two.json"), "--json", folder.file("c.json")});
-  CAPTURE(result.out, result.err);
-  REQUIRE(result.status == 0);
-  const json rows = json::parse(sundog::read_file(folder.file("c.json"))).at("measurements");
-  REQUIRE(rows.size() == 1);
-  CHECK(rows[0].at("other") == "0:0/1 P / first");
-  CHECK(rows[0].at("ratio").at("median") == 2);
-  CHECK(rows[0].at("verdict") == "slower");
+  for (const char* bench : {"rays", "devices"}) {  // the devices of the second alone took turns
+    json two = json::parse(report({"0:0 P / first", "0:0/1 P / first"}, times));
+    two["bench"] = bench;
+    folder.write("two.json", two.dump());
+    result = run_sundog({"bench", "compare", folder.file("two.json"), "--json", folder.file("c.json")});
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.status == 0);
+    const json rows = json::parse(sundog::read_file(folder.file("c.json"))).at("measurements");
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].at("other") == "0:0/1 x");
+    CHECK(rows[0].at("ratio").at("median") == Approx(2));
+    CHECK(rows[0].at("verdict") == "slower");
+    CHECK((result.out.find("The devices took turns") != std::string::npos) == (bench[0] == 'd'));
+  }
 }
 
 TEST_CASE("bench compare refuses what does not match, and says what differs") {

@@ -63,13 +63,15 @@ TEST_CASE("what tune finds is kept in one file a device, and a render with it gi
   entry["work_group"] = "2x2";
   entry["launch_ms"] = 10;
   entry["tile_ms"] = 5;
+  entry["options"] = "-DNODE_LOOP=1 !-DDEVICE_INLINES_ALL";
   surfaces["surfaces_group"] = "8";
   folder.write("kept.json", kept.dump());
   CHECK_THAT(folder.run({"--forget"}).out, ContainsSubstring("1 file removed"));
   CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("There are no results in "));
   CHECK_THAT(folder.run({"--import", folder.file("kept.json")}).out, ContainsSubstring("imported"));
   CHECK_THAT(folder.run({"--show"}).out,
-             ContainsSubstring("work-group 2x2, launches of 10 ms, tiles of 5 ms"));
+             ContainsSubstring("work-group 2x2, launches of 10 ms, tiles of 5 ms, compiled with "
+                               "-DNODE_LOOP=1 !-DDEVICE_INLINES_ALL"));
   REQUIRE(folder.render("after.exr").status == 0);
   const json stats = json::parse(sundog::read_file(folder.file("s.json")));
   CHECK(stats["devices"][0]["kernels"]["render_whitted"]["work_group"] == json({2, 2}));
@@ -154,6 +156,8 @@ TEST_CASE(
         Case{"/0/entries/0/work_group", "\"8x\"", "wanted a size such as"},
         Case{"/0/entries/0/tile_w", "\"two\"", "wanted an integer from 0 to 16, found"},
         Case{"/0/entries/0/launch_ms", "-1", "wanted a number"},
+        Case{"/0/entries/0/options", "\"-I/tmp\"", "wanted options such as"},
+        Case{"/0/entries/0/options", "\"-DA=1;x\"", "wanted options such as"},
         Case{"/0/entries/0/gamma", "1", "unknown key"}, Case{"/0/entries", "3", "wanted an array"},
         Case{"/0/driver", "null", "wanted"}, Case{"/0", "[]", "wanted an object"}}) {
     json bad = good;

@@ -19,7 +19,7 @@ struct ScriptTree : TemporaryFolder {
       std::filesystem::create_directories((root / script).parent_path());
       std::filesystem::copy_file(std::filesystem::path(SUNDOG_SOURCE_DIR) / script, root / script);
     }
-    for (const char* folder : {"host", "kernels", "third_party", "build/release"})
+    for (const char* folder : {"host", "bench", "kernels", "third_party", "build/release"})
       std::filesystem::create_directories(root / folder);
     for (const char* file : {"CMakeLists.txt", "CMakePresets.json"}) write("a tree/" + std::string(file), "");
     script("a tree/build/release/sundog", "printf '<%s>' \"$@\"");

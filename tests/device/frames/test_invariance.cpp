@@ -5,6 +5,7 @@
 
 #include "base/environment.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "catch.h"
 #include "devices.h"
 #include "same_bits.h"
@@ -126,6 +127,31 @@ TEST_CASE(
         check_work_groups(device, scene);
       }
     }
+}
+
+TEST_CASE("a tuning's options reach the integrator's build, not that of AOVs, and keep the bits") {
+  const TemporaryFolder folder;
+  SceneDescription scene = busy_mesh_scene();
+  scene.render.tracer = Tracer::compact;
+  DeviceInfo device = test_devices().front();
+  RenderOptions options;
+  options.aovs = {"depth"};
+  const RenderResult usual = render_by_own(device, scene, options);
+  HostEnvironment environment = value_of(device.environment);
+  environment.build_log = folder.path().string();
+  device.environment = std::make_shared<const HostEnvironment>(environment);
+  options.tuning = [](const DeviceInfo&) {
+    Tuning tuning;
+    tuning.options = "-DNODE_LOOP=2";
+    return tuning;
+  };
+  CHECK(same_bits(render_by_own(device, scene, options).image, usual.image));
+  for (const auto& file : std::filesystem::directory_iterator(folder.path())) {
+    const std::string log = read_file(file.path());
+    const bool has = log.substr(0, log.find("== log ==")).find(" -DNODE_LOOP=2\n") != std::string::npos;
+    CHECK(has == file.path().filename().string().starts_with("render_whitted-"));
+  }
+  CHECK(folder.entries() == 2);
 }
 
 TEST_CASE("a path-traced image has the same bits for every work-group size, tile size, run and pass") {

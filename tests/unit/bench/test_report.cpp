@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/report/samples.h"
 #include "bench/report/svg.h"
@@ -30,6 +31,14 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 }  // namespace
+
+TEST_CASE("a device is called by its place and its name without marks and versions") {
+  CHECK(device_title("1:0 NVIDIA CUDA / NVIDIA H200", "NVIDIA H200") == "1:0 NVIDIA H200");
+  CHECK(device_title("0:0/2@1 x / y", "pthread-skylake-avx512-Intel(R) Xeon(R) CPU E5 @ 2.20GHz") ==
+        "0:0/2@1 pthread-skylake-avx512-Intel ...");
+  CHECK(device_title("2:0 r / l", "llvmpipe (LLVM 15.0.6, 512 bits)") == "2:0 llvmpipe");
+  CHECK(device_title("2:1 r / l", "Intel(R) Arc(TM) A770 Graphics (DG2)") == "2:1 Intel Arc A770 Graphics");
+}
 
 TEST_CASE("numbers keep about three digits that count") {
   CHECK(number_text(0) == "0");

@@ -1,6 +1,8 @@
 // Options of compilers go to the drivers that know them.
 #include "device/device_rules.h"
 
+#include <fmt/format.h>
+
 #include "base/environment.h"
 #include "catch.h"
 #include "device/build_options.h"
@@ -35,6 +37,39 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
     const std::string others = options_of(gpu("Intel", platform), "render_path");
     CHECK_THAT(others, ContainsSubstring("-DNODE_LOOP=2") && !ContainsSubstring("-cl-intel"));
   }
+}
+
+TEST_CASE("a tuning's options take the place of the rule's, and a user's take theirs") {
+  DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
+  const auto with = [&](const std::string& options) {
+    return all_build_options(nvidia, {options}, "entry/render_path.cl");
+  };
+  CHECK(with("") == "-cl-std=CL1.2 -cl-kernel-arg-info -DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128");
+  CHECK(with("-cl-nv-maxrregcount=96 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL") ==
+        "-cl-std=CL1.2 -cl-kernel-arg-info -cl-nv-maxrregcount=96 -DNODE_LOOP=2");
+  HostEnvironment environment;
+  environment.build_options = "-cl-nv-maxrregcount=64";
+  nvidia.environment = std::make_shared<const HostEnvironment>(environment);
+  CHECK(with("-cl-nv-maxrregcount=96") ==
+        "-cl-std=CL1.2 -cl-kernel-arg-info -DDEVICE_INLINES_ALL -cl-nv-maxrregcount=64");
+  for (const std::vector<std::string>& values : options_to_try(nvidia, "entry/render_path.cl"))
+    CHECK_THAT(values.front(), !ContainsSubstring("maxrregcount"));  // the user has decided
+}
+
+TEST_CASE("tune tries options of a device's rule by name, those that change a build") {
+  using Lists = std::vector<std::vector<std::string>>;
+  const auto to_try = [](const DeviceInfo& device, const char* entry) {
+    return options_to_try(device, fmt::format("entry/{}.cl", entry));
+  };
+  CHECK(to_try(DeviceInfo(), "render_path") == Lists{{"-DNODE_LOOP=1", "-DNODE_LOOP=2"}});
+  CHECK(to_try(gpu("NVIDIA Corporation", "NVIDIA CUDA"), "render_path") ==
+        Lists{{"!-DDEVICE_INLINES_ALL"},
+              {"-DNODE_LOOP=1", "-DNODE_LOOP=2"},
+              {"-cl-nv-maxrregcount=96", "-cl-nv-maxrregcount=168", "!-cl-nv-maxrregcount"}});
+  const DeviceInfo intel = gpu("Intel(R) Corporation", "Intel(R) OpenCL Graphics");
+  const auto registers_of = [&](const char* entry) { return to_try(intel, entry)[2]; };
+  CHECK(registers_of("render_path") == std::vector<std::string>{"!-cl-intel-256-GRF-per-thread"});
+  CHECK(registers_of("render_whitted") == std::vector<std::string>{"-cl-intel-256-GRF-per-thread"});
 }
 
 TEST_CASE("without its maker's options a device is built for with all the others") {

@@ -100,6 +100,24 @@ TEST_CASE("files that are no scene are refused") {
   CHECK(reason(loop).find("symbolic links") != std::string::npos);
 }
 
+TEST_CASE("a missing file is said to come from the script beside it that names it") {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.json", scene_of(R"({"type": "model", "file": "made.ply"})"));
+  const auto reason = [&] {
+    try {
+      load_scene(scene);
+    } catch (const SceneError& error) {
+      return error.reason;
+    }
+    return std::string("no error");
+  };
+  const std::string missing = fmt::format("\"{}\" does not exist", (folder / "made.ply").string());
+  folder.write("make_others.py", "write('other.ply')");
+  CHECK(reason() == missing);
+  folder.write("make_meshes.py", "write('made.ply')");
+  CHECK(reason() == missing + fmt::format(": run {}, which names it", (folder / "make_meshes.py").string()));
+}
+
 TEST_CASE("a bad mesh file is named by itself") {
   const TemporaryFolder folder;
   folder.write("bad.ply", "ply\nformat ascii 1.0\nelement vertex x\n");

@@ -1,0 +1,35 @@
+// Tuning results as JSON: what is written is read again, and files of earlier versions too.
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "render/device/tuning.h"
+#include "scene/json/value.h"
+
+using namespace sundog;
+using nlohmann::json;
+
+namespace {
+
+TuningFile read_again(const json& written) {
+  const JsonContext context{};
+  return read_tuning(JsonValue(written, context));
+}
+
+}  // namespace
+
+TEST_CASE("a tuning's options are written, read and shown; without them a file is as before") {
+  TuningEntry entry;
+  entry.scene_class = "meshes+compact+rays";
+  entry.scene = "ice";
+  entry.tuning.work_group = {WorkGroup::Kind::fixed, 64, 1};
+  TuningFile file{"P", "D", "1", "k", 0, {entry}};
+  CHECK_FALSE(to_json(file).at("entries")[0].contains("options"));
+  CHECK(read_again(to_json(file)).entries.at(0).tuning == entry.tuning);
+  for (const char* options : {"-DNODE_LOOP=2", "!-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=96",
+                              "-cl-intel-256-GRF-per-thread !-DDEVICE_WAVES"}) {
+    file.entries[0].tuning.options = options;
+    const TuningFile again = read_again(to_json(file));
+    CHECK(again.entries.at(0).tuning == file.entries[0].tuning);
+    CHECK(tuning_text(again.entries[0].tuning) == std::string("work-group 64, compiled with ") + options);
+  }
+}
