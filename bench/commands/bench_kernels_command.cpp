@@ -41,8 +41,7 @@ DeviceInfo with_cache(DeviceInfo info) {
 /// Builds a program from its source, then loads it on the device opened anew. `room`: the largest work-group
 /// that its stack has room for; 0: any. On NVIDIA's devices with -cl-nv-verbose. Throws DeviceError,
 /// BuildError.
-std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source,
-                                          std::size_t room) {
+std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source) {
   Device device(info), again(with_cache(info));
   const auto nvidia = device.nvidia();
   const BuildWish wish{nvidia ? "-cl-nv-verbose" : "", true};
@@ -60,7 +59,6 @@ std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const ScenePro
     KernelFigures& figures = result.emplace_back();
     figures.kernel = name;
     figures.limits = device.limits(program.kernel<>(name));
-    figures.greatest_group = room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
     figures.compiler = compiler[name];
     if (nvidia && figures.compiler.registers)
       figures.resident_threads = resident_threads(*figures.compiler.registers, *nvidia);
@@ -119,8 +117,10 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
   Table table{fmt::format("{} on {}, {} tracer", name, device_title(info), tracer), columns, {}};
   for (const SceneProgram& program : scene_programs(scene, info)) {
     std::vector<KernelFigures>& all_figures = known[{info.label(), program}];
-    if (all_figures.empty()) all_figures = kernel_figures(info, program, room);
-    for (const KernelFigures& figures : all_figures) {
+    if (all_figures.empty()) all_figures = kernel_figures(info, program);
+    for (KernelFigures figures : all_figures) {
+      figures.greatest_group =
+          room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
       table.rows.push_back(row(figures, nvidia));
       std::vector<Cell> all{name, device_title(info), tracer};
       all.insert(all.end(), table.rows.back().begin(), table.rows.back().end());
@@ -138,7 +138,8 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  set_variable("POCL_CACHE_DIR", "", true);  // where PoCL finds what earlier processes built
+  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // without it, Mesa compiles at each launch: none here
+  set_variable("POCL_CACHE_DIR", "", true);           // where PoCL finds what earlier processes built
   KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
   Report& report = run.head();

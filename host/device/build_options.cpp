@@ -42,31 +42,43 @@ void append_options(std::string& options, std::string_view more, const std::stri
 }  // namespace
 
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry) {
-  const HostEnvironment& environment = value_of(device.environment);
   const DeviceRule& rule = rule_of(device);
-  const std::string of_entry(rule.of_entry(entry));
-  const std::string &users = environment.build_options, stronger = users + " " + wish.options;
+  const std::string of_entry(rule.of_entry(entry)),
+      &users = value_of(device.environment).build_options,
+      tuned = entry.starts_with("entry/render_") ? wish.tuned : std::string();
+  const std::string stronger = users + " " + wish.options + " " + tuned;
   std::string options = own_options;
   append_options(options, rule.options, stronger + " " + of_entry);
   append_options(options, of_entry, stronger);
+  append_options(options, tuned, users + " " + wish.options);
   append_options(options, wish.options, users);
-  return users.empty() ? options : options + " " + users;
+  append_options(options, users, "");
+  return options;
 }
 
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry) {
   const std::string usual = all_build_options(device, {}, entry);
   std::map<std::string, std::vector<std::string>> by_name;
   for (const std::string& option : words(rule_of(device).tries))
-    if (all_build_options(device, {option}, entry) != usual) by_name[name_of(option)].push_back(option);
+    if (all_build_options(device, {.tuned = option}, entry) != usual)
+      by_name[name_of(option)].push_back(option);
   std::vector<std::vector<std::string>> all;
   for (auto& [name, options] : by_name) all.push_back(std::move(options));
   return all;
 }
 
+bool may_be_tuned(std::string_view options) {
+  return std::ranges::all_of(words(options), [](const std::string& option) {
+    return std::ranges::any_of(device_rules(), [&](const DeviceRule& rule) {
+      return std::ranges::count(words(rule.tries), option) > 0;
+    });
+  });
+}
+
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
   const DeviceRule& rule = rule_of(device);
   const std::vector<std::string> own =
-      words(fmt::format("{} {} {}", rule.options, rule.of_tracer, rule.of_paths));
+      words(fmt::format("{} {} {} {}", rule.options, rule.of_tracer, rule.of_paths, rule.tries));
   std::string kept;
   for (const std::string& option : words(options))
     if (!option.starts_with("-cl-") || std::ranges::count(own, option) == 0)
@@ -75,10 +87,9 @@ std::string portable_options(const DeviceInfo& device, const std::string& option
 }
 
 void bypass_driver_caches() {
-  set_variable("CUDA_CACHE_DISABLE", "1");            // NVIDIA's
-  set_variable("AMD_COMGR_CACHE", "0");               // AMD's
-  set_variable("NEO_CACHE_PERSISTENT", "0");          // Intel's
-  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa's
+  set_variable("CUDA_CACHE_DISABLE", "1");    // NVIDIA's
+  set_variable("AMD_COMGR_CACHE", "0");       // AMD's
+  set_variable("NEO_CACHE_PERSISTENT", "0");  // Intel's
 }
 
 }  // namespace sundog

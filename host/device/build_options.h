@@ -12,6 +12,7 @@ struct DeviceInfo;
 struct BuildWish {
   std::string options{};     // in place of the device's by the same name; "!OPTION": without that
   bool from_source = false;  // do not use caches, which lose the log
+  std::string tuned{};       // as options, for the programs of integrators alone: a tuning compared no others
 };
 
 /// All options of a build of `entry`: sundog's, the device's (device_rules.h), `wish`'s, and the user's
@@ -21,6 +22,9 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, s
 /// Options that a tuning may build `entry` with on the device: a list for each name, of options and "!OPTION"
 /// that change a build. Options of different names may be combined.
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry);
+
+/// Whether a tuning may have these options: each is one to try on some device.
+bool may_be_tuned(std::string_view options);
 
 /// `options` without those of its maker that the device's rule gives, which an older driver may refuse.
 std::string portable_options(const DeviceInfo& device, const std::string& options);

@@ -138,10 +138,11 @@ bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portabl
 DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : process_(::getpid()) {
   try {
     if (!environment.driver("POCL_CACHE_DIR").empty()) return;
-    // PoCL aborts if it is empty. Another copy of the library may have set it meanwhile: keep that.
-    if (environment.drivers.contains("POCL_CACHE_DIR")) ::unsetenv("POCL_CACHE_DIR");
     const std::string folder = make_folder(environment);
-    if (folder.empty()) return;
+    if (folder.empty()) {
+      ::unsetenv("POCL_CACHE_DIR");  // PoCL aborts if it is empty
+      return;
+    }
     own_ = folder;
     set_variable("POCL_CACHE_DIR", folder);
     const bool temporary = fs::path(folder).filename().string().starts_with(temporary_name);

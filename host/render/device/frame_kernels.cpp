@@ -164,11 +164,9 @@ void add_first_surfaces(Device& device, FrameKernels& kernels, RenderTimes& time
   if (kernels.wanted_aovs.all) config.numbers["ALL_AOVS"] = config.numbers["HAS_UV"] = 1;
   if (kernels.wanted_aovs.features) config.numbers["FEATURE_AOVS"] = 1;
   kernels.there_aovs = kernels.wanted_aovs;
-  device.build_with({});  // tune compared no AOVs
   kernels.first_surfaces =
       scene_kernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>(
           build(device, "entry/aov.cl", config, kernels, times), "first_surfaces");
-  device.build_with({config.options});
   limit_group(device.limits(kernels.first_surfaces).work_group, kernels.most_group);
 }
 
@@ -190,7 +188,7 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
                                   RenderTimes& times) {
   KernelUpdate update;
   const Stopwatch building;
-  device.build_with({tuning.options});
+  device.build_with({.tuned = tuning.options});
   times.cached = true;
   renew_kernels(device, scene, tuning, asked, aovs, kernels, times, update);
   times.build_kernels = building.seconds();
@@ -209,7 +207,7 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
 
 bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning) {
   Device device(info);
-  device.build_with({tuning.options});
+  device.build_with({.tuned = tuning.options});
   const Integrator& integrator = *find_integrator(scene.integrator);
   const auto has = [&](const KernelConfig& config) {
     return device.has(integrator.entry, config.defines(), config.generated) &&

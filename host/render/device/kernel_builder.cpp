@@ -26,7 +26,7 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
 /// size.
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
-  device.build_with({order.config.options});
+  device.build_with({.tuned = order.config.options});
   const Program program = device.build(order.entry, order.config.defines(), nullptr, order.config.generated);
   IntegratorKernel kernel = integrator_kernel(program, order.kernel);
   device.make_ready(kernel, first_group(order.config));

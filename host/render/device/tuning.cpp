@@ -64,6 +64,7 @@ std::string scene_class(const CompiledScene& scene) {
   std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
   if (scene.tracer == Tracer::wide) kind += "+wide";
   if (scene.tracer == Tracer::compact) kind += "+compact";
+  if (scene.integrator == "path") kind += "+paths";
   return scene.features.secondary_rays ? kind + "+rays" : kind;
 }
 

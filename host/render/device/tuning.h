@@ -38,8 +38,8 @@ struct TuningFile {
   std::vector<TuningEntry> entries;               // one per kernel and class
 };
 
-/// The class of scenes that share a tuning: "meshes", "solids", "fields", with "+rays" if there are
-/// reflections or refractions.
+/// The class of scenes that share a tuning: "meshes", "solids", "fields", with "+wide" or "+compact" where
+/// the scene asks for a tracer, "+paths" for the integrator path, "+rays" for reflections or refractions.
 std::string scene_class(const CompiledScene& scene);
 
 /// The hash of all current kernel sources.

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string>
 
+#include "device/build_options.h"
 #include "render/device/tuning.h"
 #include "scene/json/parse.h"
 
@@ -22,11 +22,12 @@ std::string scene_class_from(const JsonValue& value) {
   const std::string found = value.text();
   for (const char* kind : {"fields", "meshes", "solids"})
     for (const char* tracer : {"", "+wide", "+compact"})
-      for (const char* rays : {"", "+rays"})
-        if (found == std::string(kind) + tracer + rays) return found;
+      for (const char* paths : {"", "+paths"})
+        for (const char* rays : {"", "+rays"})
+          if (found == std::string(kind) + tracer + paths + rays) return found;
   value.wanted(
       "a class of scenes: solids, meshes or fields, then +wide or +compact where a tracer was asked "
-      "for, then +rays where there are secondary rays");
+      "for, +paths for the integrator path, then +rays where there are secondary rays");
 }
 
 WorkGroup work_group_from(const JsonValue& value) {
@@ -43,11 +44,9 @@ WorkGroup work_group_from(const JsonValue& value) {
   return {fixed, x, y};
 }
 
-/// Definitions and options of compilers, or "!OPTION" to leave one out: nothing that names a file.
 std::string options_from(const JsonValue& value) {
-  static const std::regex options(R"((!?-(D|cl-)[\w-]+(=\w+)?( |$))*)");
   const std::string text = value.text();
-  if (!std::regex_match(text, options)) value.wanted("options such as \"-DNODE_LOOP=1 !-DDEVICE_WAVES\"");
+  if (!may_be_tuned(text)) value.wanted("options that sundog tune tries, such as \"-DNODE_LOOP=1\"");
   return text;
 }
 

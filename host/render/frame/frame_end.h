@@ -1,4 +1,4 @@
-// What the end of a frame makes of it. Internal to the render layer.
+// The end of a frame: reports, image, AOVs. Internal to the render layer.
 #pragma once
 #include "render/frame/frame.h"
 

@@ -14,7 +14,7 @@ struct Tuning {
   unsigned packet_least = 0;        // packets with fewer rays are traced ray by ray
   double launch_ms = 0;             // target length of a launch: determines the rays in flight
   double tile_ms = 0;               // target length of a tile: determines the pixels between transfers
-  std::string options{};            // of the integrator's and the photons' build (BuildWish)
+  std::string options{};            // of the integrator's program (BuildWish::tuned)
   friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

@@ -229,19 +229,33 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   json* member_ = nullptr;           // the value of key_
 };
 
+/// Whether the text has the name as a word of its own: "made.ply", not "remade.ply".
+bool names_file(const std::string& text, const std::string& name) {
+  const auto is_of_word = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
+  };
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+    if (!is_of_word(at - 1) && !is_of_word(at + name.size())) return true;  // 0 - 1 is beyond the end
+  return false;
+}
+
 /// A script in the folder of a missing file that names it, and so may write it; empty: none.
 fs::path maker_of(const fs::path& file) {
   constexpr std::uintmax_t most = 1 << 20;
   std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(file.parent_path(), failed)) {
-    const fs::path& script = entry.path();
+  fs::path found;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    const fs::path& script = at->path();
     if (script.extension() != ".py" && script.extension() != ".sh") continue;
     try {
-      if (read_regular_file(script, most).find(file.filename().string()) != std::string::npos) return script;
+      if (names_file(read_regular_file(script, most), file.filename().string()) &&
+          (found.empty() || script < found))
+        found = script;
     } catch (const IoError&) {  // another one may name it
     }
   }
-  return {};
+  return found;
 }
 
 }  // namespace

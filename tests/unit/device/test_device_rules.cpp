@@ -42,8 +42,14 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
 TEST_CASE("a tuning's options take the place of the rule's, and a user's take theirs") {
   DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
   const auto with = [&](const std::string& options) {
-    return all_build_options(nvidia, {options}, "entry/render_path.cl");
+    return all_build_options(nvidia, {.tuned = options}, "entry/render_path.cl");
   };
+  for (const char* entry : {"aov", "trace_photons", "light_media"})  // tune compared none of theirs
+    CHECK_THAT(all_build_options(nvidia, {.tuned = "-DNODE_LOOP=2"}, fmt::format("entry/{}.cl", entry)),
+               !ContainsSubstring("NODE_LOOP"));
+  const std::string tuned = with("-cl-nv-maxrregcount=96");
+  CHECK_THAT(tuned, ContainsSubstring("=96"));
+  CHECK_THAT(portable_options(nvidia, tuned), !ContainsSubstring("-cl-nv"));  // where the driver refuses it
   CHECK(with("") == "-cl-std=CL1.2 -cl-kernel-arg-info -DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128");
   CHECK(with("-cl-nv-maxrregcount=96 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL") ==
         "-cl-std=CL1.2 -cl-kernel-arg-info -cl-nv-maxrregcount=96 -DNODE_LOOP=2");
@@ -94,4 +100,7 @@ TEST_CASE("an option that begins with a rule's option replaces none") {
   const std::string own = options_of(nvidia, "render_path");
   CHECK_THAT(own, !ContainsSubstring("maxrregcount=128") && !ContainsSubstring("maxrregcount=64"));
   CHECK_THAT(portable_options(nvidia, own), ContainsSubstring(" -cl-nv-maxrregcount=12 -cl-nv"));
+  environment.build_options = "!-DNODE_LOOP -DMORE";  // takes away, and is no option itself
+  amd.environment = std::make_shared<const HostEnvironment>(environment);
+  CHECK_THAT(options_of(amd, "render_path"), !ContainsSubstring("NODE_LOOP") && ContainsSubstring("-DMORE"));
 }

@@ -1,6 +1,7 @@
 // Tuning results as JSON: what is written is read again, and files of earlier versions too.
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "catch.h"
 #include "render/device/tuning.h"
 #include "scene/json/value.h"
@@ -31,5 +32,13 @@ TEST_CASE("a tuning's options are written, read and shown; without them a file i
     const TuningFile again = read_again(to_json(file));
     CHECK(again.entries.at(0).tuning == file.entries[0].tuning);
     CHECK(tuning_text(again.entries[0].tuning) == std::string("work-group 64, compiled with ") + options);
+  }
+}
+
+TEST_CASE("a tuning file has no options that no tuning tries") {
+  TuningFile file{"P", "D", "1", "k", 0, {TuningEntry{"render_whitted", "solids+paths", "s", {}}}};
+  for (const char* options : {"-cl-fast-relaxed-math", "-DTILE_W=4", "-DNODE_LOOP=7"}) {
+    file.entries[0].tuning.options = options;
+    CHECK_THROWS_AS(read_again(to_json(file)), SceneError);
   }
 }
