@@ -75,7 +75,8 @@ const HostEnvironment& value_of(const EnvironmentPtr& environment);
 HostEnvironment read_environment(const std::function<void(const std::string& kind)>& end_process = {});
 
 /// Sets a variable of the process, for drivers. Keeps one that is set and not empty, unless `replaces`. Other
-/// threads may call getenv() meanwhile: unlike setenv() it frees nothing that they may be reading. None may set a variable meanwhile.
+/// threads may call getenv() meanwhile: unlike setenv() it frees nothing that they may be reading. None may
+/// set a variable meanwhile.
 void set_variable(const std::string& name, const std::string& value, bool replaces = false);
 
 /// read_environment() for a program that starts no processes.
