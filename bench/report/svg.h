@@ -10,6 +10,9 @@ namespace sundog {
 /// Text with < > & " escaped.
 std::string escape_html(const std::string& text);
 
+/// A system font's letter is taken to be this wide, to keep room for labels.
+constexpr double letter = 7.2;
+
 /// Where a plot stands: in a page, or in a paper's column, which is half as wide.
 enum class Place { page, column };
 

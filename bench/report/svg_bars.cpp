@@ -11,9 +11,6 @@
 namespace sundog {
 namespace {
 
-// A system font's letter is taken to be this wide, to keep room for labels.
-constexpr double letter = 7.2;
-
 double label_room(const std::vector<std::string>& labels) {
   std::size_t longest = 4;
   for (const std::string& label : labels) longest = std::max(longest, label.size());
@@ -57,7 +54,9 @@ std::string svg(const BarPlot& plot, Place place) {
   for (const Bar& bar : plot.bars) {
     labels.push_back(place == Place::column ? bar.label.substr(0, 18) : bar.label);
     most = std::max(most, bar.value.max);
-    reach = std::max(reach, 1.5 * std::abs(std::log(bar.value.median)));
+    const Interval interval = median_interval(bar.value);
+    for (const double value : {interval.low, bar.value.median, interval.high})
+      if (value > 0 && std::isfinite(value)) reach = std::max(reach, 1.1 * std::abs(std::log(value)));
   }
   const bool narrow = place == Place::column;
   const double left = label_room(labels), row = 30, width = narrow ? 400 : 760, right = narrow ? 80 : 150;
@@ -106,7 +105,7 @@ std::string svg(const HeatMap& map, Place place) {
   const ValueRange range = range_of(map);
   std::string text = svg_begin(place, width, height, map.title, fmt::format(";max-width:{}px", width));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
-                      escape_html(map.x_label));
+                      escape_html(map.x_label + (map.unit.empty() ? "" : "; cells in " + map.unit)));
   text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",
                       (top + height) / 2, escape_html(map.y_label));
   for (std::size_t i = 0; i < map.columns.size(); ++i)
