@@ -17,6 +17,23 @@ double label_room(const std::vector<std::string>& labels) {
   return std::min(static_cast<double>(longest), 44.0) * letter + 12;
 }
 
+/// Whole labels in a page. A column has room for 18 letters, so words that all labels begin with are left
+/// out.
+std::vector<std::string> labels_of(const BarPlot& plot, Place place) {
+  std::vector<std::string> labels;
+  for (const Bar& bar : plot.bars) labels.push_back(bar.label);
+  if (place == Place::page || labels.empty()) return labels;
+  constexpr std::size_t most = 18;
+  std::size_t same = labels.size() > 1 ? labels[0].size() : 0;
+  for (const std::string& label : labels)
+    same =
+        static_cast<std::size_t>(std::ranges::mismatch(label, labels[0].substr(0, same)).in1 - label.begin());
+  same = labels[0].substr(0, same).rfind(' ') + 1;  // 0 without a space
+  const bool is_long = std::ranges::any_of(labels, [](const auto& label) { return label.size() > most; });
+  for (std::string& label : labels) label = label.substr(is_long ? same : 0, most);
+  return labels;
+}
+
 struct ValueRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
 };
@@ -49,10 +66,9 @@ double heat_share(double value, double least) { return least > 0 ? std::log2(val
 }  // namespace
 
 std::string svg(const BarPlot& plot, Place place) {
-  std::vector<std::string> labels;
+  const std::vector<std::string> labels = labels_of(plot, place);
   double most = 0, reach = 0.01;
   for (const Bar& bar : plot.bars) {
-    labels.push_back(place == Place::column ? bar.label.substr(0, 18) : bar.label);
     most = std::max(most, bar.value.max);
     const Interval interval = median_interval(bar.value);
     for (const double value : {interval.low, bar.value.median, interval.high})

@@ -176,6 +176,17 @@ TEST_CASE("ratios are drawn about 1, in text too") {
   CHECK(count(svg(std::get<BarPlot>(report.parts[0])), "class=\"bar\"") == 2);
 }
 
+TEST_CASE("bars in a paper's column are labelled with the words that differ") {
+  const BarPlot plot{
+      "",
+      "ms",
+      {{"ice on 0:0 Some Processor, even, 1", {}, ""}, {"ice on 0:0 Some Processor, even, 16", {}, ""}}};
+  CHECK_THAT(svg(plot, Place::column), ContainsSubstring(">1</text>") && ContainsSubstring(">16</text>"));
+  const BarPlot devices{"", "ms", {{"0:0 Some Processor of a kind", {}, ""}, {"0:1 Other", {}, ""}}};
+  CHECK_THAT(svg(devices, Place::column),
+             ContainsSubstring(">0:0 Some Processor</text>") && ContainsSubstring(">0:1 Other</text>"));
+}
+
 TEST_CASE("the axis of ratios holds their intervals") {
   Report report;
   report.parts = {BarPlot{"r", "ratio", {{"alike", {1, 0.5, 1.2}, ""}}, true}};
