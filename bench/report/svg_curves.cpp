@@ -152,7 +152,7 @@ struct Legend {
   double height = 0;
 };
 
-/// Below the plot, in as many lines as the names need; none for one curve, which the title names.
+/// Below the plot, in as many lines as the names need; none for one curve, which the tables name.
 Legend legend(const CurvePlot& plot, const Axes& axes) {
   Legend result;
   if (plot.curves.size() + plot.ideal < 2) return result;
