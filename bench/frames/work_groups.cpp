@@ -58,7 +58,7 @@ WorkGroupTimes::WorkGroupTimes(TimedKernel head, std::function<TimedKernel()> op
       kernel_(std::move(head)) {}
 
 void WorkGroupTimes::add_way(const WorkGroup& group, const std::string& text) {
-  const auto way = std::make_shared<Way>(Way{group, text, {}});
+  const auto way = std::make_shared<Way>(Way{group, group, text, {}});
   ways_.push_back(way);
   Subject& subject = subjects_.emplace_back();
   subject.name = fmt::format("{}, {}", name_, text);
@@ -87,6 +87,7 @@ void WorkGroupTimes::measure(const MeasureOptions& options) {
   if (!prepared(subjects_, open) || options.is_stopped()) return;
   const auto [x, y] = kernel_.local ? kernel_.local() : std::pair<std::size_t, std::size_t>();
   const WorkGroup usual{fixed, x, y};
+  if (x > 0) ways_.front()->enqueued = usual;
   ways_.front()->text = fmt::format("default ({})", x > 0 ? work_group_text(usual) : "the driver's choice");
   std::vector<WorkGroup> groups = kernel_.sizes;
   if (groups.empty()) groups = work_group_candidates(kernel_.limit, kernel_.two_dimensions);
@@ -146,16 +147,18 @@ std::string WorkGroupTimes::verdict() const {
 HeatMap WorkGroupTimes::heat_map() const {
   std::set<std::size_t> xs, ys;
   for (const auto& way : ways_)
-    if (way->group.kind == fixed) xs.insert(way->group.x), ys.insert(way->group.y);
+    if (way->enqueued.kind == fixed) xs.insert(way->enqueued.x), ys.insert(way->enqueued.y);
   HeatMap map{name_ + ": ms by work-group", "ms", "work-items in x", "in y", {}, {}, {}, is_clear()};
   for (const std::size_t x : xs) map.columns.push_back(std::to_string(x));
   for (const std::size_t y : ys) {
     map.rows.push_back(std::to_string(y));
     auto& row = map.values.emplace_back(xs.size());
-    for (std::size_t i = 0; i < ways_.size(); ++i)
-      if (ways_[i]->group.kind == fixed && ways_[i]->group.y == y && subjects_[i].is_good())
-        row[static_cast<std::size_t>(std::distance(xs.begin(), xs.find(ways_[i]->group.x)))] =
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      const WorkGroup& size = ways_[i]->enqueued;
+      if (size.kind == fixed && size.y == y && subjects_[i].is_good())
+        row[static_cast<std::size_t>(std::distance(xs.begin(), xs.find(size.x)))] =
             1e3 * subjects_[i].seconds().median;
+    }
   }
   return map;
 }

@@ -47,7 +47,7 @@ class WorkGroupTimes {
   void add_to(Report& report) const;
 
   struct Way {
-    WorkGroup group;
+    WorkGroup group, enqueued;   // as asked for; the default's own size, else the one asked for
     std::string text;            // "8x8", "default (4x4)"
     std::vector<double> beyond;  // of each run, the first one too: seconds beyond the device's events
     /// Seconds that the driver compiled at the size's first launch: its time beyond the events, less that of

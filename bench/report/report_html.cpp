@@ -110,7 +110,7 @@ std::string report_html(const Report& report) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, "
       "initial-scale=1\">\n<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-      escape_html(report.title), plot_style(), style, body);
+      escape_html(report.title), plot_style(Place::page), style, body);
 }
 
 }  // namespace sundog

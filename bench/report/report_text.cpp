@@ -139,10 +139,10 @@ std::string ratios_text(const BarPlot& plot) {
   double reach = 0.01;  // of the axis to both sides of 1, as a logarithm
   std::size_t room = 0;
   for (const Bar& bar : plot.bars) {
-    reach = std::max(reach, std::abs(std::log(bar.value.median)));
+    for (const double value : {bar.value.min, bar.value.median, bar.value.max})
+      if (value > 0 && std::isfinite(value)) reach = std::max(reach, 1.1 * std::abs(std::log(value)));
     room = std::max(room, width_of(bar.label));
   }
-  reach *= 1.5;  // what an interval has beyond is cut off
   const auto at = [&](double value) {
     const double part = std::clamp(0.5 + 0.5 * std::log(value) / reach, 0.0, 1.0);
     return static_cast<int>(std::lround(part * (width - 1)));

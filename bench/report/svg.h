@@ -10,11 +10,15 @@ namespace sundog {
 /// Text with < > & " escaped.
 std::string escape_html(const std::string& text);
 
-/// Colours, light, dark and for print, and the rules of all plots.
-std::string plot_style();
+/// A system font's letter is taken to be this wide, to keep room for labels.
+constexpr double letter = 7.2;
 
 /// Where a plot stands: in a page, or in a paper's column, which is half as wide.
 enum class Place { page, column };
+
+/// The rules of all plots, with colours as variables, light, dark and for print, or for a column with those
+/// for print alone.
+std::string plot_style(Place place);
 
 /// The opening tag and style of a plot.
 std::string svg_begin(Place place, double width, double height, const std::string& title,

@@ -11,13 +11,27 @@
 namespace sundog {
 namespace {
 
-// A system font's letter is taken to be this wide, to keep room for labels.
-constexpr double letter = 7.2;
-
 double label_room(const std::vector<std::string>& labels) {
   std::size_t longest = 4;
   for (const std::string& label : labels) longest = std::max(longest, label.size());
   return std::min(static_cast<double>(longest), 44.0) * letter + 12;
+}
+
+/// Whole labels in a page. A column has room for 18 letters, so words that all labels begin with are left
+/// out.
+std::vector<std::string> labels_of(const BarPlot& plot, Place place) {
+  std::vector<std::string> labels;
+  for (const Bar& bar : plot.bars) labels.push_back(bar.label);
+  if (place == Place::page || labels.empty()) return labels;
+  constexpr std::size_t most = 18;
+  std::size_t same = labels.size() > 1 ? labels[0].size() : 0;
+  for (const std::string& label : labels)
+    same =
+        static_cast<std::size_t>(std::ranges::mismatch(label, labels[0].substr(0, same)).in1 - label.begin());
+  same = labels[0].substr(0, same).rfind(' ') + 1;  // 0 without a space
+  const bool is_long = std::ranges::any_of(labels, [](const auto& label) { return label.size() > most; });
+  for (std::string& label : labels) label = label.substr(is_long ? same : 0, most);
+  return labels;
 }
 
 struct ValueRange {
@@ -52,12 +66,13 @@ double heat_share(double value, double least) { return least > 0 ? std::log2(val
 }  // namespace
 
 std::string svg(const BarPlot& plot, Place place) {
-  std::vector<std::string> labels;
+  const std::vector<std::string> labels = labels_of(plot, place);
   double most = 0, reach = 0.01;
   for (const Bar& bar : plot.bars) {
-    labels.push_back(place == Place::column ? bar.label.substr(0, 18) : bar.label);
     most = std::max(most, bar.value.max);
-    reach = std::max(reach, 1.5 * std::abs(std::log(bar.value.median)));
+    const Interval interval = median_interval(bar.value);
+    for (const double value : {interval.low, bar.value.median, interval.high})
+      if (value > 0 && std::isfinite(value)) reach = std::max(reach, 1.1 * std::abs(std::log(value)));
   }
   const bool narrow = place == Place::column;
   const double left = label_room(labels), row = 30, width = narrow ? 400 : 760, right = narrow ? 80 : 150;
@@ -106,7 +121,7 @@ std::string svg(const HeatMap& map, Place place) {
   const ValueRange range = range_of(map);
   std::string text = svg_begin(place, width, height, map.title, fmt::format(";max-width:{}px", width));
   text += fmt::format("<text class=\"mid axis\" x=\"{}\" y=\"14\">{}</text>", (left + width) / 2,
-                      escape_html(map.x_label));
+                      escape_html(map.x_label + (map.unit.empty() ? "" : "; cells in " + map.unit)));
   text += fmt::format("<text class=\"mid axis\" transform=\"translate(14 {}) rotate(-90)\">{}</text>",
                       (top + height) / 2, escape_html(map.y_label));
   for (std::size_t i = 0; i < map.columns.size(); ++i)

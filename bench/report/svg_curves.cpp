@@ -11,16 +11,16 @@
 namespace sundog {
 namespace {
 
-constexpr double height = 380, left = 64, top = 16, bottom = 56;
+constexpr double height = 380, left = 64, right = 24, top = 16, bottom = 56;  // without the legend
 constexpr double plot_height = height - top - bottom;
 constexpr int styles = 8;
 
 struct Axes {
-  double width = 760, right = 200;  // of the picture, of the legend
-  double low = 0, high = 1;         // log2 of x
-  double most = 1;                  // y
-  double bottom_y = 0, top_y = 1;   // log2 of y
-  bool logarithmic = false;         // y is, and the ticks are round numbers
+  double width = 760;              // of the picture
+  double low = 0, high = 1;        // log2 of x
+  double most = 1;                 // y
+  double bottom_y = 0, top_y = 1;  // log2 of y
+  bool logarithmic = false;        // y is, and the ticks are round numbers
   std::vector<double> ticks_x, ticks_y;
 
   double plot_width() const { return width - left - right; }
@@ -111,7 +111,7 @@ std::string frame(const CurvePlot& plot, const Axes& axes) {
     text += fmt::format(
         "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text class=\"end\" "
         "x=\"{3}\" y=\"{4:.1f}\">{5}</text>",
-        left, axes.width - axes.right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
+        left, axes.width - right, axes.y(tick), left - 8, axes.y(tick) + 4, fmt::format("{:g}", tick));
   for (const double value : axes.ticks_x)
     text += fmt::format("<text class=\"mid\" x=\"{:.1f}\" y=\"{}\">{}</text>", axes.x(value),
                         height - bottom + 20, number_text(value));
@@ -147,22 +147,30 @@ std::string draw(const Curve& curve, std::size_t index, const Axes& axes) {
                      marks);
 }
 
-std::string legend(const CurvePlot& plot, const Axes& axes) {
+struct Legend {
   std::string text;
-  const double x = axes.width - axes.right + 20;
-  double y = top + 10;
-  for (std::size_t i = 0; i < plot.curves.size(); ++i, y += 22)
-    text += fmt::format(
-        "<line class=\"l c{0} d{1}\" x1=\"{2}\" x2=\"{3}\" y1=\"{4}\" y2=\"{4}\"/>{5}<text x=\"{6}\" "
-        "y=\"{7}\">{8}</text>",
-        i % styles, i % 4, x, x + 32, y, marker(i, x + 16, y), x + 40, y + 4,
-        escape_html(plot.curves[i].name));
-  if (plot.ideal)
-    text += fmt::format(
-        "<line class=\"ideal\" x1=\"{0}\" x2=\"{1}\" y1=\"{2}\" y2=\"{2}\"/><text x=\"{3}\" "
-        "y=\"{4}\">ideal</text>",
-        x, x + 32, y, x + 40, y + 4);
-  return text;
+  double height = 0;
+};
+
+/// Below the plot, in as many lines as the names need; none for one curve, which the tables name.
+Legend legend(const CurvePlot& plot, const Axes& axes) {
+  Legend result;
+  if (plot.curves.size() + plot.ideal < 2) return result;
+  double x = 16, y = height + 10;
+  for (std::size_t i = 0; i < plot.curves.size() + plot.ideal; ++i) {
+    const bool is_ideal = i == plot.curves.size();
+    const std::string name = is_ideal ? "ideal" : plot.curves[i].name;
+    const double room = 40 + letter * static_cast<double>(name.size()) + 20;
+    if (x > 16 && x + room > axes.width) x = 16, y += 22;
+    result.text += fmt::format(
+        "<line class=\"{0}\" x1=\"{1:.1f}\" x2=\"{2:.1f}\" y1=\"{3}\" y2=\"{3}\"/>{4}<text class=\"name\" "
+        "x=\"{5:.1f}\" y=\"{6}\">{7}</text>",
+        is_ideal ? "ideal" : fmt::format("l c{} d{}", i % styles, i % 4), x, x + 32, y,
+        is_ideal ? "" : marker(i, x + 16, y), x + 40, y + 4, escape_html(name));
+    x += room;
+  }
+  result.height = y + 12 - height;
+  return result;
 }
 
 }  // namespace
@@ -179,12 +187,13 @@ std::vector<double> axis_ticks(double most) {
 
 std::string svg(const CurvePlot& plot, Place place) {
   Axes axes = make_axes(plot);
-  if (place == Place::column) axes.width = 400, axes.right = 130;
-  std::string text = svg_begin(place, axes.width, height, plot.title);
+  if (place == Place::column) axes.width = 400;
+  const Legend names = legend(plot, axes);
+  std::string text = svg_begin(place, axes.width, height + names.height, plot.title);
   text += frame(plot, axes);
   if (plot.ideal) text += ideal_line(axes);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) text += draw(plot.curves[i], i, axes);
-  return text + legend(plot, axes) + "</svg>";
+  return text + names.text + "</svg>";
 }
 
 }  // namespace sundog

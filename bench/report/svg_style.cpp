@@ -6,18 +6,22 @@
 namespace sundog {
 namespace {
 
+struct PlotColor {
+  const char *name, *light, *dark, *print;
+};
+
 // The curves' colours are those of Okabe and Ito's palette, which people with colour blindness can tell
 // apart, darkened for white paper and lightened for dark screens.
+constexpr PlotColor plot_colors[] = {
+    {"paper", "#ffffff", "#14181c", "#ffffff"}, {"ink", "#1c2126", "#e6e9ec", "#000000"},
+    {"soft", "#59636e", "#9aa5b0", "#444444"},  {"line", "#d8dde2", "#333b43", "#bbbbbb"},
+    {"fill", "#f3f5f7", "#1d2329", "#ffffff"},  {"accent", "#0072b2", "#56b4e9", "#0072b2"},
+    {"c0", "#0072b2", "#56b4e9", "#0072b2"},    {"c1", "#c04e00", "#f08a3c", "#c04e00"},
+    {"c2", "#00805e", "#2fc59a", "#00805e"},    {"c3", "#a8467f", "#e193c3", "#a8467f"},
+    {"c4", "#8a6d00", "#e6c34a", "#8a6d00"},    {"c5", "#2f7ea8", "#9ccbea", "#2f7ea8"},
+    {"c6", "#1c2126", "#e6e9ec", "#000000"},    {"c7", "#8b3a3a", "#e58a8a", "#8b3a3a"}};
+
 constexpr const char* plot_rules = R"(
-:root { color-scheme: light dark;
-  --paper: #ffffff; --ink: #1c2126; --soft: #59636e; --line: #d8dde2; --fill: #f3f5f7; --accent: #0072b2;
-  --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #1c2126; --c7: #8b3a3a; }
-@media (prefers-color-scheme: dark) { :root {
-  --paper: #14181c; --ink: #e6e9ec; --soft: #9aa5b0; --line: #333b43; --fill: #1d2329; --accent: #56b4e9;
-  --c0: #56b4e9; --c1: #f08a3c; --c2: #2fc59a; --c3: #e193c3; --c4: #e6c34a; --c5: #9ccbea; --c6: #e6e9ec; --c7: #e58a8a; } }
-@media print { :root { color-scheme: light;
-  --paper: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb; --fill: #ffffff; --accent: #0072b2;
-  --c0: #0072b2; --c1: #c04e00; --c2: #00805e; --c3: #a8467f; --c4: #8a6d00; --c5: #2f7ea8; --c6: #000000; --c7: #8b3a3a; } }
 svg { font: 13px system-ui, "DejaVu Sans", sans-serif; } svg text { fill: var(--ink); } svg .mid { text-anchor: middle; } svg .end { text-anchor: end; } svg .axis { fill: var(--soft); }
 svg .grid { stroke: var(--line); } svg .l { fill: none; stroke-width: 2; } svg .ideal { fill: none; stroke: var(--soft); stroke-dasharray: 2 4; stroke-width: 1.5; }
 svg .d1 { stroke-dasharray: 7 3; } svg .d2 { stroke-dasharray: 3 3; } svg .d3 { stroke-dasharray: 9 3 2 3; }
@@ -28,11 +32,24 @@ svg, .heat rect { -webkit-print-color-adjust: exact; print-color-adjust: exact; 
 
 }  // namespace
 
-std::string plot_style() {
-  std::string text = plot_rules;
+std::string plot_style(Place place) {
+  std::string rules = plot_rules, light, dark, print;
   for (int i = 0; i < 8; ++i)
-    text += fmt::format("svg .l.c{0} {{ stroke: var(--c{0}); }} svg .m.c{0} {{ fill: var(--c{0}); }}\n", i);
-  return text;
+    rules += fmt::format("svg .l.c{0} {{ stroke: var(--c{0}); }} svg .m.c{0} {{ fill: var(--c{0}); }}\n", i);
+  for (const auto& color : plot_colors) {
+    const std::string use = fmt::format("var(--{})", color.name);
+    // librsvg and others that make PDFs of files know no variables.
+    for (std::size_t at = 0; place == Place::column && (at = rules.find(use)) != std::string::npos;)
+      rules.replace(at, use.size(), color.print);
+    light += fmt::format(" --{}: {};", color.name, color.light);
+    dark += fmt::format(" --{}: {};", color.name, color.dark);
+    print += fmt::format(" --{}: {};", color.name, color.print);
+  }
+  if (place == Place::column) return rules;
+  return fmt::format(
+      "\n:root {{ color-scheme: light dark;{} }}\n@media (prefers-color-scheme: dark) {{ :root {{{} }} }}\n"
+      "@media print {{ :root {{ color-scheme: light;{} }} }}{}",
+      light, dark, print, rules);
 }
 
 std::string svg_begin(Place place, double width, double height, const std::string& title,
@@ -40,7 +57,7 @@ std::string svg_begin(Place place, double width, double height, const std::strin
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\"{5} viewBox=\"0 0 {0} {1}\" style=\"--width:{0}px{2}\" "
       "role=\"img\" aria-label=\"{3}\"><style>{4}</style>",
-      width, height, more_style, escape_html(title), plot_style(),
+      width, height, more_style, escape_html(title), plot_style(place),
       place == Place::column ? " width=\"88mm\"" : "");
 }
 

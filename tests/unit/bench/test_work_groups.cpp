@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "bench/frames/work_groups.h"
+#include "bench/report/svg.h"
 #include "catch.h"
 #include "render/device/tuning.h"
 
@@ -101,7 +102,14 @@ TEST_CASE(
 TEST_CASE("the default is named with its size, which stands once") {
   TimedKernel kernel = fake_kernel(2);
   kernel.local = [] { return std::pair<std::size_t, std::size_t>(2, 1); };
-  CHECK(texts_of(*measured(kernel, 1)) == std::vector<std::string>{"default (2)", "driver's choice", "1"});
+  const auto times = measured(kernel, 1);
+  CHECK(texts_of(*times) == std::vector<std::string>{"default (2)", "driver's choice", "1"});
+  Report report;
+  times->add_to(report);
+  const auto& map = std::get<HeatMap>(report.parts[1]);  // in which the default takes its 3 seconds
+  CHECK(map.columns == std::vector<std::string>{"1", "2"});
+  CHECK(map.values == std::vector<std::vector<std::optional<double>>>{{1000.0, 3000.0}});
+  CHECK_THAT(svg(map), ContainsSubstring(">work-items in x; cells in ms</text>"));
   kernel.local = [] { return std::pair<std::size_t, std::size_t>(0, 0); };
   CHECK(texts_of(*measured(kernel, 1)) ==
         std::vector<std::string>{"default (the driver's choice)", "1", "2"});
