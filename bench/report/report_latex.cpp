@@ -33,7 +33,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string cell_latex(const Cell& cell) {
-  if (cell.kind != Cell::Kind::spread) return escaped(cell_text(cell));
+  if (cell.kind != Cell::Kind::spread || !has_interval(cell.spread)) return escaped(cell_text(cell));
   const Interval interval = median_interval(cell.spread);
   return fmt::format("{} {{\\footnotesize[{}, {}]}}", number_text(cell.spread.median),
                      number_text(interval.low), number_text(interval.high));

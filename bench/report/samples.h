@@ -26,6 +26,9 @@ struct Interval {
 };
 Interval median_interval(const Spread& spread);
 
+/// Whether it has one: neither a single run nor a figure that is exact, as a base's ratio to itself.
+bool has_interval(const Spread& spread);
+
 /// A way with so many samples: its error, and what it costs in seconds or rays.
 struct ErrorCost {
   double error = 0, cost = 0;

@@ -53,7 +53,9 @@ TEST_CASE("numbers keep about three digits that count") {
   CHECK(number_text(0.01234) == "0.0123");
   CHECK(number_text(-2.5) == "-2.50");
   CHECK(cell_text(Spread{10.04, 9, 11}) == "10.0 [9, 11]");
-  CHECK(cell_text(Spread{}) == "0 [0, 0]");
+  CHECK(cell_text(spread({4, 4})) == "4 [4, 4]");
+  CHECK(cell_text(spread({318})) == "318");  // a single run has no interval
+  CHECK(cell_text(Spread{1, 1, 1}) == "1");
   CHECK(cell_text(Cell()).empty());
 }
 
