@@ -174,7 +174,7 @@ class SampleTimes {
                                {"time", "ms", milliseconds(subjects_[i])},
                                {"rays", "millions", figures_[i]->rays / 1e6},
                                {"rms error", "", figures_[i]->error.rms},
-                               {"of the rays of even samples at this error", "%", of_even(i)}});
+                               {"of even rays", "%", of_even(i)}});
       }
       add_row(table, row, subjects_[i]);
     }
@@ -270,7 +270,8 @@ int bench_samples(const SamplesOptions& options) {
       "to the bit before its time counted. The error is the root mean square difference from the same "
       "device's picture with {} samples, in linear color; a pixel is visibly wrong if it is off by more than "
       "0.02. With independent samples \"error x sqrt(samples)\" would stay constant; these samples are "
-      "spread evenly over the pixel and do better.",
+      "spread evenly over the pixel and do better. \"of even rays\": of those that even samples take to the "
+      "same error.",
       reference));
   const std::vector<DeviceInfo> devices = run.devices();
   const double parts = static_cast<double>(options.scenes.size() * devices.size());
