@@ -129,13 +129,14 @@ json value_of(const Cell& cell) {
 std::string report_latex(const Report& report) {
   std::string text = comment(report.title + ". \\usepackage{booktabs}");
   text += comment("A wide table across a paper's two columns: write table* for table, at its begin and end.");
-  for (const auto& [name, value] : report.facts) text += comment(name + ": " + value);
+  for (const auto& [name, value] : report.facts) text += comment(fmt::format("{}: {}", name, value));
   for (const std::string& note : report.notes) text += comment(note);
-  bool any = false;
+  std::string tables;
+  const auto add = [&](const Table& table) { tables += table_latex(table, caption_of(table, report)); };
   for (const Part& part : report.parts)
-    if (const auto* table = std::get_if<Table>(&part); table && (any = true))
-      text += table_latex(*table, caption_of(*table, report));
-  return any ? text : text + table_latex(report.measurements, caption_of(report.measurements, report));
+    if (const auto* table = std::get_if<Table>(&part)) add(*table);
+  if (tables.empty()) add(report.measurements);
+  return text + tables;
 }
 
 json report_t4(const Report& report) {
