@@ -253,12 +253,11 @@ int bench_devices_command(const BenchOptions& asked) {
   if (options.devices.empty()) options.devices = {"all"};
   const std::vector<DeviceInfo> devices = wholes_and_parts(options);
   run.add_devices(devices);
-  run.head().notes.push_back(fmt::format(
-      "Median of {} frames after one to warm up; the combinations take turns, devices are opened once, and "
+  run.head().notes.emplace_back(
+      "Medians of frames after one to warm up; the combinations take turns, devices are opened once, and "
       "building kernels does not count. A share is a part of the picture's pixels. A pixel differs if it is "
       "more than 0.02 (linear color) from the first device's; more than one pixel in 200 is a problem. "
-      "Efficiency is the combination's frames a second over the sum of its devices' alone, by the medians.",
-      options.repeat));
+      "Efficiency is the combination's frames a second over the sum of its devices' alone, by the medians.");
   for (const std::string& file : options.scenes)
     run.measure(std::make_shared<DeviceRanking>(scene_name(file), run.compiled(file), devices));
   return run.publish();

@@ -181,12 +181,11 @@ int bench_quality(const QualityOptions& options) {
     throw UsageError(fmt::format("{}: wanted a picture with colours", options.reference));
   BenchRun run("quality", "Error by time", options);
   run.head().facts.emplace_back("reference", options.reference);
-  run.head().notes.push_back(fmt::format(
-      "Median of {} frames after one to warm up; ways and counts take turns, and the image of each "
+  run.head().notes.emplace_back(
+      "Medians of frames after one to warm up; ways and counts take turns, and the image of each "
       "run was compared to the bit before its time counted. The error is the root mean square "
       "difference from the reference, in linear color. The perceived difference is the mean of "
-      "FLIP (Andersson and others 2020) at 67 pixels a degree, where values above 1 count as 1.",
-      options.repeat));
+      "FLIP (Andersson and others 2020) at 67 pixels a degree, where values above 1 count as 1.");
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {

@@ -51,11 +51,10 @@ int bench_rays(const RaysOptions& options) {
   BenchRun run("rays", "Rays a second by kind", options);
   Report& head = run.head();
   if (!options.no_times)
-    head.notes.push_back(fmt::format(
-        "Median of {} launches by the wall clock, each waited for; `kernel` is by the device's events, if "
+    head.notes.emplace_back(
+        "Medians of launches by the wall clock, each waited for; `kernel` is by the device's events, if "
         "its driver gives times. Shadow rays ask for any hit, the others for the nearest. Distance fields "
-        "are marched, not traced, and left out; `bench threads` and `bench devices` time their frames.",
-        options.repeat));
+        "are marched, not traced, and left out; `bench threads` and `bench devices` time their frames.");
   head.notes.emplace_back(
       "Every answer is checked by the host's own tracer and, where the two differ, in double precision; "
       "later runs must have the same answers to the bit. `by rounding` counts the answers that differ and "

@@ -30,20 +30,31 @@ constexpr double between_keeps = 1;    // seconds
 constexpr double most_of_time = 0.05;  // that keeping may take
 
 /// Files of a bench that holds `time`: what a person must know of its intervals and of the load.
-std::vector<std::string> notes_on_runs(const Report& report, double limit) {
-  std::size_t timed = 0, left_out = 0, slow = 0;
+std::vector<std::string> notes_on_runs(const Report& report, double limit, double precision) {
+  std::size_t timed = 0, wide = 0, left_out = 0, slow = 0, least = 0, most = 0;
   std::vector<std::string> noisy;
   for (const MeasuredWay& way : report.ways) {
-    timed += way.is_good();
+    if (const std::size_t runs = way.seconds().runs.size(); way.is_good()) {
+      least = timed++ ? std::min(least, runs) : runs;
+      most = std::max(most, runs);
+    }
+    wide += precision > 0 && way.is_good() && !way.once && !is_precise(way, precision);
     if (way.noisy && way.is_good()) noisy.push_back(way.name);
     left_out += static_cast<std::size_t>(std::ranges::count(way.runs, std::string("busy"), &Run::left_out));
     slow += static_cast<std::size_t>(std::ranges::count(way.runs, std::string("slow clock"), &Run::left_out));
   }
   std::vector<std::string> notes;
   if (timed == 0) return notes;
-  notes.emplace_back(
-      "[low, high] behind a figure: the median lies between them with 95 % confidence, by order statistics; "
-      "where there are fewer than six runs, they are the range.");
+  notes.push_back(fmt::format(
+      "Each row has {} run{}. [low, high] behind a figure: the median lies between them with 95 % "
+      "confidence, by order statistics; where there are fewer than six runs, they are the range, and one "
+      "has none.",
+      least == most ? std::to_string(least) : fmt::format("{} to {}", least, most), most == 1 ? "" : "s"));
+  if (wide > 0)
+    notes.push_back(
+        fmt::format("--precision {:.3g}% not reached: {} of {} rows. Too many runs were disturbed, or the "
+                    "time was over.",
+                    100 * precision, wide, timed));
   if (left_out > 0)
     notes.push_back(fmt::format(
         "{} run{} left out and measured again, because other programs had more than {:.2g} cores meanwhile, "
@@ -165,7 +176,9 @@ Report BenchRun::so_far() const {
   report.notes.clear();
   for (const auto& part : parts_) part(report);
   report.notes.insert(report.notes.end(), head_.notes.begin(), head_.notes.end());
-  for (std::string& note : notes_on_runs(report, load_->limit())) report.notes.push_back(std::move(note));
+  const double precision = options_.precision.empty() ? 0 : precision_of(options_.precision);
+  for (std::string& note : notes_on_runs(report, load_->limit(), precision))
+    report.notes.push_back(std::move(note));
   report.facts.emplace_back("load after", load_text());
   report.facts.emplace_back("clock after", clock_text());
   return report;

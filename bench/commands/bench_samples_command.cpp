@@ -174,7 +174,7 @@ class SampleTimes {
                                {"time", "ms", milliseconds(subjects_[i])},
                                {"rays", "millions", figures_[i]->rays / 1e6},
                                {"rms error", "", figures_[i]->error.rms},
-                               {"of the rays of even samples at this error", "%", of_even(i)}});
+                               {"of even rays", "%", of_even(i)}});
       }
       add_row(table, row, subjects_[i]);
     }
@@ -266,12 +266,13 @@ int bench_samples(const SamplesOptions& options) {
                                  reference, counts.back()));
   BenchRun run("samples", "Time and error by samples a pixel", options);
   run.head().notes.push_back(fmt::format(
-      "Median of {} frames after one to warm up; the ways take turns, and the image of each run was compared "
+      "Medians of frames after one to warm up; the ways take turns, and the image of each run was compared "
       "to the bit before its time counted. The error is the root mean square difference from the same "
       "device's picture with {} samples, in linear color; a pixel is visibly wrong if it is off by more than "
       "0.02. With independent samples \"error x sqrt(samples)\" would stay constant; these samples are "
-      "spread evenly over the pixel and do better.",
-      options.repeat, reference));
+      "spread evenly over the pixel and do better. \"of even rays\": of those that even samples take to the "
+      "same error.",
+      reference));
   const std::vector<DeviceInfo> devices = run.devices();
   const double parts = static_cast<double>(options.scenes.size() * devices.size());
   for (const std::string& file : options.scenes)

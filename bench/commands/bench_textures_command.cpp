@@ -73,11 +73,10 @@ class TextureCost {
 
 int bench_textures(const BenchOptions& options) {
   BenchRun run("textures", "What textures cost", options);
-  run.head().notes.push_back(fmt::format(
-      "Median of {} frames of each after one to warm up, in turn; times are those of the kernels, and the "
+  run.head().notes.emplace_back(
+      "Medians of frames of each after one to warm up, in turn; times are those of the kernels, and the "
       "ratio is of the medians. Without textures the materials keep their colors and numbers. Every result "
-      "was compared before its time counted.",
-      options.repeat));
+      "was compared before its time counted.");
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const SceneDescription scene = bench_description(file, options);

@@ -192,7 +192,7 @@ class ThreadTimes {
     if (!one || !many) return {};
     const double base = plan_.counts.front(), value = base * one->seconds().median / many->seconds().median;
     const Ratio pairs = paired_ratio(one->runs, many->runs);
-    if (!pairs.is_known()) return Spread{value, value, value};
+    if (!pairs.is_known() || many->seconds().runs.size() < 2) return Spread{value, value, value};
     return Spread{value, std::min(value, base / pairs.high), std::max(value, base / pairs.low)};
   }
 
@@ -340,11 +340,10 @@ int bench_threads(const ThreadsOptions& options) {
   if (plan.plain) head.facts.emplace_back("plain C++", compiler_text() + ", one thread");
   const std::vector<ThreadScaling> plans = make_plans(options, plan, run);
   announce(options, plans, head);
-  head.notes.push_back(
-      fmt::format("Median of {} frames after two to warm up, sizes and counts in turn, from the first launch "
-                  "until the film is on the host, without building kernels. Threads are compute units of a "
-                  "sub-device. All images of a size are the same to the bit.",
-                  plans.empty() ? options.repeat : plans.front().repeat));
+  head.notes.emplace_back(
+      "Medians of frames after two to warm up, sizes and counts in turn, from the first launch "
+      "until the film is on the host, without building kernels. Threads are compute units of a "
+      "sub-device. All images of a size are the same to the bit.");
   if (plan.plain)
     head.notes.push_back(
         "Plain C++ is the same integrator written as an ordinary program: recursion, scalar floats, the same "

@@ -129,11 +129,10 @@ int bench_workgroup(const WorkgroupOptions& options) {
   BenchRun run("workgroup", "Times by work-group size", options);
   run.head().notes = {
       fmt::format(
-          "Median of {} runs after one to warm up{}, all sizes in shuffled turn. render_whitted or "
+          "Medians of runs after one to warm up, all sizes in shuffled turn. render_whitted or "
           "render_path is a whole frame with its transfers, the others are {}x{} camera rays through the "
           "tracer alone. Each result was compared with the default's to the bit before its time counted.",
-          options.repeat, options.budget > 0 ? ", or of fewer that the budget allowed" : "", options.rays,
-          options.rays),
+          options.rays, options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
       "the interval of its median lies below that of the default's.",
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "

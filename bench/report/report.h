@@ -147,7 +147,7 @@ nlohmann::json report_t4(const Report& report);
 /// A number with about three digits that count: "0.0123", "4.57", "12.3", "1234".
 std::string number_text(double value);
 
-/// "12.3 [11.9, 12.8]": the median and median_interval(). Empty for nothing.
+/// "12.3 [11.9, 12.8]": the median and, if it has one, its interval. Empty for nothing.
 std::string cell_text(const Cell& cell);
 
 }  // namespace sundog

@@ -1,8 +1,11 @@
 // Reports for papers and for other tuners: LaTeX with booktabs, and the T4 format.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "bench/report/report.h"
 
@@ -33,29 +36,86 @@ std::string escaped(const std::string& text) {
 }
 
 std::string cell_latex(const Cell& cell) {
-  if (cell.kind != Cell::Kind::spread) return escaped(cell_text(cell));
+  if (cell.kind != Cell::Kind::spread || !has_interval(cell.spread)) return escaped(cell_text(cell));
   const Interval interval = median_interval(cell.spread);
   return fmt::format("{} {{\\footnotesize[{}, {}]}}", number_text(cell.spread.median),
                      number_text(interval.low), number_text(interval.high));
 }
 
-std::string table_latex(const Table& table) {
+/// In lines about as wide as a figure: a table of eight columns is to fit an article.
+std::string head_latex(const Column& column, char side) {
+  constexpr std::size_t most_letters = 9;
+  static const std::map<std::string, const char*> symbols{{"x", "$\\times$"},
+                                                          {"sqrt(samples)", "$\\sqrt{n}$"}};
+  std::istringstream words(column.name + (column.unit.empty() ? "" : " (" + column.unit + ")"));
+  std::string text, word;
+  std::size_t letters = 0;  // of the last line
+  bool broken = false;
+  while (words >> word) {
+    const bool fits = letters + 1 + word.size() <= most_letters;
+    if (letters > 0) text += fits ? " " : "\\\\";
+    broken = broken || (letters > 0 && !fits);
+    letters = word.size() + (letters > 0 && fits ? letters + 1 : 0);
+    const auto symbol = symbols.find(word);
+    text += symbol == symbols.end() ? escaped(word) : symbol->second;
+  }
+  return broken ? fmt::format("\\shortstack[{}]{{{}}}", side, text) : text;
+}
+
+/// The images' size, if all have the same.
+std::string image_size(const Table& scenes) {
+  const auto column = [&](const char* name) {
+    return std::ranges::find(scenes.columns, name, &Column::name);
+  };
+  const auto width = column("width") - scenes.columns.begin(),
+             height = column("height") - scenes.columns.begin();
+  std::set<std::string> sizes;
+  for (const auto& row : scenes.rows)
+    sizes.insert(fmt::format("${} \\times {}$ pixels", cell_text(row.at(static_cast<std::size_t>(width))),
+                             cell_text(row.at(static_cast<std::size_t>(height)))));
+  return sizes.size() == 1 ? *sizes.begin() : "";
+}
+
+std::string caption_of(const Table& table, const Report& report) {
+  const bool has_brackets = std::ranges::any_of(table.rows, [](const auto& row) {
+    return std::ranges::any_of(
+        row, [](const Cell& cell) { return cell.kind == Cell::Kind::spread && has_interval(cell.spread); });
+  });
+  const bool has_ranges = std::ranges::any_of(report.ways, [](const MeasuredWay& way) {
+    const std::size_t runs = way.seconds().runs.size();
+    return runs > 1 && runs < fewest_for_interval;
+  });
+  std::string caption = escaped(table.title);
+  const auto add = [&](const std::string& text) {
+    caption += (caption.empty() || text.empty() ? "" : "; ") + text;
+  };
+  add(image_size(report.scenes));
+  if (has_brackets) add(has_ranges ? "intervals in brackets" : "95 \\% intervals in brackets");
+  return caption;
+}
+
+/// Lines that LaTeX skips.
+std::string comment(const std::string& text) {
+  std::string lines = "% ";
+  for (const char c : text) lines += c == '\n' ? "\n% " : std::string(1, c);
+  return lines + "\n";
+}
+
+std::string table_latex(const Table& table, const std::string& caption) {
   std::string columns, head, body;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const Column& column = table.columns[i];
     columns += is_word_column(table, i) ? 'l' : 'r';
-    head += i ? " & " : "";
-    head += escaped(column.name) + (column.unit.empty() ? "" : " (" + escaped(column.unit) + ")");
+    head += (i ? " & " : "") + head_latex(table.columns[i], columns.back());
   }
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) body += (i ? " & " : "") + cell_latex(row[i]);
     body += " \\\\\n";
   }
   return fmt::format(
-      "\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{} "
-      "\\\\\n\\midrule\n"
+      "\\begin{{table}}\n\\centering\\small\\tabcolsep=4pt\n\\caption{{{}}}\n"
+      "\\begin{{tabular}}{{{}}}\n\\toprule\n{} \\\\\n\\midrule\n"
       "{}\\bottomrule\n\\end{{tabular}}\n\\end{{table}}\n\n",
-      escaped(table.title), columns, head, body);
+      caption, columns, head, body);
 }
 
 json value_of(const Cell& cell) {
@@ -67,12 +127,16 @@ json value_of(const Cell& cell) {
 }  // namespace
 
 std::string report_latex(const Report& report) {
-  std::string text = fmt::format("% {}. \\usepackage{{booktabs}}\n", escaped(report.title));
-  for (const auto& [name, value] : report.facts) text += fmt::format("% {}: {}\n", name, value);
-  bool any = false;
+  std::string text = comment(report.title + ". \\usepackage{booktabs}");
+  text += comment("A wide table across a paper's two columns: write table* for table, at its begin and end.");
+  for (const auto& [name, value] : report.facts) text += comment(fmt::format("{}: {}", name, value));
+  for (const std::string& note : report.notes) text += comment(note);
+  std::string tables;
+  const auto add = [&](const Table& table) { tables += table_latex(table, caption_of(table, report)); };
   for (const Part& part : report.parts)
-    if (const auto* table = std::get_if<Table>(&part); table && (any = true)) text += table_latex(*table);
-  return any ? text : text + table_latex(report.measurements);
+    if (const auto* table = std::get_if<Table>(&part)) add(*table);
+  if (tables.empty()) add(report.measurements);
+  return text + tables;
 }
 
 json report_t4(const Report& report) {

@@ -229,6 +229,7 @@ std::string cell_text(const Cell& cell) {
   const Spread& spread = cell.spread;
   if (cell.kind == Cell::Kind::number) return number_text(spread.median);
   if (cell.kind != Cell::Kind::spread) return cell.word;
+  if (!has_interval(spread)) return number_text(spread.median);
   const Interval interval = median_interval(spread);
   return fmt::format("{} [{}, {}]", number_text(spread.median), number_text(interval.low),
                      number_text(interval.high));

@@ -53,6 +53,13 @@ Interval median_interval(const Spread& spread) {
   return {values[k], values[values.size() - 1 - k]};
 }
 
+bool has_interval(const Spread& spread) { return spread.runs.size() > 1 || spread.min < spread.max; }
+
+double half_width(const Spread& spread) {
+  const Interval interval = median_interval(spread);
+  return spread.median > 0 ? 0.5 * (interval.high - interval.low) / spread.median : 0;
+}
+
 double cost_of_error(const std::vector<ErrorCost>& measured, double error) {
   for (std::size_t i = 0; i + 1 < measured.size(); ++i) {
     const ErrorCost &a = measured[i], &b = measured[i + 1];

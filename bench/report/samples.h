@@ -25,6 +25,13 @@ struct Interval {
   double low = 0, high = 0;
 };
 Interval median_interval(const Spread& spread);
+constexpr std::size_t fewest_for_interval = 6;
+
+/// Whether it has one: neither a single run nor a figure that is exact, as a base's ratio to itself.
+bool has_interval(const Spread& spread);
+
+/// Half of the interval over the median: 0.03 is "±3 %".
+double half_width(const Spread& spread);
 
 /// A way with so many samples: its error, and what it costs in seconds or rays.
 struct ErrorCost {
@@ -56,6 +63,7 @@ struct MeasuredWay {
   std::size_t known = 0;         // the first of them, that an earlier report had
   std::string problem;           // not empty: no time counts, and why
   std::exception_ptr failure{};  // what the problem was thrown as; null: a wrong result
+  bool once = false;             // its first run counts, and there is no other
   bool noisy = false;  // too few quiet runs could be had: the least disturbed of the others count too
 
   bool is_good() const { return problem.empty() && !seconds().runs.empty(); }

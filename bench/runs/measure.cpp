@@ -17,7 +17,7 @@ namespace {
 constexpr const char* busy = "busy";
 constexpr const char* slow_clock = "slow clock";
 constexpr double slower = 0.95;  // clock that matters, over another run's
-constexpr std::size_t most_runs = 1000, interval_runs = 6;
+constexpr std::size_t most_runs = 1000;
 // A run that had so much less cores, and took so much longer, than another of its way was disturbed.
 constexpr double fewer_cores = 0.85, longer = 1.1;
 
@@ -63,7 +63,7 @@ class Measurement {
         if (is_finished(subject)) continue;
         if (options_.is_stopped()) return;
         any = true;
-        tell(subject, fmt::format("run {}", subject.runs.size() + 1));
+        tell(subject, fmt::format("run {}{}", subject.runs.size() + 1, width_text(subject)));
         run(subject, true, false);
         ++done_;
       }
@@ -100,13 +100,16 @@ class Measurement {
     if (count < repeat) return false;
     const Spread times = subject.seconds();
     if (std::accumulate(times.runs.begin(), times.runs.end(), 0.0) < options_.seconds) return false;
-    if (options_.precision <= 0) return true;
-    const Interval interval = median_interval(times);
-    return count >= interval_runs &&
-           0.5 * (interval.high - interval.low) <= options_.precision * times.median;
+    return options_.precision <= 0 || is_precise(subject, options_.precision);
   }
 
   bool is_over() const { return options_.budget > 0 && clock_.seconds() > options_.budget; }
+
+  /// How well its median is known so far, where that matters.
+  std::string width_text(const Subject& subject) const {
+    if (options_.precision <= 0 || counted(subject) < fewest_for_interval) return "";
+    return fmt::format(", known to {:.1f} %", 100 * half_width(subject.seconds()));
+  }
 
   void tell(const Subject& subject, const std::string& what) const {
     const double all = static_cast<double>(subjects_.size()) * (1 + options_.repeat);
@@ -167,6 +170,11 @@ std::string disturbance(const MeasuredWay& way, const Run& run, double limit) {
     return run.clock > 0 && run.clock < slower * other.clock && slower * run.seconds > other.seconds;
   });
   return slow ? slow_clock : "";
+}
+
+bool is_precise(const MeasuredWay& way, double precision) {
+  const Spread times = way.seconds();
+  return times.runs.size() >= fewest_for_interval && half_width(times) <= precision;
 }
 
 bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work) {

@@ -18,7 +18,6 @@ struct Subject : MeasuredWay {
   std::function<void()> prepare;       // before its first run; may be empty
   std::function<double()> run;         // does the work; seconds
   std::function<std::string()> check;  // why the last run's result does not count; "": it does
-  bool once = false;                   // its first run counts, and there is no other
 };
 
 struct MeasureOptions {
@@ -38,6 +37,9 @@ struct MeasureOptions {
 /// The cause that slowed a run: "busy" (other programs, or too few cores), "slow clock", or "" for none.
 /// Cores and the clock count where other runs of the way had more and took less time.
 std::string disturbance(const MeasuredWay& way, const Run& run, double limit);
+
+/// Whether its median is known to `precision`, for which it needs six runs at least.
+bool is_precise(const MeasuredWay& way, double precision);
 
 /// Does what comes before all subjects; where a device fails in it, that is their problem. Whether it did
 /// not.

@@ -229,6 +229,7 @@ TEST_CASE("bench workgroup names each of several devices in tables, rows and LaT
     CHECK_THAT(latex, ContainsSubstring("occluded\\_rays on " + place));
     CHECK_THAT(result.out, ContainsSubstring("occluded_rays on " + place));
   }
+  CHECK_THAT(result.out, ContainsSubstring("Each row has 1 run. "));
 }
 
 TEST_CASE("bench rays says that it leaves distance fields out, and times nothing where nothing else is") {

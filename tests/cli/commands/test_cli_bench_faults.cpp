@@ -208,3 +208,14 @@ TEST_CASE("bench workgroup times a frame once, by whichever names it is asked fo
   }
   CHECK(std::ranges::count(swept, "2") == 1);
 }
+
+TEST_CASE("a bench whose rows are not as precise as asked says how many") {
+  const CliFolder folder;
+  const CommandResult result =
+      run_sundog({"bench", "samples", folder.scene, "--device", "portable", "--counts", "1", "--adaptive",
+                  "0.05", "--repeat", "1", "--precision", "0.01%", "--budget", "1"});
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("--precision 0.01% not reached: ") &&
+                             ContainsSubstring(" rows. Too many runs were disturbed, or the time was over."));
+}

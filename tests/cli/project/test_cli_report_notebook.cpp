@@ -39,6 +39,6 @@ TEST_CASE("the notebook makes three tables from the reports of bench threads, sa
   CAPTURE(result.out, result.err);
   CHECK(result.status == 0);
   CHECK_THAT(result.out,
-             ContainsSubstring("| pixels a side | 1 threads | 2 threads |\n| --- | --- | --- |\n| 16 |") &&
+             ContainsSubstring("| pixels a side | 1 thread | 2 threads |\n| --- | --- | --- |\n| 16 |") &&
                  ContainsSubstring("| adaptive, 0.05 |") && ContainsSubstring("| 4x4 |"));
 }

@@ -172,6 +172,10 @@ TEST_CASE("runs are taken until they took so long, or until the median is known 
   CHECK((noisy[1].runs.size() > 12 && noisy[1].runs.size() < 200));
   const Interval interval = median_interval(noisy[1].seconds());
   CHECK(interval.high - interval.low <= 0.02 * noisy[1].seconds().median);
+  CHECK((is_precise(noisy[1], 0.01) && !is_precise(noisy[1], 0.001)));
+  MeasuredWay brief;
+  brief.runs.assign(5, Run{1, 1, 0, 0, ""});
+  CHECK_FALSE(is_precise(brief, 0.5));  // five runs have no interval of 95 %
 }
 
 TEST_CASE("runs of an earlier report count, and only the rest is measured") {

@@ -53,7 +53,9 @@ TEST_CASE("numbers keep about three digits that count") {
   CHECK(number_text(0.01234) == "0.0123");
   CHECK(number_text(-2.5) == "-2.50");
   CHECK(cell_text(Spread{10.04, 9, 11}) == "10.0 [9, 11]");
-  CHECK(cell_text(Spread{}) == "0 [0, 0]");
+  CHECK(cell_text(spread({4, 4})) == "4 [4, 4]");
+  CHECK(cell_text(spread({318})) == "318");  // a single run has no interval
+  CHECK(cell_text(Spread{1, 1, 1}) == "1");
   CHECK(cell_text(Cell()).empty());
 }
 
@@ -130,13 +132,21 @@ TEST_CASE("LaTeX has the tables with booktabs, intervals in them, and every spec
   Report report = small_report();
   report.measurements.title = "50 % of_all";
   const std::string text = report_latex(report);
-  CHECK_THAT(text, ContainsSubstring("\\caption{50 \\% of\\_all}") &&
+  CHECK_THAT(text, ContainsSubstring("\\caption{50 \\% of\\_all; 95 \\% intervals in brackets}") &&
                        ContainsSubstring("\\begin{tabular}{lrr}") &&
                        ContainsSubstring("scene & time (ms) & runs \\\\") &&
                        ContainsSubstring("ice, hollow & 12.3 {\\footnotesize[12, 13]} & 3 \\\\"));
   for (const char* rule : {"\\toprule", "\\midrule", "\\bottomrule"}) CHECK(count(text, rule) == 1);
   report.parts = {Table{"Best", {{"size", ""}}, {{"[a]"}}}};
   CHECK_THAT(report_latex(report), ContainsSubstring("{[}a]") && !ContainsSubstring("hollow"));
+  report.parts = {Table{"T", {{"of even rays", "%"}, {"error x sqrt(samples)", ""}}, {{"a", 1.0}}}};
+  report.scenes = {"", {{"width", "pixels"}, {"height", "pixels"}}, {{320.0, 240.0}, {320.0, 240.0}}};
+  report.notes = {"Two\nlines."};
+  CHECK_THAT(report_latex(report),
+             ContainsSubstring("\\caption{T; $320 \\times 240$ pixels}") &&
+                 ContainsSubstring("\\shortstack[l]{of even\\\\rays (\\%)} & "
+                                   "\\shortstack[r]{error $\\times$\\\\$\\sqrt{n}$} \\\\\n") &&
+                 ContainsSubstring("% Two\n% lines.\n"));
 }
 
 TEST_CASE("plots for a paper's column are files of 88 mm, half as wide as those of a page") {
