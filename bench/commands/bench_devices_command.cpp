@@ -253,6 +253,7 @@ int bench_devices_command(const BenchOptions& asked) {
   if (options.devices.empty()) options.devices = {"all"};
   const std::vector<DeviceInfo> devices = wholes_and_parts(options);
   run.add_devices(devices);
+  run.head().times_frames = true;
   run.head().notes.emplace_back(
       "Medians of frames after one to warm up; the combinations take turns, devices are opened once, and "
       "building kernels does not count. A share is a part of the picture's pixels. A pixel differs if it is "

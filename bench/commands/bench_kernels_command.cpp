@@ -38,9 +38,8 @@ DeviceInfo with_cache(DeviceInfo info) {
   return info;
 }
 
-/// Builds a program from its source, then loads it on the device opened anew. `room`: the largest work-group
-/// that its stack has room for; 0: any. On NVIDIA's devices with -cl-nv-verbose. Throws DeviceError,
-/// BuildError.
+/// Builds a program from its source, then loads it on the device opened anew. On NVIDIA's devices with
+/// -cl-nv-verbose. Throws DeviceError, BuildError.
 std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source) {
   Device device(info), again(with_cache(info));
   const auto nvidia = device.nvidia();

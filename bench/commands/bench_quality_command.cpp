@@ -180,6 +180,7 @@ int bench_quality(const QualityOptions& options) {
   if (plan.reference.channels < 3)
     throw UsageError(fmt::format("{}: wanted a picture with colours", options.reference));
   BenchRun run("quality", "Error by time", options);
+  run.head().times_frames = true;
   run.head().facts.emplace_back("reference", options.reference);
   run.head().notes.emplace_back(
       "Medians of frames after one to warm up; ways and counts take turns, and the image of each "

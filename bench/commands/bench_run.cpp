@@ -34,8 +34,9 @@ std::vector<std::string> notes_on_runs(const Report& report, double limit, doubl
   std::size_t timed = 0, wide = 0, left_out = 0, slow = 0, least = 0, most = 0;
   std::vector<std::string> noisy;
   for (const MeasuredWay& way : report.ways) {
-    if (const std::size_t runs = way.seconds().runs.size(); way.is_good()) {
-      least = timed++ ? std::min(least, runs) : runs;
+    timed += way.is_good();
+    if (const std::size_t runs = way.seconds().runs.size(); way.is_good() && !way.once) {
+      least = most ? std::min(least, runs) : runs;
       most = std::max(most, runs);
     }
     wide += precision > 0 && way.is_good() && !way.once && !is_precise(way, precision);
@@ -45,15 +46,16 @@ std::vector<std::string> notes_on_runs(const Report& report, double limit, doubl
   }
   std::vector<std::string> notes;
   if (timed == 0) return notes;
+  if (most == 0) least = most = 1;
   notes.push_back(fmt::format(
       "Each row has {} run{}. [low, high] behind a figure: the median lies between them with 95 % "
       "confidence, by order statistics; where there are fewer than six runs, they are the range, and one "
-      "has none.",
+      "run has none.",
       least == most ? std::to_string(least) : fmt::format("{} to {}", least, most), most == 1 ? "" : "s"));
   if (wide > 0)
     notes.push_back(
-        fmt::format("--precision {:.3g}% not reached: {} of {} rows. Too many runs were disturbed, or the "
-                    "time was over.",
+        fmt::format("--precision {:.3g}% not reached: {} of {} rows. A row ends when as many runs were "
+                    "disturbed as count, with 1000 runs, or when the time is over.",
                     100 * precision, wide, timed));
   if (left_out > 0)
     notes.push_back(fmt::format(

@@ -265,6 +265,7 @@ int bench_samples(const SamplesOptions& options) {
     throw UsageError(fmt::format("--reference {}: wanted more than the {} samples that are compared with it",
                                  reference, counts.back()));
   BenchRun run("samples", "Time and error by samples a pixel", options);
+  run.head().times_frames = true;
   run.head().notes.push_back(fmt::format(
       "Medians of frames after one to warm up; the ways take turns, and the image of each run was compared "
       "to the bit before its time counted. The error is the root mean square difference from the same "

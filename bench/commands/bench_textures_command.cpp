@@ -73,6 +73,7 @@ class TextureCost {
 
 int bench_textures(const BenchOptions& options) {
   BenchRun run("textures", "What textures cost", options);
+  run.head().times_frames = true;
   run.head().notes.emplace_back(
       "Medians of frames of each after one to warm up, in turn; times are those of the kernels, and the "
       "ratio is of the medians. Without textures the materials keep their colors and numbers. Every result "

@@ -107,6 +107,7 @@ struct Report {
   Facts environment;               // variables that drivers and sundog read
   Table devices, scenes;           // what was measured, for other programs
   bool complete = true;            // false: the bench still runs, or was interrupted
+  bool times_frames = false;       // of the scenes' sizes
 };
 
 /// Its time; nothing where it has none.

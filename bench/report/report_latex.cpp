@@ -25,6 +25,10 @@ std::string escaped(const std::string& text) {
                                                     {'~', "\\textasciitilde{}"},
                                                     {'^', "\\textasciicircum{}"},
                                                     {'\\', "\\textbackslash{}"},
+                                                    {'<', "\\textless{}"},
+                                                    {'>', "\\textgreater{}"},
+                                                    {'|', "\\textbar{}"},
+                                                    {'*', "{*}"},
                                                     {'[', "{[}"}};
   std::string safe;
   for (const char c : text)
@@ -77,19 +81,18 @@ std::string image_size(const Table& scenes) {
 }
 
 std::string caption_of(const Table& table, const Report& report) {
-  const bool has_brackets = std::ranges::any_of(table.rows, [](const auto& row) {
-    return std::ranges::any_of(
-        row, [](const Cell& cell) { return cell.kind == Cell::Kind::spread && has_interval(cell.spread); });
-  });
-  const bool has_ranges = std::ranges::any_of(report.ways, [](const MeasuredWay& way) {
-    const std::size_t runs = way.seconds().runs.size();
-    return runs > 1 && runs < fewest_for_interval;
-  });
+  bool has_brackets = false, has_ranges = false;
+  for (const auto& row : table.rows)
+    for (const Cell& cell : row)
+      if (cell.kind == Cell::Kind::spread && has_interval(cell.spread)) {
+        has_brackets = true;
+        has_ranges = has_ranges || cell.spread.runs.size() < fewest_for_interval;
+      }
   std::string caption = escaped(table.title);
   const auto add = [&](const std::string& text) {
     caption += (caption.empty() || text.empty() ? "" : "; ") + text;
   };
-  add(image_size(report.scenes));
+  if (report.times_frames) add(image_size(report.scenes));
   if (has_brackets) add(has_ranges ? "intervals in brackets" : "95 \\% intervals in brackets");
   return caption;
 }

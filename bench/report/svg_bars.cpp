@@ -30,7 +30,12 @@ std::vector<std::string> labels_of(const BarPlot& plot, Place place) {
         static_cast<std::size_t>(std::ranges::mismatch(label, labels[0].substr(0, same)).in1 - label.begin());
   same = labels[0].substr(0, same).rfind(' ') + 1;  // 0 without a space
   const bool is_long = std::ranges::any_of(labels, [](const auto& label) { return label.size() > most; });
-  for (std::string& label : labels) label = label.substr(is_long ? same : 0, most);
+  for (std::string& label : labels) {
+    label.erase(0, is_long ? same : 0);
+    std::size_t end = std::min(most, label.size());
+    while (end > 0 && end < label.size() && (label[end] & 0xC0) == 0x80) --end;  // within a letter of UTF-8
+    label.resize(end);
+  }
   return labels;
 }
 

@@ -1,5 +1,5 @@
-// Joins sundog's options, the device rule's, the entry's, the caller's and the environment's; the last two
-// replace those of a rule by the same name.
+// Joins sundog's options, the device rule's, the entry's, a tuning's, the caller's and the environment's; the
+// last three replace those before them by the same name.
 #include "device/build_options.h"
 
 #include <fmt/format.h>

@@ -26,7 +26,8 @@ std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, s
 /// Whether a tuning may have these options: each is one to try on some device.
 bool may_be_tuned(std::string_view options);
 
-/// `options` without those of its maker that the device's rule gives, which an older driver may refuse.
+/// `options` without those of its maker that the device's rule gives or has a tuning try, which an older
+/// driver may refuse.
 std::string portable_options(const DeviceInfo& device, const std::string& options);
 
 /// Disables drivers' own caches, which lose the log. Call before the first OpenCL call.

@@ -20,6 +20,8 @@ namespace {
 using nlohmann::json;
 using enum WorkGroup::Kind;
 
+constexpr const char* of_paths = "+paths";
+
 json entry_json(const TuningEntry& entry) {
   json result{{"kernel", entry.kernel},
               {"class", entry.scene_class},
@@ -64,7 +66,7 @@ std::string scene_class(const CompiledScene& scene) {
   std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
   if (scene.tracer == Tracer::wide) kind += "+wide";
   if (scene.tracer == Tracer::compact) kind += "+compact";
-  if (scene.integrator == "path") kind += "+paths";
+  if (scene.integrator == "path") kind += of_paths;
   return scene.features.secondary_rays ? kind + "+rays" : kind;
 }
 
@@ -129,15 +131,21 @@ void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
 Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {
   const std::optional<TuningFile> file = load_tuning(device);
   if (!file) return {};
+  const std::string own = scene_class(scene);
+  std::string whitteds = own;  // which serves paths too, but for options, which it did not compare
+  if (const std::size_t at = own.find(of_paths); at != std::string::npos)
+    whitteds.erase(at, std::string_view(of_paths).size());
   Tuning tuning;
   WorkGroup surfaces_group;
-  for (const TuningEntry& entry : file->entries) {
-    if (entry.scene_class != scene_class(scene)) continue;
-    if (entry.kernel == surfaces_kernel)
-      surfaces_group = entry.tuning.surfaces_group;
-    else
-      tuning = entry.tuning;
-  }
+  for (const std::string& wanted : {whitteds, own})
+    for (const TuningEntry& entry : file->entries) {
+      if (entry.scene_class != wanted) continue;
+      if (entry.kernel == surfaces_kernel)
+        surfaces_group = entry.tuning.surfaces_group;
+      else
+        tuning = entry.tuning;
+      if (wanted != own) tuning.options.clear();
+    }
   tuning.surfaces_group = surfaces_group;
   return tuning;
 }

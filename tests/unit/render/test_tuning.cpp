@@ -1,10 +1,13 @@
 // Tuning results as JSON: what is written is read again, and files of earlier versions too.
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "catch.h"
 #include "render/device/tuning.h"
 #include "scene/json/value.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 using nlohmann::json;
@@ -37,8 +40,35 @@ TEST_CASE("a tuning's options are written, read and shown; without them a file i
 
 TEST_CASE("a tuning file has no options that no tuning tries") {
   TuningFile file{"P", "D", "1", "k", 0, {TuningEntry{"render_whitted", "solids+paths", "s", {}}}};
-  for (const char* options : {"-cl-fast-relaxed-math", "-DTILE_W=4", "-DNODE_LOOP=7"}) {
+  const auto read_with = [&](const char* options) {
     file.entries[0].tuning.options = options;
-    CHECK_THROWS_AS(read_again(to_json(file)), SceneError);
-  }
+    return read_again(to_json(file));
+  };
+  CHECK(read_with("-DNODE_LOOP=1").entries.size() == 1);
+  for (const char* options : {"-cl-fast-relaxed-math", "-DTILE_W=4", "-DNODE_LOOP=7"})
+    CHECK_THROWS_AS(read_with(options), SceneError);
+}
+
+TEST_CASE("scenes traced by paths have their own tuning, or Whitted's without its options") {
+  const TemporaryFolder folder;
+  HostEnvironment environment;
+  environment.cache = folder.path();
+  DeviceInfo device;
+  device.platform_name = device.name = device.driver = "some";
+  device.environment = std::make_shared<const HostEnvironment>(environment);
+  CompiledScene whitted, path;
+  path.integrator = "path";
+  TuningEntry entry{"render_whitted", scene_class(whitted), "s", {}};
+  entry.tuning.launch_ms = 25;
+  entry.tuning.options = "-DNODE_LOOP=1";
+  keep_tuning(device, entry);
+  CHECK(saved_tuning(device, whitted) == entry.tuning);
+  Tuning others = entry.tuning;
+  others.options.clear();
+  CHECK(saved_tuning(device, path) == others);
+  entry.scene_class = scene_class(path);
+  entry.tuning.options = "-DNODE_LOOP=2";
+  keep_tuning(device, entry);
+  CHECK(saved_tuning(device, path).options == "-DNODE_LOOP=2");
+  CHECK(saved_tuning(device, whitted).options == "-DNODE_LOOP=1");
 }

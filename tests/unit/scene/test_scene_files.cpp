@@ -112,9 +112,10 @@ TEST_CASE("a missing file is said to come from the script beside it that names i
     return std::string("no error");
   };
   const std::string missing = fmt::format("\"{}\" does not exist", (folder / "made.ply").string());
-  folder.write("make_others.py", "write('other.ply')");
+  folder.write("make_others.py", "write('other.ply', 'remade.ply', 'made.ply2')");
   CHECK(reason() == missing);
   folder.write("make_meshes.py", "write('made.ply')");
+  folder.write("make_more.sh", "made.ply");  // the first by name is enough
   CHECK(reason() == missing + fmt::format(": run {}, which names it", (folder / "make_meshes.py").string()));
 }
 
