@@ -156,8 +156,8 @@ TEST_CASE(
         Case{"/0/entries/0/work_group", "\"8x\"", "wanted a size such as"},
         Case{"/0/entries/0/tile_w", "\"two\"", "wanted an integer from 0 to 16, found"},
         Case{"/0/entries/0/launch_ms", "-1", "wanted a number"},
-        Case{"/0/entries/0/options", "\"-I/tmp\"", "wanted options such as"},
-        Case{"/0/entries/0/options", "\"-DA=1;x\"", "wanted options such as"},
+        Case{"/0/entries/0/options", "\"-I/tmp\"", "wanted options that sundog tune tries"},
+        Case{"/0/entries/0/options", "\"-DA=1;x\"", "wanted options that sundog tune tries"},
         Case{"/0/entries/0/gamma", "1", "unknown key"}, Case{"/0/entries", "3", "wanted an array"},
         Case{"/0/driver", "null", "wanted"}, Case{"/0", "[]", "wanted an object"}}) {
     json bad = good;
