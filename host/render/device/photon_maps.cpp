@@ -1,5 +1,5 @@
-// Traces photons in launches, sorts them by cell on the host, and uploads as many maps as
-// fit; radii shrink after Knaus and Zwicker (2011).
+// Traces photons in launches, sorts them by cell on the host, and uploads as many maps as fit; radii shrink
+// after Knaus and Zwicker (2011).
 #include "render/device/photon_maps.h"
 
 #include <fmt/format.h>
