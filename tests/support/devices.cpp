@@ -27,7 +27,8 @@ void prepare_opencl_environment(bool every_driver) {
 }
 
 const std::vector<sundog::DeviceInfo>& test_devices() {
-  static const std::vector<sundog::DeviceInfo> devices = [] {
+  // Never destroyed: at exit drivers have freed what the release of a context uses.
+  static const auto& devices = *new const std::vector<sundog::DeviceInfo>([] {
     const char* listed = std::getenv("SUNDOG_TEST_DEVICES");
     std::istringstream in(listed ? listed : "all");
     std::vector<std::string> specs;
@@ -35,7 +36,7 @@ const std::vector<sundog::DeviceInfo>& test_devices() {
     auto chosen = sundog::select_devices(sundog::enumerate_devices(sundog::plain_environment()), specs);
     for (sundog::DeviceInfo& device : chosen) device = sundog::share_context(std::move(device));
     return chosen;
-  }();
+  }());
   return devices;
 }
 
