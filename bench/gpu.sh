@@ -2,10 +2,10 @@
 # All that is worth knowing of sundog on one device, most of all a GPU, by one command and within eight minutes:
 #   bench/gpu.sh [--device SPEC] [--seconds N] [--quick] OUT_DIR [MODEL...]
 # From a clone it runs build/release/sundog (or that of the folder SUNDOG_BUILD), from a bundle the bundle's. In this order: the devices;
-# `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); builds of kernels, cold and warm; `bench rays`
-# of three models, or of MODEL..., by each way through a node (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers
-# too; samples a second of six scenes; times by work-group size; the roofline; registers, memory, build logs and builds (cold, warm) of every kernel; watts and joules where
-# nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
+# `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); cold and warm starts of six scenes; builds (cold,
+# warm), registers, memory and build logs of each of their kernels; `bench rays` of three models, or of MODEL..., by each way through a node
+# (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers too; samples a second of the six scenes; times by
+# work-group size; the roofline; watts and joules where nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
 # OUT_DIR as soon as it is there, and summary.txt names it; one that fails does not keep the others from running, and those that would begin
 # after N seconds (480) are left out. SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.
 set -u
@@ -151,6 +151,10 @@ command -v nvidia-smi >/dev/null && part nvidia-smi 20 nvidia-smi -q
 [[ $quick ]] || part check 150 "$sundog" check --timeout 120 --device "$device"
 part pictures 150 pictures
 part builds 120 builds
+for name in "${frame_scenes[@]}"; do
+  SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels" 40 "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
+    --set /render/tracer=compact --json "$out/$name-kernels.json"
+done
 for model in "${models[@]}"; do
   name=$(basename -- "$model")
   name=${name%.gz}
@@ -174,10 +178,6 @@ for name in "${frame_scenes[@]}"; do part "$name-frames" 40 frames "$name"; done
 part workgroup 60 "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" \
   --json "$out/workgroup.json" --html "$out/workgroup.html"
 part roofline 60 "$sundog" bench roofline "${models[0]}" --device "$device" "${bench[@]}" "${roof[@]}" --json "$out/roofline.json" --svg "$out/roofline.svg"
-for name in "${frame_scenes[@]}"; do
-  SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels" 60 "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
-    --set /render/tracer=compact --json "$out/$name-kernels.json"
-done
 if [[ -s $out/power.csv ]]; then part joules 10 watts; else missing+=("joules: nvidia-smi reads no watts here"); fi
 for model in "${models[@]}"; do
   for peer in embree tinybvh; do

@@ -112,10 +112,12 @@ std::vector<DeviceInfo> wholes_and_parts(BenchOptions options) {
 class DeviceRanking {
  public:
   DeviceRanking(std::string scene_name, std::shared_ptr<const CompiledScene> scene,
-                const std::vector<DeviceInfo>& devices)
+                const std::vector<DeviceInfo>& devices, const std::vector<DeviceInfo>& unusable)
       : name_(std::move(scene_name)), scene_(std::move(scene)) {
     const auto common = std::make_shared<Common>();
-    for (const auto& set : device_combinations(devices)) {
+    std::vector<std::vector<DeviceInfo>> sets = device_combinations(devices);
+    for (const DeviceInfo& device : unusable) sets.push_back({device});
+    for (const auto& set : sets) {
       const auto made = std::make_shared<Combination>();
       made->devices = set;
       combinations_.push_back(made);
@@ -253,6 +255,7 @@ int bench_devices_command(const BenchOptions& asked) {
   if (options.devices.empty()) options.devices = {"all"};
   const std::vector<DeviceInfo> devices = wholes_and_parts(options);
   run.add_devices(devices);
+  const std::vector<DeviceInfo> unusable = unusable_bench_devices(options);
   run.head().times_frames = true;
   run.head().notes.emplace_back(
       "Medians of frames after one to warm up; the combinations take turns, devices are opened once, and "
@@ -260,7 +263,7 @@ int bench_devices_command(const BenchOptions& asked) {
       "more than 0.02 (linear color) from the first device's; more than one pixel in 200 is a problem. "
       "Efficiency is the combination's frames a second over the sum of its devices' alone, by the medians.");
   for (const std::string& file : options.scenes)
-    run.measure(std::make_shared<DeviceRanking>(scene_name(file), run.compiled(file), devices));
+    run.measure(std::make_shared<DeviceRanking>(scene_name(file), run.compiled(file), devices, unusable));
   return run.publish();
 }
 

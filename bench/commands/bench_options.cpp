@@ -24,13 +24,13 @@
 namespace sundog {
 namespace {
 
-std::string& command_line() {
-  static std::string text;
-  return text;
+std::vector<std::string>& command_line() {
+  static std::vector<std::string> words;
+  return words;
 }
 
 /// As a shell takes it for one word.
-std::string quoted(std::string_view word) {
+std::string shell_word(std::string_view word) {
   constexpr std::string_view plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
@@ -47,16 +47,15 @@ void write_json(const std::string& file, const nlohmann::json& json) {
 
 }  // namespace
 
-void remember_command_line(int argc, const char* const* argv) {
-  std::string& text = command_line();
-  text.clear();
-  for (int i = 0; i < argc; ++i) {
-    if (i > 0) text += ' ';
-    text += quoted(argv[i]);
-  }
-}
+void remember_command_line(int argc, const char* const* argv) { command_line().assign(argv, argv + argc); }
 
-const std::string& command_line_text() { return command_line(); }
+std::vector<std::string> command_line_words() { return {command_line().begin() + 1, command_line().end()}; }
+
+std::string command_line_text() {
+  std::string text;
+  for (const std::string& word : command_line()) text += (text.empty() ? "" : " ") + shell_word(word);
+  return text;
+}
 
 void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed) {
   auto* scenes =
@@ -138,6 +137,11 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
 
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
   return pick_devices(list_devices(), options.devices);
+}
+
+std::vector<DeviceInfo> unusable_bench_devices(const BenchOptions& options) {
+  return unusable_devices(list_devices(),
+                          options.devices.empty() ? devices_of_environment() : options.devices);
 }
 
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high) {

@@ -60,10 +60,15 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
 
 /// The devices that the options mean.
 std::vector<DeviceInfo> bench_devices(const BenchOptions& options);
+/// The platforms and devices that they mean and that cannot be used: opening one throws its DeviceError.
+std::vector<DeviceInfo> unusable_bench_devices(const BenchOptions& options);
 
-/// Keeps the command line, as one could type it in a shell, for the reports' facts.
+/// Keeps the command line.
 void remember_command_line(int argc, const char* const* argv);
-const std::string& command_line_text();
+/// Without the program.
+std::vector<std::string> command_line_words();
+/// As one could type it in a shell.
+std::string command_line_text();
 
 /// "1,2,4": whole numbers within [low, high], ascending and without doubles. Throws UsageError.
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high);

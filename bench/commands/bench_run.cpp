@@ -26,6 +26,8 @@
 namespace sundog {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double between_keeps = 1;    // seconds
 constexpr double most_of_time = 0.05;  // that keeping may take
 
@@ -101,20 +103,25 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
                                            {"command", command_line_text()}});
   head_.environment = driver_variables();
   if (!options.continue_from.empty()) {
-    KnownReport known = read_report(options.continue_from);
-    if (known.bench != name)
-      throw UsageError(fmt::format("--continue {}: it is of bench {}", options.continue_from, known.bench));
-    if (known.revision != build_revision())
-      throw UsageError(fmt::format("--continue {}: revision {} has measured it, this is {}: measure anew",
-                                   options.continue_from, known.revision, build_revision()));
-    known_devices_ = std::move(known.devices);
-    known_scenes_ = std::move(known.scenes);
-    for (MeasuredWay& way : known.ways)
-      if (way.problem.empty()) known_[way.name] = std::move(way);
+    take_known(options.continue_from);
     head_.facts.emplace_back("continues", options.continue_from);
   }
+  if (const fs::path kept = kept_for_next(); fs::exists(kept)) take_known(kept.string());
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     head_.notes.push_back(why);
+}
+
+void BenchRun::take_known(const std::string& file) {
+  KnownReport known = read_report(file);
+  if (known.bench != head_.name)
+    throw UsageError(fmt::format("--continue {}: it is of bench {}", file, known.bench));
+  if (known.revision != build_revision())
+    throw UsageError(fmt::format("--continue {}: revision {} has measured it, this is {}: measure anew", file,
+                                 known.revision, build_revision()));
+  known_devices_ = std::move(known.devices);
+  known_scenes_ = std::move(known.scenes);
+  for (MeasuredWay& way : known.ways)
+    if (way.problem.empty()) known_[way.name] = std::move(way);
 }
 
 void BenchRun::add_devices(const std::vector<DeviceInfo>& devices) {
@@ -166,6 +173,7 @@ MeasureOptions BenchRun::measuring(double budget, int repeat) {
   measuring.stop = &stop_.flag();
   measuring.known = known_;
   measuring.load = load_;
+  measuring.enter_row = enter_row;
   measuring.on_step = [this](const std::string& step, double done) { progress_->update(step, done); };
   measuring.on_runs = [this] {
     if (since_kept_.seconds() > std::max(between_keeps, keeping_ / most_of_time)) keep();
@@ -192,6 +200,8 @@ void BenchRun::keep() {
   files.json = options_.json;
   files.quiet = true;
   if (!files.json.empty() && !is_pipe_or_device(files.json)) write_report(so_far(), files);
+  files.json = kept_for_next().string();
+  if (!files.json.empty()) write_report(so_far(), files);
   keeping_ = clock.seconds();
   since_kept_ = {};
 }

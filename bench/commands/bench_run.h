@@ -7,6 +7,7 @@
 #include "base/arguments.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/bench_progress.h"
+#include "bench/commands/crash_guard.h"
 #include "bench/runs/measure.h"
 
 namespace sundog {
@@ -42,6 +43,7 @@ class BenchRun {
 
  private:
   MeasureOptions measuring(double budget, int repeat);
+  void take_known(const std::string& file);
   Report so_far() const;
   void keep();
 
@@ -65,7 +67,8 @@ Arguments* add_bench_command(Arguments& bench, Command& chosen, const std::strin
   Arguments* app = bench.add_subcommand(name, description);
   add_bench_options(app, *options, scene_needed);
   app->callback([options, run, &chosen] {
-    chosen = {.run = [options, run] { return run(*options); }, .stops_on_signal = true};
+    chosen = {.run = [options, run] { return guarded([&] { return run(*options); }); },
+              .stops_on_signal = true};
   });
   return app;
 }

@@ -95,7 +95,7 @@ class SampleTimes {
       frames.run();
       *reference_ = frames.image();
     };
-    if (prepared(subjects_, draw_reference)) sundog::measure(subjects_, options);
+    if (prepared(subjects_, options, draw_reference)) sundog::measure(subjects_, options);
   }
 
   /// Adds the tables, the curves and the measurements.

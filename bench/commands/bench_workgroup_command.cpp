@@ -138,7 +138,8 @@ int bench_workgroup(const WorkgroupOptions& options) {
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
       "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
       "no times."};
-  const std::vector<DeviceInfo> devices = run.devices();
+  std::vector<DeviceInfo> devices = run.devices();
+  std::ranges::copy(unusable_bench_devices(options), std::back_inserter(devices));
   const double parts = static_cast<double>(options.scenes.size() * devices.size() * kernels.size());
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);

@@ -84,7 +84,7 @@ void WorkGroupTimes::measure(const MeasureOptions& options) {
     };
     expected_ = confirmed<std::uint64_t>(result, std::equal_to<>());
   };
-  if (!prepared(subjects_, open) || options.is_stopped()) return;
+  if (!prepared(subjects_, options, open) || options.is_stopped()) return;
   const auto [x, y] = kernel_.local ? kernel_.local() : std::pair<std::size_t, std::size_t>();
   const WorkGroup usual{fixed, x, y};
   if (x > 0) ways_.front()->enqueued = usual;
@@ -208,12 +208,14 @@ void WorkGroupTimes::add_to(Report& report) const {
   report.parts.push_back(bars());
   report.parts.push_back(heat_map());
   report.parts.push_back(table());
-  report.notes.push_back(fmt::format("{}: {}.", name_, verdict()));
-  const char* origin = !kernel_.cached   ? "built or loaded from the cache"
-                       : *kernel_.cached ? "loaded from the cache"
-                                         : "built";
-  report.notes.push_back(fmt::format("{}: the program was {} in {} ms, before any run.", name_, origin,
-                                     number_text(1e3 * kernel_.build_seconds)));
+  if (!subjects_.empty() && subjects_.front().is_good()) {
+    report.notes.push_back(fmt::format("{}: {}.", name_, verdict()));
+    const char* origin = !kernel_.cached   ? "built or loaded from the cache"
+                         : *kernel_.cached ? "loaded from the cache"
+                                           : "built";
+    report.notes.push_back(fmt::format("{}: the program was {} in {} ms, before any run.", name_, origin,
+                                       number_text(1e3 * kernel_.build_seconds)));
+  }
   const auto measured = [&](const Subject& subject, const Way& way, const char* round) {
     std::vector<Field> row{{"scene", "", kernel_.scene}, {"device", "", kernel_.device},
                            {"kernel", "", kernel_.name}, {"work-group", "", way.text},

@@ -57,7 +57,7 @@ void RayTimes::measure(const MeasureOptions& options) {
     const auto trace = [&](std::span<const Ray> rays) { return tracing_->tracer.trace(rays); };
     sets = frame_rays(*scene_, scene_viewpoint(*scene_), size_, trace, wanted_);
   };
-  if (!prepared(subjects_, open)) return;
+  if (!prepared(subjects_, options, open)) return;
   subjects_.clear();
   for (RaySet& set : sets) {
     const auto kind = std::make_shared<Kind>(Kind{std::move(set), {}, 0, {}});

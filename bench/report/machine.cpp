@@ -106,7 +106,9 @@ std::string device_title(const std::string& label, const std::string& name) {
   return title;
 }
 
-std::string device_title(const DeviceInfo& device) { return device_title(device.label(), device.name); }
+std::string device_title(const DeviceInfo& device) {
+  return device_title(device.label(), device.name.empty() ? device.platform_name : device.name);
+}
 
 void add_device_row(Table& table, const DeviceInfo& device) {
   const auto number = [](auto value) { return Cell(static_cast<double>(value)); };

@@ -206,7 +206,7 @@ void DevicePeaks::add_launches() {
 void DevicePeaks::measure(const MeasureOptions& options) {
   subjects_.resize(1);
   subjects_.front().name = fmt::format("peaks of {}", device_title(info_));
-  if (!prepared(subjects_, [&] { opened_ = std::make_shared<Opened>(info_, megabytes_); })) return;
+  if (!prepared(subjects_, options, [&] { opened_ = std::make_shared<Opened>(info_, megabytes_); })) return;
   subjects_.clear();
   for (const unsigned width : widths) {
     add_reads("read memory", width, false);
@@ -221,7 +221,7 @@ void DevicePeaks::measure(const MeasureOptions& options) {
     if (options.on_step) options.on_step(subjects_[i].name + ", building", 0);
     // A failure here repeats at the first run, which reports it as a row.
     std::vector<Subject> one{subjects_[i]};
-    if (!prepared(one, subjects_[i].prepare)) continue;
+    if (!prepared(one, options, subjects_[i].prepare)) continue;
     subjects_[i].prepare = {};
     // Runs of an earlier report count where they did as much.
     if (peaks_[i]->times > 0) subjects_[i].name += fmt::format(", {} times", peaks_[i]->times);

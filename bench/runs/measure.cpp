@@ -28,6 +28,12 @@ std::size_t counted(const MeasuredWay& way) {
       std::ranges::count_if(way.runs, [](const Run& run) { return run.left_out.empty(); }));
 }
 
+/// Throws DeviceError where the row is a problem.
+void enter(const MeasureOptions& options, const std::string& row) {
+  const std::string why = options.enter_row ? options.enter_row(row) : "";
+  if (!why.empty()) throw DeviceError(why);
+}
+
 class Measurement {
  public:
   Measurement(std::vector<Subject>& subjects, const MeasureOptions& options)
@@ -119,6 +125,7 @@ class Measurement {
 
   void run(Subject& subject, bool counts, bool first) {
     try {
+      enter(options_, subject.name);
       if (first && subject.prepare) subject.prepare();
       options_.load->begin();
       const double seconds = subject.run();
@@ -177,7 +184,8 @@ bool is_precise(const MeasuredWay& way, double precision) {
   return times.runs.size() >= fewest_for_interval && half_width(times) <= precision;
 }
 
-bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work) {
+bool prepared(std::vector<Subject>& subjects, const MeasureOptions& options,
+              const std::function<void()>& work) {
   const auto fail_all = [&](const char* why) {
     for (Subject& subject : subjects) {
       subject.problem = why;
@@ -185,6 +193,7 @@ bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work)
     }
   };
   try {
+    enter(options, subjects.front().name + ", before its runs");
     work();
     return true;
   } catch (const DeviceError& error) {
@@ -202,6 +211,7 @@ void measure(std::vector<Subject>& subjects, const MeasureOptions& options) {
   measurement.warm_up();
   measurement.rounds();
   measurement.settle();
+  enter(own, "");
 }
 
 }  // namespace sundog

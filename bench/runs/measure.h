@@ -29,6 +29,8 @@ struct MeasureOptions {
   std::map<std::string, MeasuredWay> known;  // runs of an earlier report, by the way's name
   std::function<void(const std::string& step, double done)> on_step;
   std::function<void()> on_runs;  // something was measured
+  // Hears of the row before each run and of "" after all; why it is a problem ("": none).
+  std::function<std::string(const std::string& row)> enter_row;
   std::shared_ptr<LoadMeter> load;
 
   bool is_stopped() const { return stop && stop->load(); }
@@ -43,7 +45,8 @@ bool is_precise(const MeasuredWay& way, double precision);
 
 /// Does what comes before all subjects; where a device fails in it, that is their problem. Whether it did
 /// not.
-bool prepared(std::vector<Subject>& subjects, const std::function<void()>& work);
+bool prepared(std::vector<Subject>& subjects, const MeasureOptions& options,
+              const std::function<void()>& work);
 
 /// A result that two runs in a row agree on, so that one spoiled run is no reference. Throws DeviceError if
 /// no two of the first few runs agree.

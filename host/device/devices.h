@@ -63,4 +63,8 @@ std::vector<DeviceInfo> enumerate_devices(const std::shared_ptr<const HostEnviro
 std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const std::vector<std::string>& specs,
                                        std::vector<std::string>* warnings = nullptr);
 
+/// The rows that match one of `specs`, and no !SPEC, but are not usable. UsageError for a malformed SPEC.
+std::vector<DeviceInfo> unusable_devices(std::span<const DeviceInfo> all,
+                                         const std::vector<std::string>& specs);
+
 }  // namespace sundog

@@ -142,6 +142,11 @@ std::vector<DeviceInfo> matching(std::span<const DeviceInfo> all, const Spec& sp
   return found;
 }
 
+bool matches_any(const std::vector<Spec>& specs, const DeviceInfo& device, bool exclude) {
+  return std::ranges::any_of(
+      specs, [&](const Spec& spec) { return spec.exclude == exclude && matches(spec, device); });
+}
+
 struct Selection {
   std::vector<DeviceInfo> devices;
   std::vector<std::string> warnings;
@@ -210,10 +215,7 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const st
   check_exclusions(all, parsed);
   const bool only_exclusions = std::ranges::all_of(parsed, &Spec::exclude);
   if (only_exclusions) parsed.insert(parsed.begin(), parse_spec("all"));
-  const auto excluded = [&](const DeviceInfo& device) {
-    return std::ranges::any_of(parsed,
-                               [&](const Spec& spec) { return spec.exclude && matches(spec, device); });
-  };
+  const auto excluded = [&](const DeviceInfo& device) { return matches_any(parsed, device, true); };
   Selection selection;
   for (const Spec& spec : parsed) {
     if (spec.exclude) continue;
@@ -225,6 +227,17 @@ std::vector<DeviceInfo> select_devices(std::span<const DeviceInfo> all, const st
     throw DeviceError(fmt::format("no device is left after the exclusions; {}", candidates(all)));
   if (warnings) *warnings = selection.warnings;
   return selection.devices;
+}
+
+std::vector<DeviceInfo> unusable_devices(std::span<const DeviceInfo> all,
+                                         const std::vector<std::string>& specs) {
+  std::vector<Spec> parsed;
+  for (const std::string& spec : specs) parsed.push_back(parse_spec(spec));
+  std::vector<DeviceInfo> found;
+  std::ranges::copy_if(all, std::back_inserter(found), [&](const DeviceInfo& device) {
+    return !device.usable() && matches_any(parsed, device, false) && !matches_any(parsed, device, true);
+  });
+  return found;
 }
 
 std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen) {

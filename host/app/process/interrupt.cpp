@@ -6,13 +6,17 @@
 #include <unistd.h>
 
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "app/process/exit_status.h"
 #include "app/process/warnings.h"
+#include "base/clock.h"
 
 namespace sundog {
 namespace {
+
+constexpr double at_once = 0.3;  // seconds
 
 enum class Answer { ask, end, end_silently };
 
@@ -42,8 +46,9 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// A terminal that is closed may send SIGHUP twice, by itself and by its shell, and a limit on processor time
-/// SIGXCPU once a second: that is not a second wish.
+/// A terminal that is closed may send SIGHUP twice, by itself and by its shell, a limit on processor time
+/// SIGXCPU once a second, and who ends a whole group of processes SIGTERM to this one and to the one that
+/// passes it on: that is not a second wish.
 void answer_stop(Waiting& state, bool repeats) {
   const std::lock_guard lock(state.mutex);
   if (state.answer == Answer::end) tell(fmt::format("sundog: interrupted: {}\n", state.why));
@@ -54,11 +59,14 @@ void answer_stop(Waiting& state, bool repeats) {
 void wait_for_signals(Waiting& state) {
   sigset_t set = set_of({SIGINT, SIGTERM, SIGXCPU, SIGCONT});
   if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);
-  for (int signal = 0; ::sigwait(&set, &signal) == 0;) {
-    if (signal == SIGCONT)
-      state.was_continued = true;
-    else
-      answer_stop(state, signal == SIGHUP || signal == SIGXCPU);
+  std::optional<Stopwatch> since_last;
+  for (siginfo_t info{};;) {
+    const int signal = ::sigwaitinfo(&set, &info);
+    if (signal == SIGCONT) state.was_continued = true;
+    if (signal <= 0 || signal == SIGCONT) continue;
+    const bool sent_twice = info.si_code <= 0 && since_last && since_last->seconds() < at_once;
+    answer_stop(state, signal == SIGHUP || signal == SIGXCPU || sent_twice);
+    since_last.emplace();
   }
 }
 

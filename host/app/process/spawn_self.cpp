@@ -80,7 +80,9 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
   std::vector<std::string> environment = environment_with(variables);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
-  descriptors.insert(descriptors.begin(), {{nowhere, STDIN_FILENO}, {nowhere, STDOUT_FILENO}});
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO})
+    if (std::ranges::find(descriptors, stream, &HandedDown::there) == descriptors.end())
+      descriptors.push_back({nowhere, stream});
   for (const HandedDown& one : descriptors)
     if (one.here == nowhere)
       ::posix_spawn_file_actions_addopen(&actions, one.there, "/dev/null", O_RDWR, 0);

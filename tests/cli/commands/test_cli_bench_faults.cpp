@@ -93,6 +93,75 @@ TEST_CASE("a device that fails in timed runs is a row with its error, beside the
   }
 }
 
+TEST_CASE("a driver that ends the process costs the row that it was at, and the others are measured") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  for (const auto& bench : small_benches(folder)) {
+    const CommandResult result =
+        run_bench(bench, {"--repeat", "5", "--json", file, "--quiet"}, "crash@0:0#25");
+    CAPTURE(bench[0], result.out, result.err);
+    CHECK(result.status == 0);
+    CHECK_THAT(result.err, ContainsSubstring("ended by signal 6 (Aborted)"));
+    const json report = json::parse(sundog::read_file(file));
+    CHECK(report.at("complete") == true);
+    std::size_t crashed = 0, measured = 0;
+    for (const json& way : report.at("ways"))
+      if (way.at("problem").is_null())
+        ++measured;
+      else if (way.at("problem").get<std::string>().find("ended by signal 6") != std::string::npos)
+        ++crashed;
+    CHECK(crashed > 0);
+    CHECK(measured > 0);
+    CHECK(crashed + measured == report.at("ways").size());
+    std::filesystem::remove(file);
+  }
+}
+
+TEST_CASE("a driver that ends each process is a row, and its signal the error where there is no other") {
+  const CliFolder folder;
+  const std::string file = folder.file("b.json");
+  const auto workgroup = small_benches(folder)[2];
+  const CommandResult result = run_bench(workgroup, {"--json", file}, "crash@0:0");
+  CAPTURE(result.out, result.err);
+  CHECK(result.status == 4);
+  const json ways = json::parse(sundog::read_file(file)).at("ways");
+  CHECK(ways.size() == 2);  // the default of each kernel
+  for (const json& way : ways)
+    CHECK_THAT(way.at("problem").get<std::string>(), ContainsSubstring("ended by signal 6"));
+}
+
+TEST_CASE("devices that crash or cannot be used are rows of --device all") {
+  const CliFolder folder;
+  folder.write("vendors/pocl.icd", "libpocl.so.2\n");
+  folder.write("vendors/fake.icd", SUNDOG_FAKE_DRIVER "\n");
+  CommandOptions options;
+  options.environment = {{"OCL_ICD_VENDORS", folder.file("vendors") + "/"}};
+  const std::string file = folder.file("b.json");
+  for (const auto& bench : {small_benches(folder)[0], small_benches(folder)[2]}) {
+    std::vector<std::string> command{"bench", bench[0], folder.scene, "--device", "all", "--repeat", "1"};
+    command.insert(command.end(), {"--json", file, "--size", "32x24"});
+    if (bench[0] == "workgroup") command.insert(command.end(), {"--sizes", "4"});
+    const CommandResult result = run_sundog(command, options);
+    CAPTURE(bench[0], result.out, result.err);
+    CHECK(result.status == 0);
+    for (const char* row : {"Fake crashing", "Fake empty", "Fake failing", "has no compiler"})
+      CHECK_THAT(result.out, ContainsSubstring(row));
+    std::set<std::string> crashed;
+    std::size_t measured = 0;
+    for (const json& row : json::parse(sundog::read_file(file)).at("measurements")) {
+      const std::string name = row.at(bench[0] == "devices" ? "devices" : "device");
+      if (row.at("problem").is_null())
+        ++measured;
+      else if (row.at("problem").get<std::string>().starts_with("the process was ended by signal"))
+        crashed.insert(name);
+    }
+    CHECK(measured >= 1);
+    CHECK_FALSE(crashed.empty());
+    for (const std::string& name : crashed) CHECK_THAT(name, ContainsSubstring("Fake"));
+    std::filesystem::remove(file);
+  }
+}
+
 TEST_CASE("a reader of messages who has left costs a bench no report") {
   const CliFolder folder;
   const std::string file = folder.file("b.json");

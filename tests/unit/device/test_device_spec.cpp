@@ -137,6 +137,19 @@ TEST_CASE("a SPEC that means nothing is refused with the candidates and what is 
   CHECK_THROWS_WITH(select_devices({}, {}), ContainsSubstring("no OpenCL platform"));
 }
 
+TEST_CASE("rows that are not usable match as the others do") {
+  const auto unusable = [](const std::vector<std::string>& specs) {
+    std::string text;
+    for (const DeviceInfo& device : unusable_devices(machine(), specs)) text += device.place() + " ";
+    return text;
+  };
+  CHECK(unusable({"all"}) == "1:-1 2:1 ");
+  CHECK(unusable({"gpu"}) == "2:1 ");
+  CHECK(unusable({"all", "!clover"}) == "2:1 ");
+  CHECK(unusable({"cpu"}).empty());
+  CHECK(unusable({}).empty());
+}
+
 TEST_CASE("the default is the usable device estimated fastest") { CHECK(selected({}) == "2:0"); }
 
 TEST_CASE("an emulated device is never estimated faster than a native one") {

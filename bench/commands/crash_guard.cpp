@@ -1,0 +1,130 @@
+// Two processes share a folder: the second writes the row that it enters to a file, the first what ended it
+// there.
+#include "bench/commands/crash_guard.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "app/process/spawn_self.h"
+#include "app/process/warnings.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "bench/commands/bench_options.h"
+
+namespace sundog {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* folder_variable = "SUNDOG_BENCH_FOLDER";
+constexpr const char* done = "done";  // an "entered" line that no row is called by
+constexpr int poll_ms = 20;
+
+/// What the second process knows of the first.
+struct Guarded {
+  fs::path folder;
+  std::ofstream entered;                       // a line for each row
+  std::map<std::string, std::string> crashed;  // why, by row
+};
+Guarded& guarded_state() {
+  static Guarded state;
+  return state;
+}
+
+std::string last_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string last;
+  for (std::string line; std::getline(in, line);) last = line;
+  return last;
+}
+
+/// Passes on signals that were sent to this process alone: a terminal's reach both.
+int wait_and_pass_signals(pid_t process) {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&set, signal);
+  for (int status = 0;;) {
+    if (::waitpid(process, &status, WNOHANG) == process) return status;
+    const timespec pause{0, poll_ms * 1'000'000L};
+    siginfo_t info{};
+    if (const int signal = ::sigtimedwait(&set, &info, &pause); signal > 0 && info.si_code <= 0)
+      ::kill(process, signal);
+  }
+}
+
+std::string end_text(int signal) {
+  return fmt::format("the process was ended by signal {} ({}){}", signal, ::strsignal(signal),
+                     signal == SIGKILL ? ", as when memory runs out" : ", as when a driver crashes");
+}
+
+int measure_in_others(const fs::path& folder) {
+  for (;;) {
+    write_file((folder / "entered").string(), "");
+    const pid_t process =
+        spawn_self(command_line_words(), {{STDIN_FILENO, STDIN_FILENO}, {STDOUT_FILENO, STDOUT_FILENO}},
+                   {fmt::format("{}={}", folder_variable, folder.string())});
+    const int status = wait_and_pass_signals(process);
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    const std::string row = last_line(folder / "entered"), why = end_text(WTERMSIG(status));
+    if (row.starts_with(done)) return std::atoi(row.c_str() + std::strlen(done));
+    if (row.empty())
+      throw DeviceError(fmt::format("{}, at no row: `sundog check` says which device does so", why));
+    tell(fmt::format("\nsundog: {}: {}; the others are measured\n", row, why));
+    std::ofstream(folder / "crashed", std::ios::app) << row << '\n' << why << '\n';
+  }
+}
+
+int measure_for_first(const std::function<int()>& measure, const fs::path& folder) {
+  const pid_t first = ::getppid();
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::unsetenv(folder_variable);
+  Guarded& state = guarded_state();
+  state.folder = folder;
+  std::ifstream crashed(folder / "crashed");
+  for (std::string row, why; std::getline(crashed, row) && std::getline(crashed, why);)
+    state.crashed[row] = why;
+  state.entered.open(folder / "entered");
+  const int status = measure();
+  enter_row(fmt::format("{} {}", done, status));
+  std::error_code failed;
+  if (::getppid() != first) fs::remove_all(folder, failed);
+  return status;
+}
+
+}  // namespace
+
+int guarded(const std::function<int()>& measure) {
+  if (const char* folder = std::getenv(folder_variable)) return measure_for_first(measure, folder);
+  std::string name = (temporary_folder() / "sundog-bench-XXXXXX").string();
+  if (!::mkdtemp(name.data())) return measure();
+  const auto remove = [&](const char*) {
+    std::error_code failed;
+    fs::remove_all(name, failed);
+  };
+  const std::unique_ptr<const char, decltype(remove)> removed(name.c_str(), remove);
+  return measure_in_others(name);
+}
+
+std::string enter_row(const std::string& name) {
+  Guarded& state = guarded_state();
+  if (state.folder.empty()) return "";
+  state.entered << name << std::endl;  // flushed: the process may end at once
+  const auto crashed = state.crashed.find(name);
+  return crashed == state.crashed.end() ? "" : crashed->second;
+}
+
+fs::path kept_for_next() {
+  const fs::path& folder = guarded_state().folder;
+  return folder.empty() ? fs::path() : folder / "report.json";
+}
+
+}  // namespace sundog
