@@ -62,8 +62,8 @@ constexpr const char* own_link = "/proc/self/exe";
 
 /// The path by which this program was started. It may be relative; no code changes the working directory.
 const char* started_file() {
-  return reinterpret_cast<const char*>(
-      ::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr): an address
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address
+  return reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
 }
 
 }  // namespace
