@@ -44,11 +44,14 @@ struct TuneOptions {
   double budget = 60;  // seconds for a device
   bool show = false, forget = false;
   std::string export_to, import_from;
-  std::string worker;  // "P:D" or "P:D/N": this is the process that tunes one device
+  std::string worker;                // "P:D" or "P:D/N": this is the process that tunes one device
+  std::vector<std::string> crashed;  // steps at which earlier ones ended
 };
 
 constexpr const char* step_mark = "> ";    // before a step of the worker's
 constexpr const char* end_mark = "> end";  // before what is to be said of the whole
+
+const std::string crash_text = "the driver crashed";
 
 /// When a device is ended: the worker measures a little past its budget, if the machine has become slower.
 double patience(double budget) { return budget + std::max(1.0, 0.1 * budget); }
@@ -100,7 +103,8 @@ std::string outcome_text(const DeviceInfo& device, const TuneOutcome& outcome) {
 /// The scenes in turn; each may take its share of the remaining budget. Returns what there was no time
 /// to begin.
 std::vector<std::string> tune_scenes(const DeviceInfo& device, const std::vector<NamedScene>& scenes,
-                                     double budget, const Stopwatch& clock, TuneCosts& costs) {
+                                     const TuneOptions& options, const Stopwatch& clock, TuneCosts& costs) {
+  const double budget = options.budget;
   std::vector<std::string> left_out;
   BenchProgress progress(true, budget);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -111,9 +115,12 @@ std::vector<std::string> tune_scenes(const DeviceInfo& device, const std::vector
       continue;
     }
     const auto on_step = [&](const std::string& step) {
-      say(fmt::format("{}{}, {}", step_mark, named.name, step));
+      const std::string whole = named.name + ", " + step;
+      if (std::ranges::count(options.crashed, whole) > 0) return crash_text;
+      say(step_mark + whole);
       progress.update(fmt::format("{}, {}: {}", device.label(), named.name, step),
                       budget > 0 ? clock.seconds() / budget : 1);
+      return std::string();
     };
     const auto on_outcome = [&](const TuneOutcome& outcome) {
       keep_tuning(device, outcome.entry);
@@ -151,6 +158,7 @@ std::vector<std::string> worker_arguments(const TuneOptions& options, const Devi
   for (const std::string& setting : options.bench.overrides)
     arguments.insert(arguments.end(), {"--set", setting});
   if (options.bench.outside_files) arguments.push_back("--allow-outside-files");
+  for (const std::string& step : options.crashed) arguments.insert(arguments.end(), {"--crashed", step});
   arguments.insert(arguments.end(),
                    {"--budget", fmt::format("{}", options.budget), "--worker", device.spec()});
   return arguments;
@@ -165,11 +173,13 @@ std::vector<HandedDown> worker_streams(const TuneOptions& options) {
 }
 
 /// How it went, in a line; empty: there is no result.
-std::string end_text(const DeviceInfo& device, const Heard& heard, double seconds, double budget) {
+std::string end_text(const DeviceInfo& device, const Heard& heard, int signal, double seconds,
+                     double budget) {
   const std::string took =
       fmt::format("{}: took {} of {}", device.label(), duration_text(seconds), duration_text(budget));
   if (heard.has_ended) return took + heard.remark;
   if (!heard.has_outcome) return "";
+  if (signal) return fmt::format("{}; the driver crashed (signal {}, {})", took, signal, heard.step);
   return fmt::format("{}; ended during a compilation or a launch ({}; a longer --budget)", took, heard.step);
 }
 
@@ -179,25 +189,39 @@ std::string nothing_text(const DeviceInfo& device, const Heard& heard, double se
                      device.label(), duration_text(seconds), heard.step);
 }
 
-/// Tunes the devices in turn and prints what was found, until one fails; the exit status. Throws DeviceError
-/// where the budget was too short for a result of any.
-int tune_devices(const TuneOptions& options) {
-  const std::vector<DeviceInfo> devices = bench_devices(options.bench);
+/// Tunes a device by a worker, and by another one without the settings at which the driver crashed.
+ChildResult tune_by_workers(TuneOptions options, const DeviceInfo& device, Heard& heard) {
   const std::vector<HandedDown> streams = worker_streams(options);
-  std::vector<std::string> without;
-  for (const DeviceInfo& device : devices) {
-    const Stopwatch clock;
-    Heard heard;
+  const double budget = options.budget;
+  const Stopwatch clock;
+  for (;;) {
     if (streams.size() > 1) ::lseek(streams.back().here, 0, SEEK_SET);
     const ChildResult child = run_self(
         worker_arguments(options, device), {}, patience(options.budget),
         [&](const std::string& line) { heard.take(line); }, streams);
+    options.budget = budget - clock.seconds();
+    const bool crashed_at_it = std::ranges::count(options.crashed, heard.step) > 0;
+    if (!child.signal || child.timed_out || crashed_at_it || options.budget <= 0) return child;
+    options.crashed.push_back(heard.step);
+  }
+}
+
+/// Tunes the devices in turn and prints what was found, until one fails; the exit status. Throws DeviceError
+/// where the budget was too short for a result of any.
+int tune_devices(const TuneOptions& options) {
+  const std::vector<DeviceInfo> devices = bench_devices(options.bench);
+  std::vector<std::string> without;
+  for (const DeviceInfo& device : devices) {
+    const Stopwatch clock;
+    Heard heard;
+    const ChildResult child = tune_by_workers(options, device, heard);
     if (stderr_is_terminal()) fmt::print(stderr, "\r\x1b[K");
-    if (child.signal && !child.timed_out)
+    const int signal = child.timed_out ? 0 : child.signal;
+    if (signal && !heard.has_outcome)
       throw DeviceError(
-          fmt::format("{}: its driver crashed (signal {}, {})", device.label(), child.signal, heard.step));
+          fmt::format("{}: its driver crashed (signal {}, {})", device.label(), signal, heard.step));
     if (child.status > 0) return child.status;  // the worker has said why
-    const std::string end = end_text(device, heard, clock.seconds(), options.budget);
+    const std::string end = end_text(device, heard, signal, clock.seconds(), options.budget);
     if (end.empty())
       without.push_back(nothing_text(device, heard, clock.seconds()));
     else
@@ -217,7 +241,7 @@ int tune_one_device(const TuneOptions& options) {
   const Stopwatch clock;
   const DeviceInfo device = select_devices(list_devices(), {options.worker}).front();
   TuneCosts costs;
-  const auto left_out = tune_scenes(device, scenes_to_tune(options), options.budget, clock, costs);
+  const auto left_out = tune_scenes(device, scenes_to_tune(options), options, clock, costs);
   if (!left_out.empty())
     say(fmt::format("{}: not tuned for lack of time: {} (a longer --budget)", device.label(),
                     fmt::join(left_out, ", ")));
@@ -352,6 +376,7 @@ void add_tune(Arguments& root, Command& chosen) {
   outside_files(app, options->bench.outside_files);
   value(app, "--budget", "SECONDS", options->budget, "seconds for a device, with compilation (default 60)");
   app->add_option("--worker", options->worker)->hidden();
+  app->add_option("--crashed", options->crashed)->hidden();
   app->add_flag("--show", options->show, "print the results that are kept");
   app->add_flag("--forget", options->forget, "remove the results of --device, or all");
   value(app, "--export", "FILE", options->export_to, "write all results to this file");

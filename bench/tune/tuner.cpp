@@ -201,7 +201,7 @@ class TimeLeft {
 TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, const std::string& scene_name,
                         Choices choices, double budget, TuneCosts& costs, const TuneListener& listener) {
   TimeLeft time(budget, costs);
-  const auto tell = [&](const std::string& what) { listener.on_step(choices.kernel + ": " + what); };
+  const auto tell = [&](const std::string& what) { return listener.on_step(choices.kernel + ": " + what); };
   tell("the defaults");
   TuneProblem problem;
   problem.start.assign(choices.sizes().size(), 0);
@@ -225,7 +225,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
       rejected.push_back(fmt::format("{}: {}", settings, why));
       return {};
     };
-    tell(settings);
+    if (const std::string why = tell(settings); !why.empty()) return reject(why);
     try {
       Candidate candidate(device, scene, choices, point);
       time.add(candidate, Choices::program_of(point));

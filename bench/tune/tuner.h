@@ -24,7 +24,7 @@ struct TuneCosts {
 
 /// Hears what is tried, and what was found for each kernel as soon as it is known.
 struct TuneListener {
-  std::function<void(const std::string& step)> on_step;
+  std::function<std::string(const std::string& step)> on_step;  // why it cannot be tried; "": it can
   std::function<void(const TuneOutcome& outcome)> on_outcome;
 };
 

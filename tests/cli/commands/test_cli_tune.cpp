@@ -107,6 +107,23 @@ TEST_CASE("tune names what it rejects, with the reason") {
                             ContainsSubstring(" did not build on 0:0 "));
 }
 
+TEST_CASE("settings at which the driver crashes are rejected, and the others tuned") {
+  const TuneFolder folder;
+  REQUIRE(folder.render("before.exr").status == 0);
+  CommandOptions options;
+  options.environment["SUNDOG_FAULTS"] = "crash@0:0#25";
+  const CommandResult tuned = folder.run({folder.scene, "--device", "0:0", "--budget", "6"}, options);
+  CAPTURE(tuned.out, tuned.err);
+  CHECK(tuned.status == 0);
+  CHECK_THAT(tuned.out,
+             ContainsSubstring("\n  rejected: work-group ") && ContainsSubstring(": the driver crashed"));
+  options.environment["SUNDOG_FAULTS"] = "crash@0:0";
+  const CommandResult always = folder.run({folder.scene, "--device", "0:0", "--budget", "6"}, options);
+  CAPTURE(always.out, always.err);
+  CHECK(always.status == 4);
+  CHECK_THAT(always.err, ContainsSubstring("its driver crashed (signal 6, scene, render_whitted: "));
+}
+
 TEST_CASE("tune keeps its budget where one frame takes longer: it measures on smaller ones") {
   const TuneFolder folder;
   REQUIRE(folder.render("before.exr").status == 0);  // its kernels are in the cache then
