@@ -16,8 +16,10 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
+#include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "device/build_options.h"
 #include "scene/load.h"
 
@@ -41,8 +43,7 @@ std::string shell_word(std::string_view word) {
 
 void write_json(const std::string& file, const nlohmann::json& json) {
   if (file.empty()) return;
-  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
-             program_environment()->faults);
+  write_output(file, json_text(json, 2) + "\n", program_environment()->faults);
 }
 
 }  // namespace
@@ -88,14 +89,19 @@ void add_report_options(Arguments* app, ReportFiles& files) {
 
 void check_report_files(const ReportFiles& files, const std::vector<std::string>& inputs) {
   check_output_files(files.all(), inputs);
+  if (!files.svg.empty() && std::filesystem::path(files.svg).extension() != ".svg")
+    throw UsageError(fmt::format("--svg {}: wanted a file name that ends in .svg", files.svg));
   for (const std::string& file : files.all())
-    if (!file.empty()) check_writable(file);
+    if (is_standard_stream(file))
+      claim_standard_output();
+    else if (!file.empty())
+      check_writable(file);
 }
 
 void write_report(const Report& report, const ReportFiles& files) {
   write_json(files.json, report_json(report));
   if (!files.t4.empty()) write_json(files.t4, report_t4(report));
-  if (!files.latex.empty()) write_file(files.latex, report_latex(report));
+  if (!files.latex.empty()) write_output(files.latex, report_latex(report));
   if (!files.svg.empty()) {
     const std::filesystem::path file(files.svg);
     const std::vector<std::string> plots = report_svgs(report);
@@ -104,8 +110,8 @@ void write_report(const Report& report, const ReportFiles& files) {
       write_file(i == 0 ? file : file.parent_path() / name, plots[i]);
     }
   }
-  if (!files.csv.empty()) write_file(files.csv, report_csv(report));
-  if (!files.html.empty()) write_file(files.html, report_html(report));
+  if (!files.csv.empty()) write_output(files.csv, report_csv(report));
+  if (!files.html.empty()) write_output(files.html, report_html(report));
   if (!files.quiet) fmt::print("{}", report_text(report));
 }
 

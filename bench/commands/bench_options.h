@@ -32,7 +32,8 @@ struct BenchOptions : ReportFiles {
 /// --json --csv --html --latex --svg --t4 --quiet.
 void add_report_options(Arguments* app, ReportFiles& files);
 
-/// Throws UsageError or IoError where a file cannot be written or is one of `inputs`.
+/// Throws UsageError or IoError where a file cannot be written or is one of `inputs`. Where one is "-", what
+/// else is printed to stdout goes to stderr from here on.
 void check_report_files(const ReportFiles& files, const std::vector<std::string>& inputs);
 
 /// Writes the files and prints the report.

@@ -12,6 +12,7 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/revision.h"
+#include "app/process/standard_streams.h"
 #include "app/process/variables.h"
 #include "app/process/warnings.h"
 #include "base/cache_folder.h"
@@ -199,7 +200,8 @@ void BenchRun::keep() {
   ReportFiles files;
   files.json = options_.json;
   files.quiet = true;
-  if (!files.json.empty() && !is_pipe_or_device(files.json)) write_report(so_far(), files);
+  if (!files.json.empty() && !is_standard_stream(files.json) && !is_pipe_or_device(files.json))
+    write_report(so_far(), files);
   files.json = kept_for_next().string();
   if (!files.json.empty()) write_report(so_far(), files);
   keeping_ = clock.seconds();

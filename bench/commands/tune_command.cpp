@@ -26,6 +26,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/memory_file.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/bench_progress.h"
@@ -317,7 +318,8 @@ int export_all(const std::string& path) {
     list.push_back(to_json(file));
     entries += file.entries.size();
   }
-  write_file(path, list.dump(2) + "\n");
+  if (is_standard_stream(path)) claim_standard_output();
+  write_output(path, json_text(list, 2) + "\n");
   fmt::print("{}: {} result{} of {} device{}\n", path, entries, entries == 1 ? "" : "s", list.size(),
              list.size() == 1 ? "" : "s");
   return exit_done;

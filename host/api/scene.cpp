@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/impl.h"
+#include "base/json_text.h"
 
 namespace sundog {
 inline namespace v0 {
@@ -123,14 +124,10 @@ Scene Scene::from_json(std::string_view text, const std::filesystem::path& folde
   });
 }
 
-std::string Scene::to_json() const {
-  return impl_->document.dump(2, ' ', false, json::error_handler_t::replace);
-}
+std::string Scene::to_json() const { return json_text(impl_->document, 2); }
 
 std::string Scene::get(std::string_view pointer) const {
-  return at(pointer, [&](const json::json_pointer& place) {
-    return impl_->document.at(place).dump(-1, ' ', false, json::error_handler_t::replace);
-  });
+  return at(pointer, [&](const json::json_pointer& place) { return json_text(impl_->document.at(place)); });
 }
 
 bool Scene::contains(std::string_view pointer) const {
@@ -154,7 +151,7 @@ Scene& Scene::set(std::string_view pointer, std::string_view text) {
   return *this;
 }
 
-Scene& Scene::set(std::string_view pointer, double value) { return set(pointer, json(value).dump()); }
+Scene& Scene::set(std::string_view pointer, double value) { return set(pointer, json_text(json(value))); }
 
 Scene& Scene::remove(std::string_view pointer) {
   at(pointer, [&](const json::json_pointer& place) {

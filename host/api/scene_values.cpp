@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "api/impl.h"
+#include "base/json_text.h"
 #include "scene/kinds.h"
 
 namespace sundog {
@@ -136,11 +137,11 @@ Scene& Scene::set_camera(const Camera& camera) {
       {"position", camera.position}, {"target", camera.target}, {"up", camera.up}, {"fov", camera.fov}};
   if (camera.lens_radius != 0) value["lens"]["radius"] = camera.lens_radius;
   if (camera.focus != 0) value["lens"]["focus"] = camera.focus;
-  return set("/camera", value.dump());
+  return set("/camera", json_text(value));
 }
 
 Scene& Scene::set_background(const Vec3& bottom, const Vec3& top) {
-  return set("/image/background", json{{"bottom", bottom}, {"top", top}}.dump());
+  return set("/image/background", json_text(json{{"bottom", bottom}, {"top", top}}));
 }
 
 Scene& Scene::add_light(const Light& light) {

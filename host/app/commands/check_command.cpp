@@ -24,6 +24,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "bench/rays/self_check.h"
 #include "bench/report/machine.h"
 #include "device/machine_topology.h"
@@ -151,7 +152,7 @@ int work(const std::string& spec) {
   const DeviceInfo device = select_devices(list_devices(), {spec}).front();
   const SelfCheck check =
       check_device(device, [](const std::string& stage) { print_line("stage " + stage); });
-  print_line("result " + check_json(check).dump(-1, ' ', false, json::error_handler_t::replace));
+  print_line("result " + json_text(check_json(check)));
   return exit_done;
 }
 
@@ -332,8 +333,7 @@ int check(const CheckOptions& options) {
       {"devices", check_devices(wanted, usable(wanted) < usable(rows), options)},
       {"problem", problem.empty() ? json(nullptr)
                                   : json("listing the devices " + problem + ": `sundog devices` says why")}};
-  const std::string text =
-      options.json ? report.dump(2, ' ', false, json::error_handler_t::replace) + "\n" : check_text(report);
+  const std::string text = options.json ? json_text(report, 2) + "\n" : check_text(report);
   fmt::print("{}", text);
   return exit_status(report.at("devices"));
 }

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"
+#include "base/json_text.h"
 
 namespace sundog {
 namespace {
@@ -81,7 +82,7 @@ void print_json(const CompareCommand& command, const Image& a, int channels, con
                   {"layers", others},
                   {"layers_not_compared", layers.other},
                   {"equal", equal}});
-  fmt::print("{}\n", figures.dump(2, ' ', false, json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(figures, 2));
 }
 
 void print_text(const CompareCommand& command, const ImageDifference& d, const ComparedLayers& layers) {
@@ -105,12 +106,12 @@ void print_text(const CompareCommand& command, const ImageDifference& d, const C
 
 int report_sizes(const CompareCommand& command, const Image& a, const Image& b) {
   if (command.json)
-    fmt::print("{}\n", json{{"schema", 1},
-                            {"a", command.a},
-                            {"b", command.b},
-                            {"sizes", {{a.width, a.height}, {b.width, b.height}}},
-                            {"equal", false}}
-                           .dump(2));
+    fmt::print("{}\n", json_text({{"schema", 1},
+                                  {"a", command.a},
+                                  {"b", command.b},
+                                  {"sizes", {{a.width, a.height}, {b.width, b.height}}},
+                                  {"equal", false}},
+                                 2));
   fmt::print(stderr,
              "sundog: {}: {}x{} pixels, but {} has {}x{}: images of different sizes cannot be compared\n",
              command.a, a.width, a.height, command.b, b.width, b.height);

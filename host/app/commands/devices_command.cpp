@@ -13,6 +13,7 @@
 #include "app/options/devices.h"
 #include "base/arguments.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "device/choice.h"
 #include "device/devices.h"
 
@@ -139,8 +140,7 @@ int list(bool as_json) {
   if (as_json) {
     json all = json::array();
     for (const DeviceInfo& row : rows) all.push_back(device_json(row, &row == chosen));
-    fmt::print("{}\n",
-               json{{"schema", 1}, {"devices", all}}.dump(2, ' ', false, json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json{{"schema", 1}, {"devices", all}}, 2));
   } else if (rows.empty()) {
     fmt::print("There is no OpenCL platform: install one (Debian: pocl-opencl-icd).\n");
   } else {

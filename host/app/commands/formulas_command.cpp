@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/command.h"
+#include "base/json_text.h"
 #include "formula/functions.h"
 #include "formula/list.h"
 
@@ -60,7 +61,7 @@ std::string formulas_json() {
     all["operations"].push_back({{"type", o.type}, {"keys", o.keys}, {"meaning", o.meaning}});
   for (const FunctionHelp& f : function_help())
     all["functions"].push_back({{"call", f.call}, {"meaning", f.meaning}});
-  return all.dump(2) + "\n";
+  return json_text(all, 2) + "\n";
 }
 
 void add_formulas(Arguments& root, Command& chosen) {

@@ -16,10 +16,12 @@
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/save_image.h"
+#include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/json_text.h"
 #include "base/names.h"
 #include "compile/steps.h"
 #include "scene/load.h"
@@ -136,7 +138,7 @@ void report(const HaloOptions& options, const EnvironmentDescription& e, const T
                                             {"passed", map.passed},
                                             {"turned", map.turned},
                                             {"kept", map.kept}};
-    fmt::print("{}\n", figures.dump(2));
+    fmt::print("{}\n", json_text(figures, 2));
   } else if (!options.quiet) {
     fmt::print("{}: {}x{}, {} rays in {:.2f} s ({:.2f} million a second) on {}\n", options.picture.out,
                image.width, image.height, traced.rays, traced.seconds, rate / 1e6, traced.device);
@@ -153,6 +155,7 @@ int make_picture(const HaloOptions& options) {
                     did_you_mean(options.view, views, "wanted one of equirectangular, fisheye", "")));
   const int rows = parse_number("--size", options.size, 16, 8192);
   const ToneMap tone_map = parse_tone_map(options.picture);
+  if (is_standard_stream(options.picture.out)) throw UsageError("-o -: wanted the name of an image file");
   check_output_files({options.picture.out}, {options.scene});
   check_picture(options.picture, false);
   const EnvironmentDescription e = halo_of(options);

@@ -11,6 +11,7 @@
 #include "app/process/scene_figures.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "scene/json/override.h"
 #include "scene/load.h"
 
@@ -97,7 +98,7 @@ int print_figures(const InfoCommand& command) {
   json figures = scene_figures(scene, flat);
   figures["schema"] = 1;
   if (command.json)
-    fmt::print("{}\n", figures.dump(2, ' ', false, json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(figures, 2));
   else
     print_text(figures);
   return exit_done;

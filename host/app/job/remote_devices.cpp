@@ -10,6 +10,7 @@
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/film/hash.h"
@@ -78,13 +79,13 @@ std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& k
   json of_scene;
   for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files"})
     of_scene[key] = settings.at(key);
-  const std::string of_all = of_scene.dump();
+  const std::string of_all = json_text(of_scene);
   of_scene["frame"] = settings.at("frame");
   of_scene["moment"] = settings.at("moment");
   const std::lock_guard lock(kept.mutex);
-  if (kept.scene_settings != of_scene.dump())
+  if (kept.scene_settings != json_text(of_scene))
     kept.scene = settings.at("frame").is_number() ? load_frame(settings, of_all, kept) : load_flat(settings);
-  kept.scene_settings = of_scene.dump();
+  kept.scene_settings = json_text(of_scene);
   return kept.scene;
 }
 

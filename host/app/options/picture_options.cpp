@@ -24,7 +24,7 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   app->add_flag("--float", picture.full_floats, "keep an .exr's colours as 32-bit floats (default: half)");
   value(app, "--color-space", "NAME", picture.color_space, "of an .exr's colours: srgb (default) or acescg")
       ->one_of({"srgb", "acescg"});
-  value(app, "--bits", "N", picture.bits, "of a .png's channels: 8 (default) or 16")->range(8, 16);
+  value(app, "--bits", "N", picture.bits, "of a .png's channels: 8 (default) or 16")->one_of({"8", "16"});
   value(app, "--tone-map", "CURVE", picture.tone_curve,
         fmt::format("how .png and .jpg show colours brighter than white: {}",
                     fmt::join(tone_curve_names, ", ")));

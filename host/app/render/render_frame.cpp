@@ -19,6 +19,7 @@
 #include "app/render/draft.h"
 #include "app/render/render_result.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "bench/runs/energy.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
@@ -244,7 +245,7 @@ void save_frame(DrawnFrame& drawn, const Stopwatch& clock, TimeLedger& times) {
   times.total = clock.seconds() - times.waited;
   if (command.stats.empty()) return;
   stats["seconds"] = seconds_json(times);
-  write_output(command.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  write_output(command.stats, json_text(stats, 2) + "\n");
 }
 
 int end_frame(const DrawnFrame& drawn, const TimeLedger& times) {

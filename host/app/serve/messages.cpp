@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/render/stats.h"
+#include "base/json_text.h"
 #include "scene/integrators.h"
 #include "scene/light_groups.h"
 
@@ -64,9 +65,7 @@ json activity_json(const DeviceActivity& device) {
 
 }  // namespace
 
-std::string message_text(const json& message) {
-  return message.dump(-1, ' ', false, json::error_handler_t::replace);
-}
+std::string message_text(const json& message) { return json_text(message); }
 
 json devices_message(const std::vector<DeviceInfo>& all, const std::vector<DeviceInfo>& picked) {
   json rows = json::array();

@@ -9,6 +9,7 @@
 
 #include "app/serve/messages.h"
 #include "base/clock.h"
+#include "base/json_text.h"
 #include "base/pixels/preview.h"
 #include "base/pixels/quick_png.h"
 
@@ -28,7 +29,7 @@ std::string picture_message(const Snapshot& now, std::uint64_t version) {
   const nlohmann::json header = {{"generation", now.shown}, {"version", version},    {"width", image.width},
                                  {"height", image.height},  {"settled", settled},    {"block", now.block},
                                  {"samples", now.samples},  {"seconds", now.seconds}};
-  const std::string text = header.dump();
+  const std::string text = json_text(header);
   std::string bytes;
   for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(text.size() >> shift & 255);
   bytes += text;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/numbers.h"
 #include "models/model.h"
@@ -65,9 +66,7 @@ void remember(std::deque<DocumentStep>& steps, DocumentStep newest) {
     bytes -= steps.front().size();
 }
 
-std::size_t text_size(const json& document) {
-  return document.dump(-1, ' ', false, json::error_handler_t::replace).size();
-}
+std::size_t text_size(const json& document) { return json_text(document).size(); }
 
 [[noreturn]] void lead_nowhere(const std::string& pointer) {
   throw UsageError(fmt::format("{}: there is no such place in the scene", pointer));
@@ -209,7 +208,7 @@ std::optional<std::vector<std::string>> settings_between(const json& opened, con
   try {
     for (const json& step : patch) {
       if (step["op"] == "remove" || settings.size() == most_settings) return {};
-      settings.push_back(fmt::format("{}={}", step["path"].get<std::string>(), step["value"].dump()));
+      settings.push_back(fmt::format("{}={}", step["path"].get<std::string>(), json_text(step["value"])));
       apply_override(made, settings.back(), file);
     }
   } catch (const std::exception&) {

@@ -10,6 +10,7 @@
 #include "app/serve/studio.h"
 #include "base/error.h"
 #include "base/image_io.h"
+#include "base/json_text.h"
 #include "models/model.h"
 #include "scene/json/parse.h"
 #include "scene/shot.h"
@@ -54,7 +55,8 @@ WebAnswer Studio::answer(const WebRequest& request) {
     if (call == "GET files") return json_answer(list_scenes(setup_.folder));
     if (call == "GET command") return plain(200, command_line());
     if (call == "GET scene")
-      return {200, json_type, document_.now().dump(2) + "\n", document_.file().stem().string() + ".json"};
+      return {200, json_type, json_text(document_.now(), 2) + "\n",
+              document_.file().stem().string() + ".json"};
     if (call == "GET picture") return picture(query_value(request.query, "format"));
     if (call == "POST scene") return open_upload(request);
     return plain(404, "there is nothing here");

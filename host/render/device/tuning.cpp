@@ -11,6 +11,7 @@
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "device/embedded_kernels.h"
 #include "device/program_cache.h"
 
@@ -125,7 +126,7 @@ void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   });
   file.entries.push_back(entry);
   make_cache_folder(path.parent_path());
-  write_file(path, to_json(file).dump(2) + "\n");
+  write_file(path, json_text(to_json(file), 2) + "\n");
 }
 
 Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {

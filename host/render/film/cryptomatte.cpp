@@ -1,6 +1,7 @@
 // Hashes names by MurmurHash3 to ids as floats, splits pairs into layers of two, and writes the manifests;
 // "default" stands for surfaces without an entry.
 #include "render/film/cryptomatte.h"
+#include "base/json_text.h"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,7 @@ Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::str
 std::string manifest_of(const std::vector<std::string>& names) {
   nlohmann::json manifest = nlohmann::json::object();
   for (const std::string& name : names) manifest[name] = fmt::format("{:08x}", id_bits(name));
-  return manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(manifest);
 }
 
 void split(AovImages& aovs, const std::string& kind, const std::vector<std::string>& known,

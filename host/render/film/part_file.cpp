@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/input.h"
 #include "base/json_memory.h"
+#include "base/json_text.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "render/film/group_names.h"
@@ -207,7 +208,7 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
                      {"shot", shot_json(header.shot)},
                      {"objects", header.names.objects},
                      {"materials", header.names.materials}};
-  std::string bytes = head.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  std::string bytes = json_text(head) + "\n";
   const auto done = static_cast<std::size_t>(std::ranges::count(film.done, std::uint8_t{1}));
   bytes.reserve(bytes.size() + film.done.size() +
                 done * (20 + (film.aovs.empty() ? 0 : 16 * film.layout.vectors())) + checksum_digits);

@@ -1,5 +1,6 @@
 // Wire format: message size in 8 bytes, kind and JSON size in 4 bytes each, the JSON, the data.
 #include "render/remote/channel.h"
+#include "base/json_text.h"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -32,7 +33,7 @@ const char* const gone = "the other end of a channel is gone";
 
 std::string pack(const Message& message) {
   using nlohmann::json;
-  const std::string values = message.values.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string values = json_text(message.values);
   std::string bytes;
   bytes.reserve(head + values.size() + message.data.size());
   append(bytes, static_cast<std::uint32_t>(message.kind));

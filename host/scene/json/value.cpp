@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/json_text.h"
 #include "base/names.h"
 
 namespace sundog {
@@ -29,11 +30,11 @@ std::string describe(const json& value) {
       std::size_t length = std::min<std::size_t>(text.size(), 60);
       // Do not split a UTF-8 sequence.
       while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
-      return fmt::format("the string {}{}", json(text.substr(0, length)).dump(),
+      return fmt::format("the string {}{}", json_text(json(text.substr(0, length))),
                          length < text.size() ? "..." : "");
     }
     default:
-      return value.dump();
+      return json_text(value);
   }
 }
 
@@ -87,7 +88,7 @@ JsonValue JsonValue::child(std::string_view key, const nlohmann::json& value, co
   const JsonValue result(value, *context_, join_pointer(pointer_, key), rule);
   if (rule && rule->bars(value))
     result.fail(fmt::format("wanted {}, found {}", rule->describe(),
-                            value.is_string() ? describe(value) : value.dump()));
+                            value.is_string() ? describe(value) : json_text(value)));
   return result;
 }
 
@@ -266,7 +267,7 @@ void JsonObject::fail_missing(std::string_view key, std::string_view beside, std
     wanted += ": " + brief(known->description);
   value_.fail(fmt::format("missing key \"{}\"{}: wanted {}{}", key,
                           beside.empty() ? "" : fmt::format(" beside \"{}\"", beside), wanted,
-                          near ? fmt::format(", found {}", json(*near).dump()) : std::string()));
+                          near ? fmt::format(", found {}", json_text(json(*near))) : std::string()));
 }
 
 void JsonObject::check_together() const {
@@ -306,7 +307,7 @@ std::string JsonObject::one_of() {
   for (const auto& [name, value] : value_.json().items())  // a misspelt key explains a missing one
     if (const auto near = nearest_name(name, {keys.begin(), keys.end()}); found.empty() && near)
       value_.child(name, value, nullptr)
-          .fail(fmt::format("unknown key {}: did you mean \"{}\"?", json(name).dump(), *near));
+          .fail(fmt::format("unknown key {}: did you mean \"{}\"?", json_text(json(name)), *near));
   value_.fail(fmt::format("wanted one of {}, found {}", list_names(keys),
                           found.empty() ? "none" : list_names(found, "and")));
 }
@@ -317,7 +318,7 @@ void JsonObject::refuse_unasked() const {
     const std::set<std::string> wanted(asked_.begin(), asked_.end());
     const std::string mend =
         did_you_mean(name, {wanted.begin(), wanted.end()}, fmt::format("wanted {}", fmt::join(wanted, ", ")));
-    value_.child(name, value, nullptr).fail(fmt::format("unknown key {}: {}", json(name).dump(), mend));
+    value_.child(name, value, nullptr).fail(fmt::format("unknown key {}: {}", json_text(json(name)), mend));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/image_io.h"
+#include "base/json_text.h"
 #include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
@@ -215,8 +216,9 @@ ExactLathe read_exact_lathe(JsonObject& object, const JsonValue* meshes) {
 void check_recipe(const JsonValue& recipe, const JsonValue& meshes) { follow(recipe, meshes, {}); }
 
 std::string recipe_key(const JsonValue& recipe, const JsonValue& meshes) {
-  std::string key = recipe.json().dump();
-  if (recipe.type() == "fill") key += find_vessel(recipe.member("vessel", "a mesh"), meshes).json().dump();
+  std::string key = json_text(recipe.json());
+  if (recipe.type() == "fill")
+    key += json_text(find_vessel(recipe.member("vessel", "a mesh"), meshes).json());
   return key;
 }
 
