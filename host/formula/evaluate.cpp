@@ -208,26 +208,29 @@ FieldValue FormulaEvaluator::at(const glm::dvec3& p) {
   return {escape_distance(orbit) / growth, false, orbit.iteration};
 }
 
-bool FormulaEvaluator::scales() {
+std::optional<double> FormulaEvaluator::scale() {
+  double logarithm = 0;
   for (std::size_t step = 0; step < maps_.size(); ++step) {
     const std::size_t size = lowered_[step].map.z.size();
-    const auto length_after = [&](double length, int iteration) {
+    const auto growth_at = [&](double length, int iteration) {
       Orbit orbit;
       orbit.z.assign(size, length);
       orbit.c.assign(size, 0.5);
       orbit.tangents = orbit.c_tangents = std::vector<double>(3 * size);
       orbit.parameters = &field_.steps[step].values;
       orbit.iteration = iteration;
+      const double before = orbit.square();
       const auto& values = maps_[step].program.run(std::cref(orbit));
       orbit.z.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size));
-      return std::sqrt(orbit.square());
+      return std::sqrt(orbit.square() / before);
     };
     for (int i = 0; i < 4; ++i) {
-      const double growth = length_after(1e12, i) / length_after(1e8, i);
-      if (!(growth > 5e3 && growth < 2e4)) return false;
+      const double change = growth_at(1e12, i) / growth_at(1e8, i);
+      if (!(change > 0.5 && change < 2)) return std::nullopt;
     }
+    logarithm += field_.steps[step].times * std::log(growth_at(1e12, 0));
   }
-  return true;
+  return std::exp(logarithm / turns_);
 }
 
 }  // namespace sundog

@@ -2,6 +2,7 @@
 // formulas.
 #pragma once
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,9 @@ class FormulaEvaluator {
   explicit FormulaEvaluator(const FormulaField& field);
   /// The estimate times the field's safety; 0 inside if the formula gives no depth.
   FieldValue at(const glm::dvec3& p);
-  /// Whether each map changes far points' lengths in proportion, as the Mandelbox's does and no power.
-  bool scales();
+  /// The factor by which an iteration changes far points' lengths, in the mean, where each map changes them
+  /// in proportion, as the Mandelbox's does and no power.
+  std::optional<double> scale();
   /// Maximum number of operations of an evaluation.
   std::size_t cost() const;
   /// Over all points so far.

@@ -17,6 +17,8 @@ namespace {
 
 using glm::dvec3;
 
+constexpr int most_iterations = 64;  // unless a scene asks for more
+
 std::string text_of(const dvec3& p) { return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", p.x, p.y, p.z); }
 
 /// Rounds down to three digits, so that last bits do not differ between machines.
@@ -42,9 +44,11 @@ class FormulaJudge {
     bool is_changed = is_own_ || json.contains("parameters");
     for (const char* key : {"steps", "iterations", "bailout"}) is_changed |= escapes && json.contains(key);
     // The derivative of a power is a bound; the distance to a set that only scales needs the set's size.
-    const bool closely = is_changed && (!escapes || FormulaEvaluator(field_).scales());
-    found_ = survey_formula(field_, lower, upper, closely);
+    const auto scale = is_changed && escapes ? FormulaEvaluator(field_).scale() : std::nullopt;
+    const bool closely = is_changed && (!escapes || scale);
     size_ = glm::length(upper - lower);
+    if (is_own_ && scale && *scale > 1 && last_.estimate == EscapeEstimate::linear) judge_iterations(*scale);
+    found_ = survey_formula(field_, lower, upper, closely);
     judge_values(escapes);
     judge_domains();
     if (closely && escapes) judge_estimate();
@@ -52,6 +56,20 @@ class FormulaJudge {
   }
 
  private:
+  /// The solid of a linear estimate is thicker than the set by bailout / scale^iterations: by default, by no
+  /// more than a thousandth of the interval.
+  void judge_iterations(double scale) {
+    const double wanted = std::ceil(std::log(1000 * field_.bailout / size_) / std::log(scale));
+    const double thicker = field_.bailout / std::pow(scale, field_.iterations);
+    if (!value_.json().contains("iterations"))
+      field_.iterations = std::clamp(static_cast<int>(wanted), field_.iterations, most_iterations);
+    else if (thicker > 0.01 * size_)
+      place("iterations")
+          .warn(fmt::format("the solid is thicker than the set by about {:.2g}: wanted {:g} or more, or no "
+                            "\"iterations\"",
+                            thicker, wanted));
+  }
+
   std::string of_points() const { return fmt::format("of {} points of its interval", found_.points); }
 
   JsonValue place(const char* key) const {
@@ -68,7 +86,9 @@ class FormulaJudge {
     if (!whole_) return;
     if (escapes && found_.inside == found_.points)
       value_.fail(fmt::format(
-          "the formula lets the orbit escape from none {}: the whole interval would be solid", of_points()));
+          "the formula lets the orbit escape from none {}: the whole interval would be solid (more "
+          "\"iterations\" or a smaller \"bailout\" let orbits escape)",
+          of_points()));
     if (found_.inside == found_.finite && found_.greatest.value < 0)
       place("distance")
           .warn(fmt::format("the whole interval is inside: the greatest distance found is {:.3g}, at {}; "
@@ -140,9 +160,10 @@ class FormulaJudge {
         bearable < found_.reach.value)
       place("distance")
           .fail(fmt::format("the distance jumps, or grows steeper without bound, near {}, where the surface "
-                            "is {:.2g} times as far away: no step is short enough for it (a \"safety\" that "
-                            "is set is taken as it is)",
-                            text_of(found_.reach.at), found_.reach.value));
+                            "is {:.2g} times as far away: no step is short enough for it ({}a \"safety\" "
+                            "that is set is taken as it is)",
+                            text_of(found_.reach.at), found_.reach.value,
+                            last_.normalize ? "" : "\"normalize\": true divides it by its gradient; "));
     if (bearable > 0.97 * field_.safety && bearable < 1.5 * field_.safety) return;
     if (has_safety_) {
       if (bearable < field_.safety)

@@ -147,6 +147,27 @@ TEST_CASE("points without a number, and intervals without a surface, are reporte
   CHECK(says(scene_of_formula({{"map", "z = z ^ 2 + c + vec3(9, 0, 0)"}}), "", "holds no surface"));
 }
 
+TEST_CASE("a linear estimate has as many iterations as keep its solid thin, and fewer are reported") {
+  const auto menger = [](nlohmann::json members) {
+    members["interval"] = {{"min", {-1.5, -1.5, -1.5}}, {"max", {1.5, 1.5, 1.5}}};
+    members["map"] = {"z = abs(z)",
+                      "z = z.x < z.y ? z.yxz : z",
+                      "z = z.x < z.z ? z.zyx : z",
+                      "z = z.y < z.z ? z.xzy : z",
+                      "z = 3 * z - vec3(2, 2, 0)",
+                      "z.z = z.z > 1 ? z.z - 2 : z.z"};
+    members["estimate"] = "linear";
+    return scene_of_formula(members);
+  };
+  const auto usual = menger({});
+  CHECK(usual.fields.at(0).root.formula.iterations == 12);  // 1000 / 3^12 is 0.002, the interval 5.2 across
+  CHECK_FALSE(says(usual, "", "thicker than the set"));
+  const auto few = menger({{"iterations", 8}});
+  CHECK(few.fields.at(0).root.formula.iterations == 8);
+  CHECK(says(few, "/iterations", "thicker than the set by about 0.15: wanted 12 or more"));
+  CHECK(menger({{"bailout", 4}}).fields.at(0).root.formula.iterations == 8);
+}
+
 TEST_CASE("a map that scales is measured, and told to take the linear estimate; a power is not") {
   const auto scene = [](nlohmann::json members) {
     members["interval"] = {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}};
