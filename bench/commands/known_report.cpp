@@ -47,6 +47,7 @@ MeasuredWay way_of(const json& value) {
 KnownReport read_report(const std::string& file) {
   try {
     const json report = json::parse(read_input(file));
+    if (!report.contains("bench")) throw SceneError(file, "", "is no report of `sundog bench`");
     if (report.at("schema") != 2) throw SceneError(file, "", "it has another schema; measure anew");
     KnownReport known{text_of(report.at("bench")),
                       text_of(report.at("facts").at("revision")),

@@ -356,6 +356,7 @@ int import_all(const std::string& path) {
 int run_tune(const TuneOptions& options) {
   if (!(options.budget >= 0 && options.budget <= 1e6))
     throw UsageError(fmt::format("--budget {}: wanted seconds, from 0 to 1000000", options.budget));
+  if (options.forget && options.show) throw UsageError("--forget, --show: one of them");
   if (!options.import_from.empty()) import_all(options.import_from);
   if (!options.export_to.empty()) return export_all(options.export_to);
   if (options.forget) return forget(options);

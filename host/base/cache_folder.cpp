@@ -35,7 +35,7 @@ std::string refusal(const fs::path& folder) {
 }  // namespace
 
 std::string cache_refusal(const fs::path& cache) {
-  if (cache.empty()) return "";
+  if (cache.empty()) return "the cache is not used: neither XDG_CACHE_HOME nor HOME names a folder";
   for (const fs::path& folder : {cache, cache / "kernels", cache / "tuning", cache / "pocl"})
     if (const std::string why = refusal(folder); !why.empty()) return "the cache is not used: " + why;
   return "";

@@ -5,8 +5,8 @@
 
 namespace sundog {
 
-/// Why `cache` (HostEnvironment::cache) is refused: another user owns it or a folder in it, others may write
-/// there, or it cannot be inspected. Empty if it is usable or not set.
+/// Why `cache` (HostEnvironment::cache) is refused: it is not set, another user owns it or a folder in it,
+/// others may write there, or it cannot be inspected. Empty if it is usable.
 std::string cache_refusal(const std::filesystem::path& cache);
 
 /// The subfolder `name` of `cache`; empty if the cache is not set or refused.

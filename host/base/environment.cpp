@@ -28,8 +28,8 @@ double seconds_of(const char* name, double otherwise) {
 }
 
 std::filesystem::path cache_directory() {
-  if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty())
-    return std::filesystem::path(xdg) / "sundog";
+  // The XDG specification wants a relative path ignored.
+  if (const std::filesystem::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "sundog";
   if (const std::string home = variable("HOME"); !home.empty())
     return std::filesystem::path(home) / ".cache" / "sundog";
   return {};

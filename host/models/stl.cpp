@@ -45,14 +45,16 @@ void add_triangle(Mesh& mesh) {
   mesh.triangles.emplace_back(n, n + 1, n + 2);
 }
 
-void read_binary(const Source& source, Mesh& mesh) {
+void read_binary(const Source& source, Mesh& mesh, std::vector<std::string>& warnings) {
   const std::size_t size = source.bytes.size(), facets = binary_facets(source);
   if (size < header_bytes)
     fail_at_byte(source, size, "neither 'solid' nor a binary STL's header of 84 bytes");
-  if (facets > (size - header_bytes) / facet_bytes)
-    fail_at_byte(source, 80,
-                 fmt::format("{} facets promised, but the file has room for {}", facets,
-                             (size - header_bytes) / facet_bytes));
+  const std::size_t room = (size - header_bytes) / facet_bytes;
+  if (facets > room)
+    fail_at_byte(source, 80, fmt::format("{} facets promised, but the file has room for {}", facets, room));
+  if (facets < room)
+    warnings.push_back(
+        fmt::format("{} facets promised, but the file has room for {}: the rest is not read", facets, room));
   mesh.positions.reserve(facets * 3);
   mesh.triangles.reserve(facets);
   for (std::size_t i = 0; i < facets; ++i) {
@@ -107,17 +109,17 @@ dvec3 read_ascii(const Source& source, Mesh& mesh) {
 }  // namespace
 
 Model load_stl(Source source, const ModelOptions& options) {
+  Model model;
   Mesh mesh;
   mesh.name = source.path.stem().string();
   dvec3 origin(0);
   if (is_binary(source))
-    read_binary(source, mesh);
+    read_binary(source, mesh, model.warnings);
   else
     origin = read_ascii(source, mesh);
   mesh.source_vertex_count = mesh.positions.size();
   const double crease = options.crease_angle.value_or(0);
   complete_normals(mesh, {}, crease, crease > 0 ? weld_positions(mesh) : std::vector<std::uint32_t>());
-  Model model;
   add_mesh(model, std::move(mesh), origin);
   return model;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ranges>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -150,7 +151,7 @@ auto explained(const json& document, const Reading& reading, const Read& read) {
         throw SceneError(error.file, error.place,
                          fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track),
                          error.remedy);
-    for (const std::string& setting : reading.overrides)
+    for (const std::string& setting : std::views::reverse(reading.overrides))  // the last one counts
       if (overlap(pointer_of(document, setting), error.place))
         throw SettingError(error.file, error.place,
                            fmt::format("{} (changed by the setting {})", error.reason, setting),

@@ -92,7 +92,8 @@ WorkGroup parse_work_group(const std::string& text, const char* option) {
   if (const auto pair = number_pair(text))
     return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
   throw UsageError(
-      fmt::format("{} {}: wanted a size (64), width x height (8x8), auto or driver", option, text));
+      fmt::format("{} {}: wanted a size (64) or width x height (8x8), each from 1 to {}, auto or driver",
+                  option, text, most_edge));
 }
 
 PartOfFrame parse_part(const std::string& text) {

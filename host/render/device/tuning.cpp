@@ -111,10 +111,7 @@ std::optional<TuningFile> load_tuning(const DeviceInfo& device) {
 
 void keep_tuning(const DeviceInfo& device, const TuningEntry& entry) {
   const std::filesystem::path path = tuning_path(device);
-  if (path.empty()) {
-    const std::string why = cache_refusal(value_of(device.environment).cache);
-    throw IoError(why.empty() ? "there is no cache folder to keep the result in: set XDG_CACHE_HOME" : why);
-  }
+  if (path.empty()) throw IoError(cache_refusal(value_of(device.environment).cache));
   TuningFile file = load_tuning(device).value_or(TuningFile{device.platform_name,
                                                             device.name,
                                                             device.driver,

@@ -77,8 +77,10 @@ bool starts_with_magic(const std::string& bytes, std::size_t length) {
 }
 
 UsageError other_checkpoint(const std::filesystem::path& path) {
-  return UsageError(path.string() +
-                    ": is a checkpoint of another scene or of other settings; remove it to start anew");
+  return UsageError(
+      path.string() +
+      ": is a checkpoint of another scene or of other settings: give the settings that it was made "
+      "with, or remove it to start anew");
 }
 
 /// The file's bytes without their checksum, which is right. A file that is longer than the frame's longest

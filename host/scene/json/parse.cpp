@@ -279,6 +279,7 @@ void require_readable(const fs::path& file, const fs::path& named_in, std::strin
   const auto fail = [&](std::string_view what) {
     throw SceneError(named_in.string(), std::string(place), fmt::format("{}{}", name, what));
   };
+  if (named_in.empty()) throw UsageError("a file's name is empty: wanted a scene or a model");
   std::error_code status;
   const fs::file_status found = fs::status(file, status);
   if (!fs::exists(found)) {

@@ -162,6 +162,15 @@ TEST_CASE("devices that crash or cannot be used are rows of --device all") {
   }
 }
 
+TEST_CASE("a report named - goes to the standard output, and all else to the other stream") {
+  const CliFolder folder;
+  const CommandResult result = run_bench(small_benches(folder)[4], {"--repeat", "1", "--json", "-"});
+  CAPTURE(result.err);
+  CHECK(result.status == 0);
+  CHECK(json::parse(result.out).at("bench") == "rays");
+  CHECK_THAT(result.err, ContainsSubstring("Rays a second by kind"));
+}
+
 TEST_CASE("a reader of messages who has left costs a bench no report") {
   const CliFolder folder;
   const std::string file = folder.file("b.json");

@@ -107,6 +107,14 @@ TEST_CASE("tune names what it rejects, with the reason") {
                             ContainsSubstring(" did not build on 0:0 "));
 }
 
+TEST_CASE("a scene whose name is no UTF-8 is tuned and its result kept") {
+  const TuneFolder folder;
+  const std::string named = folder.file("sc\xe9ne.json");
+  fs::copy(folder.scene, named);
+  CHECK(folder.run({named, "--device", "portable", "--budget", "2"}).status == 0);
+  CHECK_THAT(folder.run({"--show"}).out, ContainsSubstring("render_whitted"));
+}
+
 TEST_CASE("settings at which the driver crashes are rejected, and the others tuned") {
   const TuneFolder folder;
   REQUIRE(folder.render("before.exr").status == 0);

@@ -46,6 +46,13 @@ TEST_CASE("ASCII and binary STL files load flat, with the vertices that they sto
   }
 }
 
+TEST_CASE("a binary STL that promises fewer facets than it holds says so", "[models]") {
+  const Model model = load_text("a.stl", binary(1, two_triangles));
+  CHECK(model.meshes.at(0).triangles.size() == 1);
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("1 facets promised, but the file has room for 2"));
+}
+
 TEST_CASE("an ASCII STL may be in capitals, behind a byte order mark", "[models]") {
   std::string text = "solid a\n" + ascii_facet("0 0 0", "2 0 0", "0 1 0") + "endsolid a\n";
   CHECK(area_of(load_text("a.stl", "\xEF\xBB\xBF" + text).meshes.at(0)) == 1);

@@ -56,6 +56,9 @@ TEST_CASE("an override's value is JSON, or else a string") {
   check_error("/camera/fov=wide", "/camera/fov", "wanted a number, found the string \"wide\"");
   check_error("/camera/fov=1e999", "/camera/fov", "wanted a number");
   check_error("/camera/fov=", "/camera/fov", "wanted a number, found an empty string");
+  check_error("/camera/fov=\xff", "/camera/fov", "wanted a number, found the string \"\xEF\xBF\xBD\"");
+  const SceneError last = error_of(scene, {"/camera/fov=30", "/camera/fov=wide"});
+  CHECK_THAT(last.reason, ContainsSubstring("(changed by the setting /camera/fov=wide)"));
 }
 
 TEST_CASE("escapes lead an override to keys with / and ~") {
