@@ -141,9 +141,7 @@ CompiledScene bench_scene(const std::string& file, const BenchOptions& options,
   return compile(bench_description(file, options, more));
 }
 
-std::vector<DeviceInfo> bench_devices(const BenchOptions& options) {
-  return pick_devices(list_devices(), options.devices);
-}
+std::vector<DeviceInfo> bench_devices(const BenchOptions& options) { return pick_devices(options.devices); }
 
 std::vector<DeviceInfo> unusable_bench_devices(const BenchOptions& options) {
   return unusable_devices(list_devices(),

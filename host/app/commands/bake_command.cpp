@@ -105,7 +105,7 @@ int bake_map(const BakeOptions& options) {
                      "its texture coordinates cover no texel of the map: unwrap it, or give a "
                      "greater --size");
   warn_of_coverage(options, coverage);
-  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(options.devices);
   Device device(devices.front());
   RayTracer tracer(device, high);
   ProgressBar bar(!options.quiet);

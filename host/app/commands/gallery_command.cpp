@@ -137,7 +137,7 @@ int gallery(GalleryOptions options) {
   make_folder(options.folder);
   const fs::path page = fs::path(options.folder) / "index.html";
   check_writable(page);
-  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(options.devices);
   Gallery all{"sundog gallery", {{"sundog", SUNDOG_VERSION}}, {}};
   for (const DeviceInfo& device : devices) all.facts.emplace_back("device", device_fact(device));
   const Facts machine = machine_facts();

@@ -159,7 +159,7 @@ int make_picture(const HaloOptions& options) {
   check_output_files({options.picture.out}, {options.scene});
   check_picture(options.picture, false);
   const EnvironmentDescription e = halo_of(options);
-  const std::vector<DeviceInfo> devices = pick_devices(list_devices(), options.devices);
+  const std::vector<DeviceInfo> devices = pick_devices(options.devices);
   const TracedHalo traced = trace_halo_map(e, devices, options.quiet || options.json);
   const Image image = shown_in(options.picture.out, picture_of(options, e, traced.map, rows), tone_map,
                                dithers(options.picture));

@@ -41,4 +41,8 @@ std::vector<DeviceInfo> pick_devices(const std::vector<DeviceInfo>& all, std::ve
   return chosen;
 }
 
+std::vector<DeviceInfo> pick_devices(const std::vector<std::string>& specs, bool verbose) {
+  return pick_devices(list_devices(), specs, verbose);
+}
+
 }  // namespace sundog

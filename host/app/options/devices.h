@@ -18,5 +18,7 @@ std::vector<std::string> devices_of_environment();
 /// why, where there are no specs. Throws DeviceError, UsageError.
 std::vector<DeviceInfo> pick_devices(const std::vector<DeviceInfo>& all, std::vector<std::string> specs,
                                      bool verbose = false);
+/// Of those of this process.
+std::vector<DeviceInfo> pick_devices(const std::vector<std::string>& specs, bool verbose = false);
 
 }  // namespace sundog

@@ -91,7 +91,9 @@ void warn_of_halves(const fs::path& path, const Image& image, const FileOptions&
                       path.string(), cut, greatest_half)}});
 }
 
-void save_image(const Picture& picture, const fs::path& path) {
+void save_image(Picture picture, const fs::path& path) {
+  picture.image =
+      shown_in(named(picture, path), std::move(picture.image), picture.tone_map, picture.dithered);
   save(picture, path, "image", [&](const fs::path& to) { write(picture, to); });
   warn_of_halves(named(picture, path), picture.image, picture.file);
 }

@@ -10,16 +10,19 @@
 
 namespace sundog {
 
-/// A frame to save: the image as its file shows it, and the film that it was developed from.
+/// A frame to save: its image and AOVs, and the film that they were developed from.
 struct Picture {
-  const Image& image;  // by shown_in(), of image_channels() of the file
+  Image image;  // linear, of image_channels() of the file; none of a part
   const AovImages& aovs;
   const Film& film;
-  std::uint64_t key = 0;             // of the scene, for a checkpoint
-  std::filesystem::path checkpoint;  // takes the film if `path` cannot be written; empty: none was asked for
-  bool checkpoint_kept = false;      // the frame is there
-  std::string format = "png";        // of image_formats(), where the path is "-"
+  std::uint64_t key = 0;  // of the scene, for a checkpoint
+  std::filesystem::path checkpoint =
+      {};                        // takes the film if `path` cannot be written; empty: none was asked for
+  bool checkpoint_kept = false;  // the frame is there
+  std::string format = "png";    // of image_formats(), where the path is "-"
   FileOptions file = {};
+  ToneMap tone_map = {};
+  bool dithered = true;
 };
 
 /// The channels that a file of this name keeps of a frame: 3, or 4 with coverage.
@@ -30,10 +33,10 @@ inline int image_channels(const std::filesystem::path& path, bool transparent) {
 /// Warns of colours that an EXR of halves cuts off.
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
 
-/// Writes `path`; "-" is the standard output. Warns of colours that the file cuts off. When that fails the
-/// frame is kept as a checkpoint, or as an image in the folder for temporary files: IoError says what
-/// happened and where it is.
-void save_image(const Picture& picture, const std::filesystem::path& path);
+/// Writes the image as a file of its name shows it (shown_in()) to `path`; "-" is the standard output. Warns
+/// of colours that the file cuts off. When that fails the frame is kept as a checkpoint, or as an image in
+/// the folder for temporary files: IoError says what happened and where it is.
+void save_image(Picture picture, const std::filesystem::path& path);
 
 /// Writes a part of a frame to `path`; keeps it elsewhere if that fails, as save_image() does.
 void save_part(const Picture& picture, const PartHeader& header, const std::filesystem::path& path);

@@ -32,8 +32,8 @@ int merge(const MergeCommand& command) {
   const PartFile whole = merge_parts({command.parts.begin(), command.parts.end()});
   const std::string name = format_name(command);
   check_image_path(name, !whole.aovs.empty());
-  const Image image = shown_in(name, whole.film.develop(image_channels(name, command.transparent)), tone_map,
-                               dithers(command));
+  Image image = whole.film.develop(image_channels(name, command.transparent));
+  const int width = image.width, height = image.height;
   AovImages aovs;
   for (const std::string& aov : whole.aovs) aovs[aov] = whole.film.develop_aov(aov);
   end_depth(command, aovs);
@@ -42,8 +42,16 @@ int merge(const MergeCommand& command) {
   FileOptions file = file_options(command);
   file.texts = name_cryptomattes(aovs, whole.names);
   file.shot = whole.shot;
-  save_image({image, aovs, whole.film, whole.key, {}, false, command.format, file}, command.out);
-  fmt::print("{}: {}x{} from {} parts\n", command.out, image.width, image.height, command.parts.size());
+  save_image({.image = std::move(image),
+              .aovs = aovs,
+              .film = whole.film,
+              .key = whole.key,
+              .format = command.format,
+              .file = file,
+              .tone_map = tone_map,
+              .dithered = dithers(command)},
+             command.out);
+  fmt::print("{}: {}x{} from {} parts\n", command.out, width, height, command.parts.size());
   return exit_done;
 }
 

@@ -135,8 +135,9 @@ void add_samples(const RenderResult& more, int channels, RenderResult& all) {
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job) {
   if (job) return job_devices(*job, command);
-  return pick_devices(command.isolate ? enumerate_in_worker() : list_devices(), command.devices,
-                      command.verbose && !command.quiet);
+  const bool verbose = command.verbose && !command.quiet;
+  return command.isolate ? pick_devices(enumerate_in_worker(), command.devices, verbose)
+                         : pick_devices(command.devices, verbose);
 }
 
 std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene) {

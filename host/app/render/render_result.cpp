@@ -88,13 +88,12 @@ double seconds_of(const RenderTimes& times) {
   return times.build_kernels + times.upload + times.render + times.readback;
 }
 
-/// Takes the frame's picture as its file shows it, without its noise where that is asked for and the frame
-/// was not interrupted.
-Image take_image(const RenderCommand& command, const ToneMap& tone_map, RenderResult& result) {
+/// Takes the frame's picture, without its noise where that is asked for and the frame was not interrupted.
+Image take_image(const RenderCommand& command, RenderResult& result) {
   Image image = std::move(result.image);
   if (command.denoise && (result.complete || result.time_limited))
     Denoiser().denoise(image, result.aovs.at(feature_albedo), result.aovs.at(feature_normal));
-  return shown_in(format_name(command), std::move(image), tone_map, dithers(command));
+  return image;
 }
 
 std::optional<Region> region_of(const RenderCommand& command, const ImageSettings& image) {
@@ -139,7 +138,7 @@ Shot frame_shot(const RenderCommand& command, const SceneDescription& scene,
 
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const Shot& shot, RenderResult& result, const std::string& checkpoint) {
-  const Image image = take_image(command, scene.image.tone_map, result);
+  Image image = take_image(command, result);
   FileOptions file = file_options(command);
   file.region = region_of(command, scene.image);
   AovImages aovs = take_aovs(command, shot, file.region, result);
@@ -151,11 +150,11 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   // A region's film is cut, and no state of the frame.
   const bool keeps = !command.region || result.checkpoint_kept;
   Picture picture{
-      image,          aovs, result.film, result.key, keeps ? checkpoint : "", result.checkpoint_kept,
-      command.format, file};
+      std::move(image),       aovs,           result.film, result.key,           keeps ? checkpoint : "",
+      result.checkpoint_kept, command.format, file,        scene.image.tone_map, dithers(command)};
   if (command.part && picture.key == 0) picture.key = hash_scene(flat);
   if (!command.part && !is_empty(result))
-    save_image(picture, command.out);
+    save_image(std::move(picture), command.out);
   else if (command.part && result.complete)
     save_part(picture,
               {*command.part, picture.key, command.scene, settings_of(command, flat), command.aovs, shot,
