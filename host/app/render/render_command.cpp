@@ -10,7 +10,7 @@
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/picture_options.h"
-#include "app/render/render_frames.h"
+#include "app/render/render_scene.h"
 #include "base/error.h"
 #include "base/names.h"
 #include "render/film/group_names.h"

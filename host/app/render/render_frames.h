@@ -1,13 +1,10 @@
-// `sundog render`, and its frames of an animation, one after the other.
+// The frames of an animation, one after the other.
 #pragma once
 #include <string>
 
 #include "app/render/render_frame.h"
 
 namespace sundog {
-
-/// Renders what the command line asks for: a frame, a part of it, or frames. Returns the exit status.
-int render_scene(const RenderCommand& command);
 
 /// The command of one frame: its files are numbered.
 RenderCommand frame_command(const RenderCommand& command, int frame);

@@ -1,4 +1,6 @@
-// Renders a scene: scene file -> description -> flat tables -> image -> file.
+// Renders a scene: scene file -> description -> flat tables; render_frame.cpp makes the image and its file.
+#include "app/render/render_scene.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

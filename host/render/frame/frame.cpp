@@ -61,8 +61,8 @@ void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   frame.workers[i].report.pixels += pixel_count(made.tile);
   if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
   report_progress(frame);
-  look_for_stop(frame);
-  look_at_clock(frame);
+  stop_if_asked(frame);
+  stop_at_time_limit(frame);
 }
 
 /// Makes one tile; throws what the worker throws.

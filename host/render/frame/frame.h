@@ -1,5 +1,5 @@
-// A frame from its plan to its image: a session's threads, one a worker, take tiles from the queue, while
-// another watches for the end, for an interrupt and for drivers that hang. Internal to the render layer.
+// A frame from its plan to its image: threads, one a worker, take tiles from the queue, while another watches
+// for the end, for an interrupt and for drivers that hang. Internal to the render layer.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -77,6 +77,8 @@ inline const std::filesystem::path& checkpoint_path(const RenderOptions& options
   return options.checkpoint.empty() ? options.resume : options.checkpoint;
 }
 
+// frame.cpp
+
 /// Plans the frame and begins its first pass, or continues its checkpoint. Throws what render() does
 /// (render.h).
 std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
@@ -96,26 +98,9 @@ void begin_pass(Frame& frame, std::optional<Pass> next);
 /// Begins the rest of a pass of which Frame::pass_film has a part.
 void continue_pass(Frame& frame);
 
-/// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
-void begin_coarse(Frame& frame, int block);
-
-/// Ends a coarse pass, whose picture may now be looked at. Returns the next one, or nothing when the frame's
-/// own follow.
-std::optional<Pass> finer_pass(Frame& frame);
-
-/// Notes how long a pixel of the frame's first pass took.
-void measure_pixels(Frame& frame);
-
-/// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
-/// fails too often is retired. What it throws is kept in the frame.
-void work_on_frame(Frame& frame, std::size_t i);
-
 /// Makes tiles by worker i until there are none, the frame is stopped, or the worker has failed too often
 /// (which throws).
 void make_tiles(Frame& frame, std::size_t i);
-
-/// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
-void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
 /// The film of the complete passes, with the finished tiles of the pass in hand.
 Film film_so_far(const Frame& frame);
@@ -126,20 +111,43 @@ Film take_film(Frame& frame);
 /// Whether there is a pixel of the frame.
 inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || frame.film.stage > 0; }
 
-/// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
-void look_for_stop(Frame& frame);
+// frame_coarse.cpp
 
-/// Reports how far the frame is. The caller holds its mutex.
-void report_progress(Frame& frame);
+/// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
+void begin_coarse(Frame& frame, int block);
 
-/// Ends the frame at its time limit. The caller holds its mutex.
-void look_at_clock(Frame& frame);
+/// Ends a coarse pass, whose picture may now be looked at. Returns the next one, or nothing when the frame's
+/// own follow.
+std::optional<Pass> finer_pass(Frame& frame);
 
-/// Retires workers whose launches are overdue.
-void retire_hanging(Frame& frame);
+/// Notes how long a pixel of the frame's first pass took.
+void measure_pixels(Frame& frame);
+
+// frame_worker.cpp
+
+/// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
+/// fails too often is retired. What it throws is kept in the frame.
+void work_on_frame(Frame& frame, std::size_t i);
+
+/// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
+void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
 /// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
 /// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
+
+// frame_end.cpp
+
+/// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
+void stop_if_asked(Frame& frame);
+
+/// Ends the frame at its time limit. The caller holds its mutex.
+void stop_at_time_limit(Frame& frame);
+
+/// Reports how far the frame is. The caller holds its mutex.
+void report_progress(Frame& frame);
+
+/// Retires workers whose launches are overdue.
+void retire_hanging(Frame& frame);
 
 }  // namespace sundog

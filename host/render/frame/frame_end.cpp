@@ -59,7 +59,7 @@ void report_progress(Frame& frame) {
   frame.options.on_progress({frame.pixels_done, frame.pass_pixels, frame.clock.seconds()});
 }
 
-void look_at_clock(Frame& frame) {
+void stop_at_time_limit(Frame& frame) {
   if (!(frame.options.time_limit > 0) || frame.clock.seconds() < frame.options.time_limit) return;
   if (!may_end(frame)) return;
   frame.limited = true;
@@ -77,7 +77,7 @@ void retire_hanging(Frame& frame) {
   }
 }
 
-void look_for_stop(Frame& frame) {
+void stop_if_asked(Frame& frame) {
   if (!frame.options.stop || !frame.options.stop->load()) return;
   frame.stop = true;
   frame.queue.close();

@@ -23,7 +23,7 @@ void FrameLoop::add_thread(std::shared_ptr<DeviceWorker> worker) {
 }
 
 void FrameLoop::run(const std::shared_ptr<FrameTask>& mine, bool wait) {
-  look_for_stop(*mine->frame);
+  stop_if_asked(*mine->frame);
   {
     const std::lock_guard lock(mutex);
     current = mine;

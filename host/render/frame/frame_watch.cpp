@@ -41,10 +41,10 @@ void show_progress(Frame& frame) {
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_seconds)) {
     show_progress(frame);
-    look_for_stop(frame);
+    stop_if_asked(frame);
     {
       const std::lock_guard lock(frame.mutex);
-      look_at_clock(frame);
+      stop_at_time_limit(frame);
     }
     renew_checkpoint(frame);
     show_picture(frame);

@@ -70,7 +70,7 @@ void LiveSession::end() {
 }
 
 void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {
-  look_for_stop(*mine->frame);
+  stop_if_asked(*mine->frame);
   {
     const std::lock_guard lock(mutex);
     drop_frame();
