@@ -71,7 +71,7 @@ void admit(Gate& gate, const std::string& scheme, const std::string& name, int p
   if (port == (scheme == "http" ? http_port : https_port)) hosts.push_back(name);
   for (const std::string& host : hosts) {
     gate.hosts.push_back(host);
-    gate.origins.push_back(scheme + "://" + host);
+    gate.origins.push_back(fmt::format("{}://{}", scheme, host));
   }
 }
 
