@@ -15,7 +15,7 @@ if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else nee
 # The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page; pip
 # builds the Python package, pkg-config finds the library, Doxygen reads its headers, and git says what has changed.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
-  python3-dev python3-venv pkg-config doxygen git)
+  openssl python3-dev python3-venv pkg-config doxygen git)
 # One version, so that tests/check_format.sh and tests/tidy.sh find the same on every machine.
 checkers=(clang-format-19 clang-tidy-19)
 

@@ -31,16 +31,6 @@ std::vector<std::string>& command_line() {
   return words;
 }
 
-/// As a shell takes it for one word.
-std::string shell_word(std::string_view word) {
-  constexpr std::string_view plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 void write_json(const std::string& file, const nlohmann::json& json) {
   if (file.empty()) return;
   write_output(file, json_text(json, 2) + "\n", program_environment()->faults);

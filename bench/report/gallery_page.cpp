@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "bench/report/svg.h"
 
 namespace sundog {
@@ -45,7 +46,7 @@ std::string rays_text(const GalleryPicture& picture) {
 }
 
 std::string picture_html(const GalleryPicture& picture) {
-  const std::string name = escape_html(picture.name), file = escape_html(picture.file);
+  const std::string name = escape_html(picture.name), file = percent_encoded(picture.file);
   return fmt::format(
       "<article><a href=\"{1}\"><img src=\"{1}\" alt=\"The scene {0}\" width=\"{2}\" height=\"{3}\" "
       "loading=\"lazy\"></a>\n<h2>{0}</h2>\n<p>{2} x {3}, {4} {5} a pixel, {6}</p>\n<p>{7}</p>\n"

@@ -37,7 +37,7 @@ int run_command_line(int argc, char** argv) {
   // fails.
   if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
   const int status = run(command);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
+  flush_standard_output();
   return status;
 }
 

@@ -31,4 +31,20 @@ inline std::string percent_decoded(std::string_view text) {
   return bytes;
 }
 
+/// `bytes` as one segment of a URI's path (RFC 3986).
+inline std::string percent_encoded(std::string_view bytes) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string text;
+  for (const char c : bytes) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       c == '-' || c == '.' || c == '_' || c == '~';
+    const auto byte = static_cast<unsigned char>(c);
+    if (plain)
+      text += c;
+    else
+      text.append({'%', digits[byte >> 4], digits[byte & 15]});
+  }
+  return text;
+}
+
 }  // namespace sundog

@@ -66,6 +66,7 @@ Browser::Browser(int width, int height) : driver_({"chromedriver", "--port=0"}, 
                           {"download.prompt_for_download", false},
                           {"profile.default_content_setting_values.automatic_downloads", 1}}}};
   const json wanted = {{"browserName", "chrome"},
+                       {"acceptInsecureCerts", true},
                        {"goog:chromeOptions", options},
                        {"goog:loggingPrefs", {{"browser", "ALL"}}}};
   session_ = command("POST", "", {{"capabilities", {{"alwaysMatch", wanted}}}})["sessionId"];

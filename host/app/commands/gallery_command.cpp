@@ -83,7 +83,8 @@ std::vector<std::string> overrides_of(const GalleryOptions& options) {
 }
 
 std::string command_of(const GalleryOptions& options, const std::string& scene) {
-  std::string text = fmt::format("sundog render {} -o {}.png", scene, stem(scene));
+  std::string text =
+      fmt::format("sundog render {} -o {}", shell_word(scene), shell_word(stem(scene) + ".png"));
   if (!options.size.empty()) text += " --size " + options.size;
   if (!options.samples.empty()) text += " --samples " + options.samples;
   return text;

@@ -2,6 +2,7 @@
 // found.
 #pragma once
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -45,5 +46,8 @@ ToneMap parse_tone_map(const PictureOptions& picture);
 
 /// Refuses what is not of the form JSON_POINTER=VALUE.
 void check_override(const std::string& setting);
+
+/// A word of a command line as a shell reads it: in quotes where it needs them.
+std::string shell_word(std::string_view word);
 
 }  // namespace sundog

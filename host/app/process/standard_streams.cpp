@@ -64,6 +64,10 @@ void open_standard_streams() {
   }
 }
 
+void flush_standard_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
+}
+
 bool is_standard_stream(const std::filesystem::path& path) { return path == "-"; }
 
 const std::string& standard_input() {

@@ -13,6 +13,9 @@ class Faults;
 /// what is printed.
 void open_standard_streams();
 
+/// Throws IoError where what was printed so far cannot be written.
+void flush_standard_output();
+
 bool is_standard_stream(const std::filesystem::path& path);
 
 /// The text of the standard input: it is read once, and kept. Throws UsageError where it is a terminal,

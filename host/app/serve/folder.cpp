@@ -99,6 +99,15 @@ fs::path Uploads::keep(const std::string& name, const std::string& bytes) {
   return folder / name;
 }
 
+bool Uploads::hold(const fs::path& file) const { return !folder_.empty() && is_below(folder_, file); }
+
+std::string Uploads::without_folder(std::string text) const {
+  if (folder_.empty()) return text;
+  const std::string folder = (folder_ / std::to_string(count_) / "").string();
+  for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;) text.erase(at, folder.size());
+  return text;
+}
+
 void Uploads::forget_others() {
   std::error_code ignored;
   for (; oldest_ < count_; ++oldest_) fs::remove_all(folder_ / std::to_string(oldest_), ignored);

@@ -28,6 +28,9 @@ class Uploads {
 
   /// Keeps the bytes under a name (safe_file_name()); the file's place. Throws IoError.
   std::filesystem::path keep(const std::string& name, const std::string& bytes);
+  bool hold(const std::filesystem::path& file) const;
+  /// `text` with the newest file's folder taken out of the paths in it.
+  std::string without_folder(std::string text) const;
   /// Removes all but the newest: nobody has the others open.
   void forget_others();
   /// Removes all, and the folder.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -55,13 +56,47 @@ std::string kept_token(const std::filesystem::path& file) {
   return token;
 }
 
-Gate make_gate(int port, std::string token, const std::vector<std::string>& further) {
+namespace {
+
+constexpr int http_port = 80, https_port = 443;
+
+std::string in_lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+void admit(Gate& gate, const std::string& scheme, const std::string& name, int port) {
+  std::vector<std::string> hosts = {fmt::format("{}:{}", name, port)};
+  if (port == (scheme == "http" ? http_port : https_port)) hosts.push_back(name);
+  for (const std::string& host : hosts) {
+    gate.hosts.push_back(host);
+    gate.origins.push_back(fmt::format("{}://{}", scheme, host));
+  }
+}
+
+}  // namespace
+
+PublicName parse_public_name(const std::string& typed) {
+  const std::size_t end = typed.starts_with('[') ? typed.find(']') : 0;
+  const std::size_t colon = end == std::string::npos ? end : typed.find(':', end);
+  const std::string name = typed.substr(0, colon);
+  const bool with_port = colon != std::string::npos;
+  const auto port = whole_number<int>(with_port ? std::string_view(typed).substr(colon + 1) : "0");
+  if (name.empty() || name.starts_with('[') != name.ends_with(']') ||
+      name.find_first_of("/?#@ ") != std::string::npos || !port || *port < 0 || *port > 65535 ||
+      (with_port && *port == 0))
+    throw UsageError(fmt::format(
+        "--host {}: wanted NAME or NAME:PORT, without http://, as the browser's address line has it", typed));
+  return {in_lower_case(name), with_port ? std::vector{*port} : std::vector{http_port, https_port}};
+}
+
+Gate make_gate(int port, std::string token, const std::vector<PublicName>& further) {
   Gate gate{std::move(token), {}, {}};
-  for (const char* name : {"127.0.0.1", "localhost", "[::1]"})
-    gate.hosts.push_back(fmt::format("{}:{}", name, port));
-  gate.hosts.insert(gate.hosts.end(), further.begin(), further.end());
-  for (const std::string& host : gate.hosts) gate.origins.push_back("http://" + host);
-  for (const std::string& host : further) gate.origins.push_back("https://" + host);
+  for (const char* name : {"127.0.0.1", "localhost", "[::1]"}) admit(gate, "http", name, port);
+  for (const PublicName& one : further)
+    for (const int reached : one.ports)
+      for (const char* scheme : {"http", "https"}) admit(gate, scheme, one.name, reached);
   return gate;
 }
 
@@ -75,14 +110,19 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
 
 Refusal check_request(const Gate& gate, const RequestHead& head) {
   const std::string* host = head.header("host");
-  if (!host || head.repeated_host || std::ranges::count(gate.hosts, *host) == 0)
+  if (!host || head.repeated_host || std::ranges::count(gate.hosts, in_lower_case(*host)) == 0)
     return {421,
-            "this server does not answer to that Host; a tunnel with another port wants --host NAME:PORT"};
+            "this server does not answer to that Host; a tunnel or proxy wants sundog serve --host NAME "
+            "or --host NAME:PORT, as the browser's address line has it"};
   const std::string* origin = head.header("origin");
   if (origin && std::ranges::count(gate.origins, *origin) == 0)
-    return {403, "requests from other pages are refused"};
+    return {403,
+            "requests from other pages are refused; a page behind a tunnel or proxy wants sundog serve "
+            "--host NAME or --host NAME:PORT, as the browser's address line has it"};
   const bool api = head.path.starts_with("/api/");
-  if (head.method != "GET" && !(api && head.method == "POST")) return {405, "this method is not taken here"};
+  const bool posts = api || head.path == socket_path;  // where a page asks why its socket is refused
+  if (head.method != "GET" && !(posts && head.method == "POST"))
+    return {405, "this method is not taken here", posts ? "GET, HEAD, POST" : "GET, HEAD"};
   const std::string* token = head.header(token_header);
   if (api && !(token && equal_in_constant_time(*token, gate.token)))
     return {401, "the token is missing or wrong: open the URL that `sundog serve` has printed"};

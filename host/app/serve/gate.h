@@ -10,7 +10,8 @@
 
 namespace sundog {
 
-/// A request before its body is read. Header names are in lower case; one that came twice is in `repeated`.
+/// A request before its body is read; HEAD is taken as GET. Header names are in lower case; one that came
+/// twice is in `repeated`.
 struct RequestHead {
   std::string method, path;  // the path without its query
   std::string query;
@@ -28,6 +29,7 @@ struct Gate {
 };
 
 inline constexpr std::string_view token_header = "x-sundog-token";
+inline constexpr std::string_view socket_path = "/ws";
 
 /// 128 bits from the system's source, as 32 hexadecimal digits. Throws IoError.
 std::string random_token();
@@ -37,9 +39,18 @@ std::string random_token();
 /// that others may read; IoError.
 std::string kept_token(const std::filesystem::path& file);
 
-/// The gate of a server at this port, which browsers reach by loopback names and by `further` ("name:port",
-/// as through a tunnel).
-Gate make_gate(int port, std::string token, const std::vector<std::string>& further);
+/// A name by which browsers reach the server, and the ports that they connect to.
+struct PublicName {
+  std::string name;  // in lower case, as browsers send it; IPv6 addresses in brackets
+  std::vector<int> ports;
+};
+
+/// "NAME:PORT", or "NAME" for the default ports of http and https. Throws UsageError.
+PublicName parse_public_name(const std::string& typed);
+
+/// The gate of a server at this port, which browsers reach by loopback names and by `further`, as through a
+/// tunnel or a proxy. They leave out a scheme's default port.
+Gate make_gate(int port, std::string token, const std::vector<PublicName>& further);
 
 /// In a time that does not depend on where they differ.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
@@ -47,6 +58,7 @@ bool equal_in_constant_time(std::string_view a, std::string_view b);
 struct Refusal {
   int status = 0;  // of HTTP; 0: the request may pass
   std::string reason;
+  std::string allow = "GET, HEAD";  // methods that a 405 names
 };
 
 /// Checks everything but a socket's token, which is its first message.

@@ -160,9 +160,13 @@ void SceneDocument::open(const fs::path& file) {
   const std::uintmax_t bytes = fs::file_size(file, missing);
   if (!missing && !is_model_file(file)) check_document_size(bytes, file);
   begin(read_scene_document(file), file);
+  is_file_ = true;
 }
 
-void SceneDocument::replace(json document, const fs::path& file) { begin(std::move(document), file); }
+void SceneDocument::replace(json document, const fs::path& file) {
+  begin(std::move(document), file);
+  is_file_ = false;
+}
 
 /// Reads the scene of `next`, and takes both.
 void SceneDocument::take(json next) {

@@ -47,6 +47,7 @@ class SceneDocument {
   const nlohmann::json& now() const { return now_; }
   const nlohmann::json& opened() const { return opened_; }  // as the file had it
   const std::filesystem::path& file() const { return file_; }
+  bool is_file() const { return is_file_; }  // opened() is what the file holds
   std::shared_ptr<const SceneDescription> scene() const { return scene_; }
   /// Grows with each change.
   std::uint64_t version() const { return version_; }
@@ -63,6 +64,7 @@ class SceneDocument {
 
   nlohmann::json now_, opened_;
   std::filesystem::path file_;
+  bool is_file_ = false;
   std::shared_ptr<const SceneDescription> scene_;
   std::deque<DocumentStep> past_, future_;  // the newest last
   std::string gesture_;

@@ -14,6 +14,7 @@
 #include "app/options/option_values.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
+#include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
 #include "app/serve/studio.h"
 #include "base/error.h"
@@ -27,6 +28,7 @@ namespace fs = std::filesystem;
 struct ServeOptions {
   std::string scene, port, token_file;
   std::vector<std::string> devices, hosts;
+  std::vector<PublicName> names;  // of `hosts`
 };
 
 /// The scene that the viewer opens when the command names none.
@@ -80,21 +82,13 @@ int serve(const ServeOptions& options) {
   setup.picked = pick_devices(setup.devices, options.devices);
   WebServer server(options.port.empty() ? 0 : parse_number("--port", options.port, 0, 65535), {});
   const std::string token = options.token_file.empty() ? random_token() : kept_token(options.token_file);
-  const Gate gate = make_gate(server.port(), token, options.hosts);
+  const Gate gate = make_gate(server.port(), token, options.names);
   Studio studio(server, std::move(setup), std::move(document));
   fmt::print("http://127.0.0.1:{}/#token={}\n", server.port(), gate.token);
-  std::fflush(stdout);
+  flush_standard_output();  // an address that nobody gets is no use
   const EndsOnSignal ends(signal, server);
   server.run(gate, studio.handlers());
   return exit_done;
-}
-
-void check_host(const std::string& host) {
-  const std::size_t colon = host.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == host.size() ||
-      host.find_first_not_of("0123456789", colon + 1) != std::string::npos ||
-      host.find('/') != std::string::npos)
-    throw UsageError(fmt::format("--host {}: wanted NAME:PORT as the browser's address line has it", host));
 }
 
 }  // namespace
@@ -105,13 +99,13 @@ void add_serve(Arguments& root, Command& chosen) {
   value(app, "SCENE", "FILE", options->scene, "a .json scene or a model; without it a Mandelbulb");
   value(app, "--port", "N", options->port, "port on the loopback address (default: any that is free)");
   values(app, "--device", "SPEC", options->devices, device_help);
-  values(
-      app, "--host", "NAME:PORT", options->hosts,
-      "a further name and port by which browsers reach this server, as through a tunnel with another port");
+  values(app, "--host", "NAME", options->hosts,
+         "a further name by which browsers reach this server, as through a tunnel or a proxy with https; "
+         "NAME:PORT where their address line has a port");
   value(app, "--token-file", "FILE", options->token_file,
         "keep the token in this file, so that open pages come back when the server is started anew");
   app->callback([options, &chosen] {
-    for (const std::string& host : options->hosts) check_host(host);
+    for (const std::string& host : options->hosts) options->names.push_back(parse_public_name(host));
     chosen = {.run = [options] { return serve(*options); }, .stops_on_signal = true};
   });
 }

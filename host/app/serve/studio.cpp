@@ -96,7 +96,7 @@ WebHandlers Studio::handlers() {
                                          {"models", SUNDOG_MODEL_EXTENSIONS},
                                          {"most_upload_bytes", server_.limits().body_bytes}}));
       server_.send(client, message_text(devices_message(setup_.devices, setup_.picked)));
-      server_.send(client, message_text(scene_message(document_)));
+      server_.send(client, page_text(scene_message(document_)));
       server_.send(client, message_text({{"is", "balance"}, {"client", 0}, {"lights", lights_}}));
       stream_.greet(client);
     });
@@ -140,13 +140,17 @@ void Studio::show_balance() {
   session_.set_balance(std::move(factors));
 }
 
-void Studio::tell_scene() { server_.send_to_all(message_text(scene_message(document_))); }
+std::string Studio::page_text(const json& message) const {
+  return uploads_.without_folder(message_text(message));
+}
+
+void Studio::tell_scene() { server_.send_to_all(page_text(scene_message(document_))); }
 
 void Studio::refuse(ClientId client, const json& message, const std::string& place,
                     const std::string& reason) {
   json answer = {{"is", "refused"}, {"at", place}, {"reason", reason}};
   if (message.is_object() && message.contains("id")) answer["id"] = message["id"];
-  server_.send(client, message_text(answer));
+  server_.send(client, page_text(answer));
 }
 
 void Studio::take_message(ClientId client, const std::string& text) {
@@ -172,7 +176,7 @@ void Studio::dispatch(ClientId client, const json& message) {
   if (what == "devices") return use_devices(message);
   if (what == "options") return set_options(message);
   if (what == "balance") return balance(client, message);
-  if (what == "scene") return server_.send(client, message_text(scene_message(document_)));
+  if (what == "scene") return server_.send(client, page_text(scene_message(document_)));
   if (what == "stop") return session_.cancel();
   if (what == "draw") return begin_drawing();
   if (what == "open") {
@@ -189,14 +193,14 @@ void Studio::edit(ClientId client, const json& message) {
   if (!gesture.empty()) gesture = fmt::format("{}/{}", client, gesture);  // pages count theirs alike
   document_.apply(changes, gesture);
   begin_drawing();
-  server_.send_to_all(message_text({{"is", "changed"},
-                                    {"version", document_.version()},
-                                    {"client", client},
-                                    {"id", message.value("id", json(nullptr))},
-                                    {"changes", message["changes"]},
-                                    {"can_undo", document_.can_undo()},
-                                    {"can_redo", document_.can_redo()},
-                                    {"resolved", resolved_json(*document_.scene())}}));
+  server_.send_to_all(page_text({{"is", "changed"},
+                                 {"version", document_.version()},
+                                 {"client", client},
+                                 {"id", message.value("id", json(nullptr))},
+                                 {"changes", message["changes"]},
+                                 {"can_undo", document_.can_undo()},
+                                 {"can_redo", document_.can_redo()},
+                                 {"resolved", resolved_json(*document_.scene())}}));
 }
 
 /// All get the scene; the page that asked, where there is nothing to undo as well.
@@ -205,9 +209,9 @@ void Studio::step(ClientId client, const json& message, bool back) {
   json scene = scene_message(document_);
   scene["client"] = client;
   scene["id"] = message.value("id", json(nullptr));
-  if (!changed) return server_.send(client, message_text(scene));
+  if (!changed) return server_.send(client, page_text(scene));
   begin_drawing();
-  server_.send_to_all(message_text(scene));
+  server_.send_to_all(page_text(scene));
 }
 
 void Studio::use_devices(const json& message) {

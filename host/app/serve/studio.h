@@ -44,6 +44,8 @@ class Studio {
   void balance(ClientId client, const nlohmann::json& message);
   void show_balance();
   void pick(ClientId client, const nlohmann::json& message);
+  /// message_text() of what may name files: those that were dropped on the page have no folder.
+  std::string page_text(const nlohmann::json& message) const;
   void tell_scene();
   void refuse(ClientId client, const nlohmann::json& message, const std::string& place,
               const std::string& reason);

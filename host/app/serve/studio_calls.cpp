@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/formulas_command.h"
+#include "app/options/option_values.h"
 #include "app/process/save_image.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
@@ -38,12 +39,6 @@ Image with_channels(const Image& image, int channels) {
   return out;
 }
 
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 }  // namespace
 
 WebAnswer Studio::answer(const WebRequest& request) {
@@ -74,9 +69,9 @@ void Studio::open_model(const std::string& name, const std::string& bytes) {
   try {
     document_.open(uploads_.keep(name, bytes));
   } catch (const SceneError& error) {
+    const std::string reason = uploads_.without_folder(error.reason);
     uploads_.forget_newest();
-    throw UsageError(
-        fmt::format("{}: {}{}{}", name, error.place, error.place.empty() ? "" : ": ", error.reason));
+    throw UsageError(fmt::format("{}: {}{}{}", name, error.place, error.place.empty() ? "" : ": ", reason));
   } catch (const std::exception&) {
     uploads_.forget_newest();
     throw;
@@ -115,24 +110,26 @@ WebAnswer Studio::picture(const std::string& format) {
           encode_image(image, name, {}, {.shot = shot_of(*scene)}), name};
 }
 
+/// A scene that no file holds as it was opened is named as the page saves it; a model that was dropped on the
+/// page has its own name, since the folder that it lies in goes with the server.
 std::string Studio::command_line() const {
-  const std::string file = document_.file().string();
+  const fs::path file = document_.file();
   std::error_code ignored;
   std::string text = "sundog render ";
-  const auto settings = settings_between(document_.opened(), document_.now(), document_.file());
-  if (settings && fs::exists(document_.file(), ignored))
-    text += quoted(file);
+  const auto settings = settings_between(document_.opened(), document_.now(), file);
+  if (!settings || !document_.is_file() || !fs::exists(file, ignored))
+    text += shell_word(file.stem().string() + ".json");
   else
-    text += quoted(document_.file().stem().string() + ".json");  // the page says: save the scene first
+    text += shell_word((uploads_.hold(file) ? file.filename() : file).string());
   text += lights_.empty() ? " -o picture.png" : " -o picture.exr --aov light_groups";
-  for (const DeviceInfo& device : setup_.picked) text += " --device " + quoted(device.spec());
-  if (split_ != "dynamic") text += " --split " + quoted(split_);
-  if (work_group_ != "auto") text += " --work-group " + quoted(work_group_);
+  for (const DeviceInfo& device : setup_.picked) text += " --device " + shell_word(device.spec());
+  if (split_ != "dynamic") text += " --split " + shell_word(split_);
+  if (work_group_ != "auto") text += " --work-group " + shell_word(work_group_);
   if (settings)
-    for (const std::string& setting : *settings) text += " --set " + quoted(setting);
+    for (const std::string& setting : *settings) text += " --set " + shell_word(setting);
   if (!lights_.empty()) {
     text += " && sundog mix picture.exr -o picture.png";
-    for (const std::string& light : lights_) text += " --light " + quoted(light);
+    for (const std::string& light : lights_) text += " --light " + shell_word(light);
   }
   return text;
 }

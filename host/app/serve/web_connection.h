@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/serve/web_socket.h"
+#include "base/numbers.h"
 
 namespace sundog {
 
@@ -16,7 +17,7 @@ inline constexpr const char* security_policy =
 
 inline RequestHead head_of(const http::request<http::string_body>& request) {
   RequestHead head;
-  head.method = std::string(request.method_string());
+  head.method = request.method() == http::verb::head ? "GET" : std::string(request.method_string());
   const std::string target(request.target());
   const std::size_t mark = target.find('?');
   head.path = target.substr(0, mark);
@@ -54,17 +55,21 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
 
   /// Answers and closes: the rest of the request is not read.
   void refuse(const Refusal& refusal) {
-    write({refusal.status, "text/plain; charset=utf-8", refusal.reason + "\n", ""}, false);
+    write({refusal.status, "text/plain; charset=utf-8", refusal.reason + "\n", ""}, false, refusal.allow);
   }
 
  private:
   void check_head() {
     const auto& request = parser_->get();
     const RequestHead head = head_of(request);
+    head_only_ = request.method() == http::verb::head;
     if (const Refusal refusal = check_request(server_.gate, head); refusal.status) return refuse(refusal);
-    if (head.path == "/ws") {
-      if (!websocket::is_upgrade(request)) return refuse({426, "wanted a WebSocket"});
+    if (head.path == socket_path) {
       if (server_.upgraded >= server_.limits.sockets) return refuse({503, "too many pages are open"});
+      if (!websocket::is_upgrade(request))
+        return refuse({426,
+                       "wanted a WebSocket; a proxy has to pass the page's on, with its headers Upgrade "
+                       "and Connection"});
       stream_.expires_never();
       return std::make_shared<WebSocket>(server_, stream_.release_socket())->accept(parser_->release());
     }
@@ -102,7 +107,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     });
   }
 
-  void write(const WebAnswer& answer, bool keep) {
+  void write(const WebAnswer& answer, bool keep, const std::string& allow = "") {
     held_.reset();
     response_ = {static_cast<http::status>(answer.status), 11};
     response_.set(http::field::content_type, answer.type);
@@ -114,10 +119,13 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     response_.set("Cross-Origin-Opener-Policy", "same-origin");
     if (!answer.file_name.empty())
       response_.set(http::field::content_disposition,
-                    fmt::format("attachment; filename=\"{}\"", answer.file_name));
+                    "attachment; filename*=UTF-8''" + percent_encoded(answer.file_name));
+    if (answer.status == 405) response_.set(http::field::allow, allow);
+    if (answer.status == 426) response_.set(http::field::upgrade, "websocket");
     response_.keep_alive(keep);
     response_.body() = answer.body;
     response_.prepare_payload();
+    if (head_only_) response_.body().clear();  // its length stands in the head
     stream_.expires_after(std::chrono::seconds(server_.limits.body_seconds));
     http::async_write(stream_, response_, [self = shared_from_this(), keep](NetError error, std::size_t) {
       if (error) return;
@@ -148,6 +156,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   http::response<http::string_body> response_;
   std::array<char, 4096> scrap_{};
   std::size_t drained_ = 0;
+  bool head_only_ = false;
 };
 
 }  // namespace sundog

@@ -36,3 +36,21 @@ TEST_CASE("gallery refuses scenes of one name, and what is no scene, and keeps t
   CHECK(result.err.find("bad.json") != std::string::npos);
   CHECK(read_file(folder / "site/index.html").find("scene.png") != std::string::npos);
 }
+
+TEST_CASE("a gallery's page finds pictures of any name, and its commands work in a shell") {
+  const CliFolder folder;
+  const std::string site = folder.file("site");
+  std::vector<std::string> command = {"gallery", site, "--size", "12x9", "-q"};
+  for (const char* name : {"run#1", "50%25", "why?", "a b", "it's"})
+    command.push_back(folder.write(std::string(name) + ".json", small_scene).string());
+  const CommandResult made = run_sundog(command);
+  CAPTURE(made.err);
+  CHECK(made.status == 0);
+  const std::string page = read_file(folder / "site/index.html");
+  for (const char* file : {"run%231.png", "50%2525.png", "why%3F.png", "a%20b.png", "it%27s.png"}) {
+    INFO(file);
+    CHECK(page.find(std::string("<a href=\"") + file + "\"><img src=\"" + file + "\"") != std::string::npos);
+  }
+  CHECK(page.find("/it'\\''s.json' -o 'it'\\''s.png'") != std::string::npos);
+  CHECK(page.find("-o 'run#1.png'") != std::string::npos);
+}

@@ -338,7 +338,13 @@ TEST_CASE("--host adds a name for a tunnel; --port and --host are checked") {
             .status == 200);
   CHECK(http(port, "GET / HTTP/1.1\r\nHost: far.example:9001\r\n\r\n").status == 421);
   CHECK(run_sundog({"serve", "--port", "70000"}).status == 2);
-  CHECK(run_sundog({"serve", "--host", "nonsense"}).status == 2);
+  for (const char* host : {"http://far.example", "far.example/", ":80", "far.example:", "far.example:0",
+                           "far.example:65536", "::1", "[::1"}) {
+    INFO(host);
+    const CommandResult refused = run_sundog({"serve", "--host", host});
+    CHECK(refused.status == 2);
+    CHECK(refused.err.find("wanted NAME or NAME:PORT") != std::string::npos);
+  }
   const CommandResult taken =
       run_sundog({"serve", (folder / "scene.json").string(), "--port", std::to_string(port)});
   CHECK(taken.status == 1);

@@ -1,8 +1,4 @@
 // The viewer's pages in a real browser: after a restart of their server, two at once, and without its token.
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -18,25 +14,6 @@
 #include "viewing.h"
 
 using nlohmann::json;
-
-namespace {
-
-/// A port that no connection is given by itself: while the server is away, the page that tries to reach it
-/// could otherwise be given the server's own port to come from, and meet itself there.
-int free_port() {
-  for (int port = 20000 + ::getpid() % 10000;; ++port) {
-    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    ::close(socket);
-    if (free) return port;
-  }
-}
-
-}  // namespace
 
 TEST_CASE("pages come back when the server is started anew, and give it their scene") {
   TemporaryFolder folder;

@@ -1,5 +1,9 @@
 // The viewer's page in a browser, with a server of its own.
 #pragma once
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -19,6 +23,21 @@ inline constexpr const char* viewer_prelude = R"(
   const settled = () => canvas.dataset.settled === 'true' && Number(canvas.dataset.version) === store.state.version
     && store.edits.idle;
 )";
+
+/// A port that no connection is given by itself: while the server is away, the page that tries to reach it
+/// could otherwise be given the server's own port to come from, and meet itself there.
+inline int free_port() {
+  for (int port = 20000 + ::getpid() % 10000;; ++port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(socket);
+    if (free) return port;
+  }
+}
 
 /// One server and one browser for all cases: each leaves the scene as it was (undo).
 struct Viewer {

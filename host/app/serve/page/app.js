@@ -62,10 +62,11 @@ function Panels() {
   </aside>`;
 }
 
-const words = {connecting: 'connecting…', no: 'no server: it is asked again…', token: 'the token is wrong: open the URL that sundog has printed'};
+const words = {connecting: 'connecting…', no: 'no server: it is asked again…', refused: 'cannot connect: it is tried again…', token: 'the token is wrong: open the URL that sundog has printed'};
 
 function StatusLine() {
   const status = useStore(store, (s) => s.status), connected = useStore(store, (s) => s.connected);
+  const refusal = useStore(store, (s) => s.refusal);
   const picture = useStore(store, (s) => s.picture);
   const [now, tick] = useState(0);
   const busy = status && !status.settled && !status.failed && status.state > 0 && status.state < 4;
@@ -77,7 +78,7 @@ function StatusLine() {
   const [began, setBegan] = useState({generation: 0, at: 0});
   if (status && began.generation !== status.generation) setBegan({generation: status.generation, at: performance.now()});
   const waited = (performance.now() - began.at) / 1000;
-  const text = connected !== 'yes' ? words[connected] : !status ? 'starting' : status.failed ? 'failed: ' + status.error
+  const text = connected !== 'yes' ? words[refusal ? 'refused' : connected] : !status ? 'starting' : status.failed ? 'failed: ' + status.error
     : status.settled ? `finished in ${seconds(status.seconds)}` : status.text + (busy && waited > 0.7 ? `, ${Math.round(waited)} s` : '');
   const rate = store.rates.length ? store.rates[store.rates.length - 1].rate : 0;
   return html`<footer class="status" data-state=${connected !== 'yes' ? connected : status?.settled ? 'settled' : status?.failed ? 'failed' : 'busy'} data-generation=${status?.generation}>
@@ -90,9 +91,10 @@ function StatusLine() {
 }
 
 function Notices() {
-  const error = useStore(store, (s) => s.error), notice = useStore(store, (s) => s.notice);
+  const refusal = useStore(store, (s) => s.refusal), error = useStore(store, (s) => s.error), notice = useStore(store, (s) => s.notice);
   const copyable = useStore(store, (s) => s.copyable), question = useStore(store, (s) => s.question);
   return html`<div class="notices">
+    ${refusal && html`<p class="toast bad" role="alert">Cannot connect: ${refusal}</p>`}
     ${error && html`<p class="toast bad" role="alert"><span>${error.at ? error.at + ': ' : ''}${error.reason}</span><${Button} kind="small" label="✕" title="Dismiss" onClick=${() => store.update({error: null})} /></p>`}
     ${notice && html`<p class="toast" role="status">${notice}</p>`}
     ${copyable && html`<${CopyDialog} copyable=${copyable} />`}

@@ -30,22 +30,30 @@ export class Link {
   }
 
   start() {
-    const socket = new WebSocket(`ws://${location.host}/ws`);
+    const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`);
+    const patience = setTimeout(() => socket.close(), 10000);  // a proxy may swallow it
+    let welcome = false;
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
-    socket.onopen = () => socket.send(this.token);
+    socket.onopen = () => {
+      clearTimeout(patience);
+      socket.send(this.token);
+    };
     socket.onmessage = (event) => {
       if (typeof event.data !== 'string') return this.takePicture(event.data);
       const message = JSON.parse(event.data);
       if (message.is === 'welcome') {
+        welcome = true;
         this.wait = 300;
         this.on.open();
       }
       this.on.message(message);
     };
-    socket.onclose = (event) => {
-      if (event.code === 1008) return this.on.closed('token');
+    socket.onclose = async (event) => {
+      clearTimeout(patience);
+      if (event.reason === 'wrong token') return this.on.closed('token');
       this.on.closed('no');
+      if (!welcome) this.on.refused(await window.refusal());
       setTimeout(() => this.start(), this.wait);
       this.wait = Math.min(3000, this.wait * 1.5);
     };

@@ -7,7 +7,7 @@ import {Link, tokenOfAddress} from './link.js';
 
 class Store {
   state = {
-    connected: 'connecting', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
+    connected: 'connecting', refusal: '', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
     resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true}, lights: [],
     schema: null, formulas: [], functions: [], selection: null, picked: null, error: null, picture: null, tab: 'build', notice: '',
     mostUpload: Infinity, models: [],  // extensions of files
@@ -44,12 +44,13 @@ class Store {
     this.link = new Link({
       open: () => {
         this.comesBack = this.state.document !== null;
-        this.update({connected: 'yes'});
+        this.update({connected: 'yes', refusal: ''});
       },
       closed: (why) => {
         this.edits.sent = null;  // whether the server has it is seen when it is there again
-        this.update({connected: why});
+        this.update({connected: why, refusal: why === 'token' ? '' : this.state.refusal});
       },
+      refused: (refusal) => this.update({refusal}),
       message: (message) => this.take(message),
       picture: (header, blob) => this.onPicture?.(header, blob),
     });

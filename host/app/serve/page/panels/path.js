@@ -49,6 +49,9 @@ function write(change) {
   store.set('/animate', all.length ? all : undefined);
 }
 
+/** As a shell reads it: in quotes where it needs them. */
+const shellWord = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+
 const without = (keys, frame) => keys.filter((key) => key.frame !== frame);
 
 /** Keeps the camera's view at that frame. */
@@ -96,6 +99,6 @@ export function CameraPath({camera, onChange}) {
         onClick=${() => onChange(withView(camera, view.position, view.target))}><span>Frame ${view.frame}</span><i>${view.position.map((v) => Number(v.toPrecision(3))).join(', ')}</i></button></div>
       <${Button} kind="small" label="✕" title=${`Remove frame ${view.frame}`} onClick=${() => write((keys) => without(keys, view.frame))} /></li>`)}</ul>
     ${other >= 0 && html`<p class="hint">/animate/${other} moves the camera too (${document.animate[other].type}): take it out of the scene to keep views.</p>`}
-    ${range && html`<p class="hint">Save the scene, then: <code>sundog render ${file.replace(/\.[^.]*$/, '')}.json -o frame.png --frames ${range}</code></p>`}
+    ${range && html`<p class="hint">Save the scene, then: <code>sundog render ${shellWord(file.replace(/\.[^.]*$/, '') + '.json')} -o frame.png --frames ${range}</code></p>`}
   </${Group}>`;
 }
