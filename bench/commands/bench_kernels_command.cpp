@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "app/process/exit_status.h"
 #include "base/clock.h"
 #include "base/environment.h"
+#include "base/error.h"
 #include "bench/commands/bench_run.h"
 #include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
@@ -99,32 +101,70 @@ std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLi
           told(figures.resident_threads),
           occupancy,
           told(figures.cold_seconds),
-          told(figures.warm_seconds)};
+          told(figures.warm_seconds),
+          ""};
 }
 
 const std::vector<Column> columns{
     {"kernel", ""},  {"group given", ""}, {"group limit", ""}, {"multiple", ""},      {"private", "B"},
     {"local", "B"},  {"registers", ""},   {"stack", "B"},      {"spill stores", "B"}, {"spill loads", "B"},
-    {"threads", ""}, {"occupancy", "%"},  {"build cold", "s"}, {"build warm", "s"}};
+    {"threads", ""}, {"occupancy", "%"},  {"build cold", "s"}, {"build warm", "s"},   {"problem", ""}};
+
+/// The row of a program, or of a device, that failed.
+std::vector<Cell> problem_row(const std::string& program, const std::string& why) {
+  std::vector<Cell> cells(columns.size());
+  cells.front() = program;
+  cells.back() = why;
+  return cells;
+}
+
+/// `work()`, at a row of the bench. Returns why it failed; "": it did not.
+std::string failure(const std::string& row, const std::function<void()>& work) {
+  std::string why = enter_row(row);
+  try {
+    if (why.empty()) work();
+  } catch (const DeviceError& error) {
+    why = error.what();
+  } catch (const BuildError& error) {
+    why = error.what();
+  }
+  enter_row("");
+  return why;
+}
 
 /// Adds frames' kernels, with and without AOVs, and those of `bench rays` where something is traced.
 void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info,
                 KnownFigures& known) {
-  const auto nvidia = Device(info).nvidia();
-  const std::size_t room = greatest_work_group(make_kernel_config(scene, info), info);
+  const std::string place = fmt::format("{} on {}", name, device_title(info));
   const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
-  Table table{fmt::format("{} on {}, {} tracer", name, device_title(info), tracer), columns, {}};
-  for (const SceneProgram& program : scene_programs(scene, info)) {
+  Table table{fmt::format("{}, {} tracer", place, tracer), columns, {}};
+  std::optional<NvidiaLimits> nvidia;
+  const std::string closed = failure(place, [&] { nvidia = Device(info).nvidia(); });
+  bool has_problem = !closed.empty();
+  if (has_problem) table.rows.push_back(problem_row("", closed));
+  const std::size_t room = greatest_work_group(make_kernel_config(scene, info), info);
+  for (const SceneProgram& program :
+       closed.empty() ? scene_programs(scene, info) : std::vector<SceneProgram>()) {
     std::vector<KernelFigures>& all_figures = known[{info.label(), program}];
-    if (all_figures.empty()) all_figures = kernel_figures(info, program);
+    const std::string why = failure(fmt::format("{}, {}", place, program.entry), [&] {
+      if (all_figures.empty()) all_figures = kernel_figures(info, program);
+    });
+    has_problem |= !why.empty();
+    if (!why.empty()) table.rows.push_back(problem_row(program.entry, why));
     for (KernelFigures figures : all_figures) {
       figures.greatest_group =
           room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
       table.rows.push_back(row(figures, nvidia));
-      std::vector<Cell> all{name, device_title(info), tracer};
-      all.insert(all.end(), table.rows.back().begin(), table.rows.back().end());
-      report.measurements.rows.push_back(std::move(all));
     }
+  }
+  for (const std::vector<Cell>& cells : table.rows) {
+    std::vector<Cell> all{name, device_title(info), tracer};
+    all.insert(all.end(), cells.begin(), cells.end());
+    report.measurements.rows.push_back(std::move(all));
+  }
+  if (!has_problem) {
+    table.columns.pop_back();
+    for (std::vector<Cell>& cells : table.rows) cells.pop_back();
   }
   report.parts.emplace_back(std::move(table));
   if (const auto& limits = nvidia)
@@ -144,7 +184,8 @@ int bench_kernels(const BenchOptions& options) {
   Report& report = run.head();
   report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
   report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
-  const std::vector<DeviceInfo> devices = run.devices();
+  std::vector<DeviceInfo> devices = run.devices();
+  std::ranges::copy(unusable_bench_devices(options), std::back_inserter(devices));
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
     for (const DeviceInfo& info : devices) {
@@ -158,7 +199,9 @@ int bench_kernels(const BenchOptions& options) {
       "build log of NVIDIA's compiler; other drivers do not report them. `build cold` is from the source, "
       "without the caches of sundog and of drivers, until the program is in sundog's cache; `build warm` "
       "loads it from there. Kernels of one program are built together. An empty cell: not known.");
-  return run.publish();
+  const int status = run.publish();
+  const bool any = std::ranges::any_of(known, [](const auto& program) { return !program.second.empty(); });
+  return any || report.measurements.rows.empty() ? status : exit_device;
 }
 
 }  // namespace

@@ -162,6 +162,24 @@ TEST_CASE("devices that crash or cannot be used are rows of --device all") {
   }
 }
 
+TEST_CASE("bench kernels has a row for a device that crashes, cannot be used, or builds no program") {
+  const CliFolder folder;
+  folder.write("vendors/pocl.icd", "libpocl.so.2\n");
+  folder.write("vendors/fake.icd", SUNDOG_FAKE_DRIVER "\n");
+  CommandOptions options;
+  options.environment = {{"OCL_ICD_VENDORS", folder.file("vendors") + "/"}};
+  const CommandResult all = run_sundog({"bench", "kernels", folder.scene, "--device", "all"}, options);
+  CAPTURE(all.out, all.err);
+  CHECK(all.status == 0);
+  for (const char* word : {"ended by signal 11", "its driver has no compiler", "render_whitted"})
+    CHECK_THAT(all.out, ContainsSubstring(word));
+  CHECK(run_sundog({"bench", "kernels", folder.scene, "--device", "crashing", "-q"}, options).status == 4);
+  const CommandResult unbuilt = run_bench({"kernels", folder.scene, "--device", "0:0"}, {}, "build@0:0#1");
+  CAPTURE(unbuilt.out, unbuilt.err);
+  CHECK(unbuilt.status == 0);
+  CHECK_THAT(unbuilt.out, ContainsSubstring("problem") && ContainsSubstring("first_surfaces"));
+}
+
 TEST_CASE("a report named - goes to the standard output, and all else to the other stream") {
   const CliFolder folder;
   const CommandResult result = run_bench(small_benches(folder)[4], {"--repeat", "1", "--json", "-"});
