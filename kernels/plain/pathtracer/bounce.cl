@@ -169,8 +169,9 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   bool going = false;
   if (!deep || may_pass) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
-  SampledSpectrum by_photons = (SampledSpectrum)(0.0f);  // last, for a GPU needs the most registers here
-  if (HAS_CAUSTICS && scatters) by_photons = gather_photons(scene, path, &arrival, ray, &at, &lobes);
+  SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
+  // After scatter(), for a GPU needs the most registers here.
+  if (scatters) by_photons = light_of_photons(scene, path, &arrival, ray, &at, &lobes);
   if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
   *light += by_photons;
   return going;

@@ -82,3 +82,10 @@ static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* pat
   }
   return light;
 }
+
+static inline SampledSpectrum light_of_photons(UNIFORM const Scene* scene, PathState* path,
+                                               const Arrival* arrival, const SceneRay* ray,
+                                               const SurfaceShading* at, const LobeSet* lobes) {
+  if (HAS_CAUSTICS) return gather_photons(scene, path, arrival, ray, at, lobes);
+  return (SampledSpectrum)(0.0f);
+}
