@@ -41,15 +41,15 @@ void append_options(std::string& options, std::string_view more, const std::stri
 
 }  // namespace
 
-std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry) {
+std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, const KernelText& text) {
   const DeviceRule& rule = rule_of(device);
-  const std::string of_entry(rule.of_entry(entry)),
+  const std::string of_program(rule.of_program(text)),
       &users = value_of(device.environment).build_options,
-      tuned = entry.starts_with("entry/render_") ? wish.tuned : std::string();
+      tuned = text.entry.starts_with("entry/render_") ? wish.tuned : std::string();
   const std::string stronger = users + " " + wish.options + " " + tuned;
   std::string options = own_options;
-  append_options(options, rule.options, stronger + " " + of_entry);
-  append_options(options, of_entry, stronger);
+  append_options(options, rule.options, stronger + " " + of_program);
+  append_options(options, of_program, stronger);
   append_options(options, tuned, users + " " + wish.options);
   append_options(options, wish.options, users);
   append_options(options, users, "");
@@ -57,10 +57,11 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, s
 }
 
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry) {
-  const std::string usual = all_build_options(device, {}, entry);
+  const KernelText text{.entry = std::string(entry)};
+  const std::string usual = all_build_options(device, {}, text);
   std::map<std::string, std::vector<std::string>> by_name;
   for (const std::string& option : words(rule_of(device).tries))
-    if (all_build_options(device, {.tuned = option}, entry) != usual)
+    if (all_build_options(device, {.tuned = option}, text) != usual)
       by_name[name_of(option)].push_back(option);
   std::vector<std::vector<std::string>> all;
   for (auto& [name, options] : by_name) all.push_back(std::move(options));
@@ -77,8 +78,8 @@ bool may_be_tuned(std::string_view options) {
 
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
   const DeviceRule& rule = rule_of(device);
-  const std::vector<std::string> own =
-      words(fmt::format("{} {} {} {}", rule.options, rule.of_tracer, rule.of_paths, rule.tries));
+  const std::vector<std::string> own = words(
+      fmt::format("{} {} {} {} {}", rule.options, rule.of_tracer, rule.of_lathes, rule.of_paths, rule.tries));
   std::string kept;
   for (const std::string& option : words(options))
     if (!option.starts_with("-cl-") || std::ranges::count(own, option) == 0)

@@ -7,6 +7,7 @@
 namespace sundog {
 
 struct DeviceInfo;
+struct KernelText;
 
 /// Settings of a device's future builds.
 struct BuildWish {
@@ -15,9 +16,9 @@ struct BuildWish {
   std::string tuned{};       // as options, for the programs of integrators alone: a tuning compared no others
 };
 
-/// All options of a build of `entry`: sundog's, the device's (device_rules.h), `wish`'s, and the user's
+/// All options of a build of `text`: sundog's, the device's (device_rules.h), `wish`'s, and the user's
 /// (HostEnvironment, such as -cl-nv-maxrregcount=64). Later ones take the place of earlier by the same name.
-std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, std::string_view entry);
+std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, const KernelText& text);
 
 /// Options that a tuning may build `entry` with on the device: a list for each name, of options and "!OPTION"
 /// that change a build. Options of different names may be combined.

@@ -159,7 +159,7 @@ ProgramSource Device::source_of(const std::string& entry, const KernelDefines& d
 
 const std::shared_ptr<ProgramRecord>* Device::find_built(const ProgramSource& source) const {
   const auto built = std::ranges::find_if(
-      programs_, [&, options = all_build_options(info_, wish_, source.text.entry)](const auto& program) {
+      programs_, [&, options = all_build_options(info_, wish_, source.text)](const auto& program) {
         return program->source.text.entry == source.text.entry &&
                program->source.identity == source.identity && program->options == options;
       });

@@ -17,16 +17,11 @@
 
 #include "device/build_options.h"
 #include "device/devices.h"
+#include "device/kernel_source.h"
 #include "device/launches.h"
 #include "device/nvidia.h"
 
 namespace sundog {
-
-/// `-D` definitions, sorted by name; part of the kernel cache's key.
-using KernelDefines = std::map<std::string, std::string>;
-
-/// Kernel files that the host generates (formulas): include path -> text.
-using GeneratedFiles = std::map<std::string, std::string>;
 
 struct BuildReport {
   bool cached = false;  // loaded from the binary cache

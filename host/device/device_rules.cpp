@@ -17,12 +17,14 @@ namespace {
 constexpr std::array rules{
     // Inlined, frames keep their structs in registers. With 128 registers a multiprocessor holds 16 warps;
     // most kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32
-    // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes.
+    // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes. With a lathe it
+    // would spill 808 bytes for that, and none with 16 warps.
     DeviceRule{.name = "nvidia",
                .reports = "NVIDIA",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
                .of_tracer = "-cl-nv-maxrregcount=64",
+               .of_lathes = "-cl-nv-maxrregcount=128",
                .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
@@ -72,9 +74,12 @@ bool DeviceRule::matches(const DeviceInfo& device) const {
           device.platform_name.find(reports) != std::string::npos);
 }
 
-std::string_view DeviceRule::of_entry(std::string_view entry) const {
-  if (entry == "entry/trace_rays.cl") return of_tracer;
-  return entry == "entry/render_path.cl" ? of_paths : std::string_view();
+std::string_view DeviceRule::of_program(const KernelText& text) const {
+  if (text.entry == "entry/render_path.cl") return of_paths;
+  if (text.entry != "entry/trace_rays.cl") return {};
+  const auto lathes = text.defines.find("HAS_LATHE");
+  const bool has_lathe = lathes != text.defines.end() && lathes->second == "1";
+  return has_lathe && !of_lathes.empty() ? of_lathes : of_tracer;
 }
 
 std::span<const DeviceRule> device_rules() { return rules; }

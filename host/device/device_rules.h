@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "device/devices.h"
+#include "device/kernel_source.h"
 
 namespace sundog {
 
@@ -17,11 +18,12 @@ struct DeviceRule {
   bool vectors = false;
   std::string_view options{};    // for its compiler; definitions that kernels have defaults for
   std::string_view of_tracer{};  // of entry/trace_rays.cl, in place of options by the same name
+  std::string_view of_lathes{};  // instead of these, if not empty, for scenes with lathes
   std::string_view of_paths{};   // of entry/render_path.cl, likewise
   std::string_view tries{};      // alternatives for `sundog tune`: options_to_try()
   bool matches(const DeviceInfo& device) const;
   /// The options that a program has in place of, or beside, the general ones.
-  std::string_view of_entry(std::string_view entry) const;
+  std::string_view of_program(const KernelText& text) const;
 };
 
 /// The last row matches every device.

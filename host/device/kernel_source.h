@@ -1,11 +1,16 @@
 // Expands kernel files to the single text that an OpenCL compiler gets.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 
-#include "device/device.h"
-
 namespace sundog {
+
+/// `-D` definitions, sorted by name; part of the kernel cache's key.
+using KernelDefines = std::map<std::string, std::string>;
+
+/// Kernel files that the host generates (formulas): include path -> text.
+using GeneratedFiles = std::map<std::string, std::string>;
 
 /// A kernel file and what it is expanded with.
 struct KernelText {

@@ -236,7 +236,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
       throw BuildError(fmt::format("{} cannot be built on {}: {}", entry, info.label(), problem), "");
   auto record = std::make_shared<ProgramRecord>();
   record->device = info;
-  record->options = all_build_options(info, wish, source.text.entry);
+  record->options = all_build_options(info, wish, source.text);
   record->key = program_key(info, record->options, source.identity);
   record->source = std::move(source);
   record->cache_file = program_cache_file(environment, record->key);
@@ -269,7 +269,7 @@ bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, cons
                        PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
   if (wants_log(environment, wish)) return false;
-  std::string key = program_key(info, all_build_options(info, wish, source.text.entry), source.identity);
+  std::string key = program_key(info, all_build_options(info, wish, source.text), source.identity);
   std::optional<CachedProgram> program = cached_program(program_cache_file(environment, key), key, prepared);
   if (program) prepared.found = {std::move(key), std::move(*program)};
   return prepared.found.has_value();
@@ -278,7 +278,7 @@ bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, cons
 bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared) {
   const HostEnvironment& environment = value_of(info.environment);
-  const std::string options = all_build_options(info, wish, source.text.entry);
+  const std::string options = all_build_options(info, wish, source.text);
   std::string key = program_key(info, options, source.identity);
   if (prepared.begun && prepared.begun->key == key) return true;
   prepared.begun.reset();

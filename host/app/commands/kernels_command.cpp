@@ -74,8 +74,9 @@ std::string write_programs(const KernelsCommand& c) {
   for (auto& [entry, defines, generated] : programs) {
     defines.emplace("DEVICE_HAS_FMA", "1");
     const auto file = std::filesystem::path(c.out) / std::filesystem::path(entry).filename();
-    write_file(file, KernelText{entry, defines, generated, environment.kernels}.expanded());
-    list += fmt::format("{} {}\n", file.string(), all_build_options(device, {}, entry));
+    const KernelText text{entry, defines, generated, environment.kernels};
+    write_file(file, text.expanded());
+    list += fmt::format("{} {}\n", file.string(), all_build_options(device, {}, text));
   }
   return list;
 }

@@ -41,14 +41,16 @@ unsigned light_room(const CompiledScene& scene) {
 }
 
 /// Faces that a ray may cross together (kernels/lib/trace/stretch.cl): up to four of each solid that touches
-/// others.
+/// others, and one of each field (kernels/lib/path/touching.cl).
 unsigned touching_room(const CompiledScene& scene) {
-  constexpr unsigned of_solid = 4;
+  constexpr unsigned of_solid = 4, of_field = 1;
   unsigned faces = 0;
   for (const Instance& instance : scene.instances) {
     if (!(instance.touch > 0)) continue;
-    const bool many = instance.shape == SHAPE_MESH || instance.shape == SHAPE_SDF;
-    faces = std::min(faces + (many ? most_touching : of_solid), most_touching);
+    const unsigned own = instance.shape == SHAPE_MESH  ? most_touching
+                         : instance.shape == SHAPE_SDF ? of_field
+                                                       : of_solid;
+    faces = std::min(faces + own, most_touching);
   }
   return std::max(faces, 1u);
 }
@@ -301,7 +303,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   }
   // Rounded up so that similar scenes share kernels.
   define("BVH_STACK", (scene.features.bvh_stack + 31u) / 32u * 32u);
-  if (!vectors) define("BVH_LEVELS", (waiting_levels(scene) + 7u) / 8u * 8u);
+  if (!vectors) define("BVH_LEVELS", (waiting_levels(scene) + 1u) / 2u * 2u);
   define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);

@@ -14,6 +14,7 @@
 typedef struct LampLight {
   SceneRay ray;           // from the surface to the lamp
   SampledSpectrum light;  // what the surface makes of it, if all arrives
+  SampledSpectrum other;  // what the path gains besides: on a GPU in memory, not in registers
   HAVING(HAS_LIGHT_GROUPS) int chosen;
   HAVING(HAS_LIGHT_PARTS) LobeShares shares;  // of the lobes that scattered it last before the camera
   HAVING(HAS_LIGHT_PARTS) bool direct;        // those are the surface's
@@ -45,7 +46,7 @@ static bool choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
   }
   if (HAS_MEDIA && below) possible *= 1.0f / (lobes->interface.eta * lobes->interface.eta);
   possible *= path->throughput;
-  lamp->light = kept_hero(scene, at, &lobes->interface, path, possible);
+  lamp->light = kept_hero(scene, at, &lobes->interface, path->wavelengths.alone, possible);
   lamp->ray = ray_to_light(scene, ray, met, at, &light, below);
   if (HAS_LIGHT_GROUPS) lamp->chosen = chosen;
   if (HAS_LIGHT_PARTS) {
@@ -85,7 +86,8 @@ static void note_sample(UNIFORM const Scene* scene, const SurfaceShading* at, co
 static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                     const LobeSet* lobes, bool cut_out, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
-  const bool chooses = HAS_GUIDES || any(lobes->diffuse != lobes->all);  // matte surfaces have one lobe
+  const bool chooses = HAS_GUIDES || any(lobes->diffuse != lobes->all) ||  // matte surfaces have one lobe
+                       any(path->depth >= (int)scene->info->roulette_depth);
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
   const float3 wo = -ray->d;
   const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
@@ -113,7 +115,7 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
       note_sample(scene, at, lobes, wo, &sample, below, path);
   }
   bool going = cut_out;
-  if (some && !cut_out) going = survives(scene, path, dimension);
+  if (some && !cut_out) going = survives(scene, path, u.w);
   if (!cut_out) ++path->depth;
   if (HAS_SHADOW_FILTERS && filtered && straight && !cut_out) ++path->passed;
   if (HAS_SHADOW_FILTERS && going &&
@@ -159,15 +161,17 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
     count(counts, COUNT_DEPTH_LIMIT);
     if (path->straight) count(counts, COUNT_CAMERA_DEPTH_LIMIT);
   }
+  const bool scatters = !deep && scattered_share(&lobes) > 0.0f;
   bool lit = false;
-  SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
-  if (!deep && scattered_share(&lobes) > 0.0f) {
-    if (scene->info->light_count > 0u) lit = choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
-    if (HAS_CAUSTICS) by_photons = gather_photons(scene, path, ray, &at, &lobes);
-  }
+  if (scene->info->light_count > 0u && scatters)
+    lit = choose_lamp(scene, path, ray, met, &at, &lobes, lamp, counts);
+  const Arrival arrival = arrival_of(path, ray);
   bool going = false;
   if (!deep || may_pass) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
   note_matte(path, &at.s, going);
+  SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
+  // After scatter(), for a GPU needs the most registers here.
+  if (scatters) by_photons = light_of_photons(scene, path, &arrival, ray, &at, &lobes);
   if (lit) *light += arriving_of_lamp(scene, path, lamp, counts);
   *light += by_photons;
   return going;
@@ -193,19 +197,19 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
     if ((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0) path->pdf = 0.0f;
     return true;
   }
-  SampledSpectrum light = (SampledSpectrum)(0.0f);
-  if (HAS_FOG) light = met_light(path, SEEN_MEDIUM, NO_LIGHT_GROUP, met_fog(scene, &met, path));
+  lamp->other = (SampledSpectrum)(0.0f);
+  if (HAS_FOG) lamp->other = met_light(path, SEEN_MEDIUM, NO_LIGHT_GROUP, met_fog(scene, &met, path));
   bool going = false;
   if (hit_anything(&met.hit)) {
-    going = reach_surface(scene, &met, path, ray, &light, lamp, counts);
+    going = reach_surface(scene, &met, path, ray, &lamp->other, lamp, counts);
   } else {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
     int group = NO_LIGHT_GROUP;
     if (HAS_LIGHT_GROUPS) group = note_suns(scene, path, ray->d);
-    light += met_light(path, SEEN_SKY, group, sky);
+    lamp->other += met_light(path, SEEN_SKY, group, sky);
     path->covered = !path->straight;
   }
-  path->radiance += light;
+  path->radiance += lamp->other;
   return going;
 }

@@ -29,14 +29,37 @@ static inline void scatter_photon(UNIFORM const Scene* scene, const SurfaceInter
   }
 }
 
-// The light of photons that the surface sends along its path.
+// A path as it comes to a surface, before that scatters it.
+typedef struct Arrival {
+  float3 wo;
+  SampledSpectrum throughput;
+  int depth;   // limited_depth()
+  bool alone;  // its hero is
+  HAVING(HAS_LIGHT_PARTS) int scatterings;
+  HAVING(HAS_LIGHT_PARTS) LobeShares shares;
+} Arrival;
+
+static inline Arrival arrival_of(const PathState* path, const SceneRay* ray) {
+  Arrival arrival;
+  arrival.wo = -ray->d;
+  arrival.throughput = path->throughput;
+  arrival.depth = limited_depth(path);
+  arrival.alone = path->wavelengths.alone;
+  if (HAS_LIGHT_PARTS) {
+    arrival.scatterings = path->scatterings;
+    arrival.shares = path->shares;
+  }
+  return arrival;
+}
+
+// The light of photons that the surface sends along its path. `ray`: any of the path.
 HAVING(HAS_CAUSTICS)
-static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* path, const SceneRay* ray,
-                                      const SurfaceShading* at, const LobeSet* lobes) {
+static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* path, const Arrival* arrival,
+                                      const SceneRay* ray, const SurfaceShading* at, const LobeSet* lobes) {
   Bsdf bsdf = at->bsdf;
   LobeSet wide = *lobes;
   keep_wide_lobes(&bsdf, &wide);
-  PhotonSearch search = search_photons(scene, &path->at, limited_depth(path), ray, &at->s);
+  PhotonSearch search = search_photons(scene, &path->at, arrival->depth, ray, &at->s);
   PhotonLight sum;
   sum.all = (float3)(0.0f);
   if (HAS_LIGHT_PARTS) {
@@ -45,16 +68,24 @@ static SampledSpectrum gather_photons(UNIFORM const Scene* scene, PathState* pat
   }
   float3 wi = (float3)(0.0f), flux = wi;
   while (next_photon(scene, &search, &wi, &flux))
-    scatter_photon(scene, &at->s, &bsdf, &wide, -ray->d, wi, flux, &sum);
+    scatter_photon(scene, &at->s, &bsdf, &wide, arrival->wo, wi, flux, &sum);
   const SampledSpectrum light =
-      kept_hero(scene, at, &lobes->interface, path,
-                path->throughput * spectrum_of(&path->wavelengths, sum.all * (1.0f / search.area)));
+      kept_hero(scene, at, &lobes->interface, arrival->alone,
+                arrival->throughput * spectrum_of(&path->wavelengths, sum.all * (1.0f / search.area)));
   if (HAS_LIGHT_PARTS) {
     const SampledSpectrum all = spectrum_of(&path->wavelengths, sum.all);
     LobeShares shares = no_lobes();
     shares.diffuse = spectrum_part(spectrum_of(&path->wavelengths, sum.diffuse), all);
     shares.transmitted = spectrum_part(spectrum_of(&path->wavelengths, sum.transmitted), all);
-    note_sent(path, &shares, false, light);
+    if (arrival->scatterings > 0) shares = arrival->shares;
+    add_scattered(path, &shares, false, light);
   }
   return light;
+}
+
+static inline SampledSpectrum light_of_photons(UNIFORM const Scene* scene, PathState* path,
+                                               const Arrival* arrival, const SceneRay* ray,
+                                               const SurfaceShading* at, const LobeSet* lobes) {
+  if (HAS_CAUSTICS) return gather_photons(scene, path, arrival, ray, at, lobes);
+  return (SampledSpectrum)(0.0f);
 }

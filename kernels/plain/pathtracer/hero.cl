@@ -37,11 +37,11 @@ static void part_wavelengths(UNIFORM const Scene* scene, const SurfaceShading* a
 
 // Light that such a surface has from a lamp: the hero's alone.
 static inline SampledSpectrum kept_hero(UNIFORM const Scene* scene, const SurfaceShading* at,
-                                        const Interface* interface, const PathState* path,
-                                        SampledSpectrum light) {
+                                        const Interface* interface, bool alone, SampledSpectrum light) {
   SampledSpectrum kept = light;
   if (HAS_DISPERSION && parts_wavelengths(scene, at, interface)) {
-    SampledWavelengths parted = path->wavelengths;
+    SampledWavelengths parted;
+    parted.alone = alone;
     terminate_secondary(&parted, &kept);
   }
   return kept;

@@ -88,7 +88,7 @@ HAVING(HAS_SCATTERING)
 static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
                                    SceneRay* ray, const MediumSegment* s, float at, UNIFORM u32* counts) {
   const int dimension = dimension_here(path, BOUNCE_DIRECTION);
-  const Numbers u = numbers_at(&path->at, dimension, true, false);
+  const Numbers u = numbers_at(&path->at, dimension, true, true);
   const float pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
   path->throughput = scattered_at(path, s, at) * (1.0f / real_max(pdf, 1e-30f));
   const Scattered here = {
@@ -108,7 +108,7 @@ static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, 
     count(counts, COUNT_DEPTH_LIMIT);
     going = false;
   }
-  if (going) going = survives(scene, path, dimension);
+  if (going) going = survives(scene, path, u.w);
   ++path->depth;
   if (going) {
     count(counts, COUNT_REFLECTION);

@@ -236,9 +236,17 @@ static inline void map_base(UNIFORM const Scene* scene, UNIFORM __global const L
   base->inner = fma(matte, m->inner_matte - m->inner_smooth, m->inner_smooth);
 }
 
+// Its members for fuzz and coat alone.
+static inline LayerBase above_base(UNIFORM __global const Layers* m, const Bsdf* bsdf) {
+  LayerBase base;
+  if (HAS_COAT_MAPS) weigh_coat(m, bsdf->coat, &base);
+  if (HAS_FUZZ_MAPS) base.fuzz = bsdf->fuzz;
+  return base;
+}
+
 static inline LayerBase base_of(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
                                 const Bsdf* bsdf) {
-  LayerBase base;
+  LayerBase base = above_base(m, bsdf);
   base.metal = m->specular.w;
   base.glass = m->glass;
   base.alpha_x = m->alpha_x;
@@ -248,7 +256,6 @@ static inline LayerBase base_of(UNIFORM const Scene* scene, UNIFORM __global con
   base.shine_scale = m->shine_scale;
   base.matte_scale = m->matte_scale;
   base.matte_scale_bare = m->matte_scale_bare;
-  if (HAS_COAT_MAPS) weigh_coat(m, bsdf->coat, &base);
   if (HAS_LAYER_MAPS) {
     base.glass = bsdf->glass;
     map_base(scene, m, bsdf->metalness, bsdf->roughness, &base);
@@ -265,7 +272,6 @@ static inline LayerBase base_of(UNIFORM const Scene* scene, UNIFORM __global con
   // Light that fuzz transmits to the ground, with mean matte_scale, is linear in its weight; below a coat
   // slightly less returns.
   if (HAS_FUZZ_MAPS) {
-    base.fuzz = bsdf->fuzz;
     if (m->fuzz.w != 0.0f) {
       const float bare = 1.0f / base.matte_scale_bare, full = 1.0f / base.matte_scale;
       base.matte_scale = 1.0f / fma(greatest(bsdf->fuzz), full - bare, bare);

@@ -140,39 +140,50 @@ static inline float3 passed_by_layers(UNIFORM const Scene* scene, const Bsdf* bs
   return passed;
 }
 
+// Fuzz and coat of layered_value(): `kept` is what they leave of the light of what lies below.
+static inline float3 coats_value(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
+                                 const Bsdf* bsdf, const LayerShare* shares, float3 wo, float3 wi, float3 h,
+                                 bool mirrored, float* kept, float* chance) {
+  const LayerBase base = above_base(m, bsdf);
+  float3 value = (float3)(0.0f);
+  *kept = 1.0f;
+  if (m->fuzz.w > 0.0f && bsdf->coated) {
+    value = along(value, diffuse_left(shares) * m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha),
+                  fuzz_color(m, &base));
+    *kept = real_min(past_fuzz(scene, m, &base, wo.z), past_fuzz(scene, m, &base, wi.z));
+    *chance += shares->fuzz * (0.5f / M_PI_F);
+  }
+  if (m->coat.w > 0.0f && bsdf->coated) {
+    const float coat_gains = coat_gain(scene, m, wo) * coat_gain(scene, m, wi);
+    const FacetLobe lobe = facet_lobe(wo, wi, h, m->coat_alpha, m->coat_alpha_y, coat_gains);
+    const float wo_h = real_clamp(dot(wo, h), 0.0f, 1.0f);
+    const float part = mend_share(interface_reflectance(wo_h, m->coat_eta), lobe.more);
+    const float coat_left = share_left(shares, m->coat_alpha, m->coat_alpha_y, mirrored);
+    const float coat = coat_weight(m, &base) * part * lobe.value * *kept * coat_left;
+    value += (float3)(coat, coat, coat);
+    *kept = real_min(past_layers(scene, m, &base, wo.z), past_layers(scene, m, &base, wi.z));
+    *chance += shares->coat * lobe.pdf;
+  }
+  return value;
+}
+
 // pi times the BSDF times the cosine of the layers between directions in the frame. Where `mirrored`, coat
 // and shine lack the share that mirror_layers() sends as a reflected ray.
 static inline float3 layered_value(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
                                    const Bsdf* bsdf, const LayerShare* shares, float3 wo, float3 wi,
                                    bool mirrored, float* pdf) {
-  const LayerBase base = base_of(scene, m, bsdf);
   const float3 h = safe_unit3(wo + wi);
+  float chance = shares->matte * wi.z * (1.0f / M_PI_F), kept;
+  const float3 value = coats_value(scene, m, bsdf, shares, wo, wi, h, mirrored, &kept, &chance);
+  const LayerBase base = base_of(scene, m, bsdf);
   const float wo_h = real_clamp(dot(wo, h), 0.0f, 1.0f);
-  float3 value = (float3)(0.0f);
-  float chance = shares->matte * wi.z * (1.0f / M_PI_F), kept = 1.0f;
-  const float diffuse = diffuse_left(shares);
-  if (m->fuzz.w > 0.0f && bsdf->coated) {
-    value = along(value, diffuse * m->fuzz.w * fuzz_lobe(wo, wi, h, m->fuzz_alpha), fuzz_color(m, &base));
-    kept = real_min(past_fuzz(scene, m, &base, wo.z), past_fuzz(scene, m, &base, wi.z));
-    chance += shares->fuzz * (0.5f / M_PI_F);
-  }
-  if (m->coat.w > 0.0f && bsdf->coated) {
-    const float coat_gains = coat_gain(scene, m, wo) * coat_gain(scene, m, wi);
-    const FacetLobe lobe = facet_lobe(wo, wi, h, m->coat_alpha, m->coat_alpha_y, coat_gains);
-    const float part = mend_share(interface_reflectance(wo_h, m->coat_eta), lobe.more);
-    const float coat_left = share_left(shares, m->coat_alpha, m->coat_alpha_y, mirrored);
-    const float coat = coat_weight(m, &base) * part * lobe.value * kept * coat_left;
-    value += (float3)(coat, coat, coat);
-    kept = real_min(past_layers(scene, m, &base, wo.z), past_layers(scene, m, &base, wi.z));
-    chance += shares->coat * lobe.pdf;
-  }
   const float gains = shine_gain(scene, m, &base, wo) * shine_gain(scene, m, &base, wi);
   const FacetLobe shine = facet_lobe(wo, wi, h, base.alpha_x, base.alpha_y, gains);
   chance += shares->shine * shine.pdf;
   const float3 color = shine_color(scene, m, &base, bsdf->base, wo_h, 1.0f, shine.more);
   const float left = share_left(shares, base.alpha_x, base.alpha_y, mirrored);
   float3 own = color * (shine.value * (left * base.shine_scale) * kept);
-  const float ground = diffuse * (1.0f - base.metal) * (1.0f - base.glass);
+  const float ground = diffuse_left(shares) * (1.0f - base.metal) * (1.0f - base.glass);
   if (ground > 0.0f) {
     const float3 matte = matte_lobe(wo, wi, bsdf->base, m->matte_roughness);
     const float through = past_shine(scene, m, &base, wo.z) * past_shine(scene, m, &base, wi.z);

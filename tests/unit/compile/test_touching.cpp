@@ -73,6 +73,15 @@ TEST_CASE("a ray of a GPU has room for four faces of each solid that touches oth
   CHECK(room(mesh, mesh, 0) == 16);
 }
 
+TEST_CASE("it has room for one face of each field that touches others") {
+  const CompiledScene flat =
+      compile(load_scene(std::string(SUNDOG_SOURCE_DIR) + "/scenes/gallery/glass_julia.json"));
+  unsigned touching = 0;
+  for (const Instance& instance : flat.instances) touching += instance.touch > 0;
+  CHECK(touching > 0);
+  CHECK(make_kernel_config(flat, typical_gpu("nvidia")).numbers.at("MOST_TOUCHING") == touching);
+}
+
 TEST_CASE("solids that only cross or lie inside of each other are not marked") {
   CHECK_FALSE(touch(box, dmat4(1), box, at({0.3, 0.4, 0.5})));
   CHECK_FALSE(touch(box, dmat4(1), BoxShape{{0.9, 0.8, 0.99}}, dmat4(1)));

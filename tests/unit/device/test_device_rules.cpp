@@ -21,7 +21,7 @@ DeviceInfo gpu(const std::string& vendor, const std::string& platform) {
 }
 
 std::string options_of(const DeviceInfo& device, const std::string& entry) {
-  return all_build_options(device, {}, "entry/" + entry + ".cl");
+  return all_build_options(device, {}, {.entry = "entry/" + entry + ".cl"});
 }
 
 }  // namespace
@@ -39,14 +39,27 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
   }
 }
 
+TEST_CASE("NVIDIA's tracer takes twice the registers for lathes, which would spill") {
+  const auto tracer = [](const DeviceInfo& device, const char* has_lathe) {
+    return all_build_options(device, {},
+                             {.entry = "entry/trace_rays.cl", .defines = {{"HAS_LATHE", has_lathe}}});
+  };
+  const DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
+  CHECK_THAT(tracer(nvidia, "0"), ContainsSubstring("-cl-nv-maxrregcount=64"));
+  CHECK_THAT(tracer(nvidia, "1"), ContainsSubstring("-cl-nv-maxrregcount=128"));
+  const DeviceInfo intel = gpu("Intel(R) Corporation", "Intel(R) OpenCL Graphics");
+  CHECK(tracer(intel, "1") == tracer(intel, "0"));
+}
+
 TEST_CASE("a tuning's options take the place of the rule's, and a user's take theirs") {
   DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
   const auto with = [&](const std::string& options) {
-    return all_build_options(nvidia, {.tuned = options}, "entry/render_path.cl");
+    return all_build_options(nvidia, {.tuned = options}, {.entry = "entry/render_path.cl"});
   };
   for (const char* entry : {"aov", "trace_photons", "light_media"})  // tune compared none of theirs
-    CHECK_THAT(all_build_options(nvidia, {.tuned = "-DNODE_LOOP=2"}, fmt::format("entry/{}.cl", entry)),
-               !ContainsSubstring("NODE_LOOP"));
+    CHECK_THAT(
+        all_build_options(nvidia, {.tuned = "-DNODE_LOOP=2"}, {.entry = fmt::format("entry/{}.cl", entry)}),
+        !ContainsSubstring("NODE_LOOP"));
   const std::string tuned = with("-cl-nv-maxrregcount=96");
   CHECK_THAT(tuned, ContainsSubstring("=96"));
   CHECK_THAT(portable_options(nvidia, tuned), !ContainsSubstring("-cl-nv"));  // where the driver refuses it
