@@ -102,7 +102,7 @@ std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLi
           occupancy,
           told(figures.cold_seconds),
           told(figures.warm_seconds),
-          ""};
+          Cell()};
 }
 
 const std::vector<Column> columns{

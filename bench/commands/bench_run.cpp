@@ -107,7 +107,11 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
     take_known(options.continue_from);
     head_.facts.emplace_back("continues", options.continue_from);
   }
-  if (const fs::path kept = kept_for_next(); fs::exists(kept)) take_known(kept.string());
+  if (const fs::path kept = kept_for_next(); fs::exists(kept)) {
+    const Table devices = known_devices_, scenes = known_scenes_;
+    take_known(kept.string());
+    known_devices_ = devices, known_scenes_ = scenes;  // the same command has the same ones
+  }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     head_.notes.push_back(why);
 }
@@ -203,7 +207,10 @@ void BenchRun::keep() {
   if (!files.json.empty() && !is_standard_stream(files.json) && !is_pipe_or_device(files.json))
     write_report(so_far(), files);
   files.json = kept_for_next().string();
-  if (!files.json.empty()) write_report(so_far(), files);
+  try {
+    if (!files.json.empty()) write_report(so_far(), files);
+  } catch (const IoError&) {  // no room: the next process measures them again
+  }
   keeping_ = clock.seconds();
   since_kept_ = {};
 }

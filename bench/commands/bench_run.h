@@ -1,9 +1,11 @@
 // One run of a bench: what was measured is on disk at once and shown at the end, however it ends.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <memory>
 
 #include "app/process/interrupt.h"
+#include "app/process/standard_streams.h"
 #include "base/arguments.h"
 #include "bench/commands/bench_options.h"
 #include "bench/commands/bench_progress.h"
@@ -67,7 +69,9 @@ Arguments* add_bench_command(Arguments& bench, Command& chosen, const std::strin
   Arguments* app = bench.add_subcommand(name, description);
   add_bench_options(app, *options, scene_needed);
   app->callback([options, run, &chosen] {
-    chosen = {.run = [options, run] { return guarded([&] { return run(*options); }); },
+    const bool reads_input =
+        std::ranges::any_of(options->scenes, [](const auto& file) { return is_standard_stream(file); });
+    chosen = {.run = [=] { return guarded([&] { return run(*options); }, reads_input); },
               .stops_on_signal = true};
   });
   return app;

@@ -8,16 +8,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
+#include <set>
 
+#include "app/process/exit_status.h"
 #include "app/process/spawn_self.h"
+#include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_file.h"
 #include "bench/commands/bench_options.h"
 
 namespace sundog {
@@ -26,7 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* folder_variable = "SUNDOG_BENCH_FOLDER";
-constexpr const char* done = "done";  // an "entered" line that no row is called by
 constexpr int poll_ms = 20;
 
 /// What the second process knows of the first.
@@ -47,17 +51,24 @@ std::string last_line(const fs::path& file) {
   return last;
 }
 
+/// How the process ended, by waitpid's status.
+struct End {
+  int status = 0;
+  bool interrupted = false;  // a signal came that asks for an end
+};
+
 /// Passes on signals that were sent to this process alone: a terminal's reach both.
-int wait_and_pass_signals(pid_t process) {
+End wait_and_pass_signals(pid_t process) {
   sigset_t set;
   ::sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&set, signal);
-  for (int status = 0;;) {
-    if (::waitpid(process, &status, WNOHANG) == process) return status;
+  for (End end;;) {
+    if (::waitpid(process, &end.status, WNOHANG) != 0) return end;
     const timespec pause{0, poll_ms * 1'000'000L};
     siginfo_t info{};
-    if (const int signal = ::sigtimedwait(&set, &info, &pause); signal > 0 && info.si_code <= 0)
-      ::kill(process, signal);
+    const int signal = ::sigtimedwait(&set, &info, &pause);
+    end.interrupted |= signal > 0;
+    if (signal > 0 && info.si_code <= 0) ::kill(process, signal);
   }
 }
 
@@ -66,18 +77,27 @@ std::string end_text(int signal) {
                      signal == SIGKILL ? ", as when memory runs out" : ", as when a driver crashes");
 }
 
-int measure_in_others(const fs::path& folder) {
+int measure_in_others(const fs::path& folder, bool reads_input) {
+  ::signal(SIGCHLD, SIG_DFL);  // where it is ignored, no process can be waited for
+  const int input = reads_input ? memory_file(standard_input()) : STDIN_FILENO;
+  std::set<std::string> crashed;
   for (;;) {
-    write_file((folder / "entered").string(), "");
+    std::ofstream(folder / "entered") << "";
+    if (reads_input) ::lseek(input, 0, SEEK_SET);
     const pid_t process =
-        spawn_self(command_line_words(), {{STDIN_FILENO, STDIN_FILENO}, {STDOUT_FILENO, STDOUT_FILENO}},
+        spawn_self(command_line_words(), {{input, STDIN_FILENO}, {STDOUT_FILENO, STDOUT_FILENO}},
                    {fmt::format("{}={}", folder_variable, folder.string())});
-    const int status = wait_and_pass_signals(process);
-    if (WIFEXITED(status)) return WEXITSTATUS(status);
-    const std::string row = last_line(folder / "entered"), why = end_text(WTERMSIG(status));
-    if (row.starts_with(done)) return std::atoi(row.c_str() + std::strlen(done));
-    if (row.empty())
-      throw DeviceError(fmt::format("{}, at no row: `sundog check` says which device does so", why));
+    const End end = wait_and_pass_signals(process);
+    if (WIFEXITED(end.status)) return WEXITSTATUS(end.status);
+    const int signal = WTERMSIG(end.status);
+    if (const std::string status = last_line(folder / "status"); !status.empty())
+      return std::atoi(status.c_str());  // only its end went wrong
+    // One that comes before the process waits for signals ends it.
+    if (end.interrupted || signal == SIGINT || signal == SIGTERM || signal == SIGHUP) return exit_interrupted;
+    const std::string row = last_line(folder / "entered"), why = end_text(signal);
+    if (row.empty() || !crashed.insert(row).second)
+      throw DeviceError(fmt::format("{}, {}: `sundog check` says which device does so", why,
+                                    row.empty() ? "at no row" : "again at " + row));
     tell(fmt::format("\nsundog: {}: {}; the others are measured\n", row, why));
     std::ofstream(folder / "crashed", std::ios::app) << row << '\n' << why << '\n';
   }
@@ -94,7 +114,7 @@ int measure_for_first(const std::function<int()>& measure, const fs::path& folde
     state.crashed[row] = why;
   state.entered.open(folder / "entered");
   const int status = measure();
-  enter_row(fmt::format("{} {}", done, status));
+  std::ofstream(folder / "status") << status << '\n';
   std::error_code failed;
   if (::getppid() != first) fs::remove_all(folder, failed);
   return status;
@@ -102,8 +122,9 @@ int measure_for_first(const std::function<int()>& measure, const fs::path& folde
 
 }  // namespace
 
-int guarded(const std::function<int()>& measure) {
-  if (const char* folder = std::getenv(folder_variable)) return measure_for_first(measure, folder);
+int guarded(const std::function<int()>& measure, bool reads_input) {
+  if (const char* folder = std::getenv(folder_variable); folder && *folder)
+    return measure_for_first(measure, folder);
   std::string name = (temporary_folder() / "sundog-bench-XXXXXX").string();
   if (!::mkdtemp(name.data())) return measure();
   const auto remove = [&](const char*) {
@@ -111,11 +132,12 @@ int guarded(const std::function<int()>& measure) {
     fs::remove_all(name, failed);
   };
   const std::unique_ptr<const char, decltype(remove)> removed(name.c_str(), remove);
-  return measure_in_others(name);
+  return measure_in_others(name, reads_input);
 }
 
-std::string enter_row(const std::string& name) {
+std::string enter_row(std::string name) {
   Guarded& state = guarded_state();
+  std::ranges::replace(name, '\n', ' ');  // of a file's name
   if (state.folder.empty()) return "";
   state.entered << name << std::endl;  // flushed: the process may end at once
   const auto crashed = state.crashed.find(name);

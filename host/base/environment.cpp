@@ -30,8 +30,8 @@ double seconds_of(const char* name, double otherwise) {
 std::filesystem::path cache_directory() {
   // The XDG specification wants a relative path ignored.
   if (const std::filesystem::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "sundog";
-  if (const std::string home = variable("HOME"); !home.empty())
-    return std::filesystem::path(home) / ".cache" / "sundog";
+  if (const std::filesystem::path home = variable("HOME"); home.is_absolute())
+    return home / ".cache" / "sundog";
   return {};
 }
 

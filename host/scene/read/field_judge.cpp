@@ -47,7 +47,9 @@ class FormulaJudge {
     const auto scale = is_changed && escapes ? FormulaEvaluator(field_).scale() : std::nullopt;
     const bool closely = is_changed && (!escapes || scale);
     size_ = glm::length(upper - lower);
-    if (is_own_ && scale && *scale > 1 && last_.estimate == EscapeEstimate::linear) judge_iterations(*scale);
+    if (last_value().json().contains("map") && scale && *scale > 1 &&
+        last_.estimate == EscapeEstimate::linear)
+      judge_iterations(*scale);
     found_ = survey_formula(field_, lower, upper, closely);
     judge_values(escapes);
     judge_domains();
@@ -61,16 +63,23 @@ class FormulaJudge {
   void judge_iterations(double scale) {
     const double wanted = std::ceil(std::log(1000 * field_.bailout / size_) / std::log(scale));
     const double thicker = field_.bailout / std::pow(scale, field_.iterations);
+    const int enough = wanted < most_iterations ? static_cast<int>(wanted) : most_iterations;
     if (!value_.json().contains("iterations"))
-      field_.iterations = std::clamp(static_cast<int>(wanted), field_.iterations, most_iterations);
+      field_.iterations = std::max(field_.iterations, enough);
     else if (thicker > 0.01 * size_)
       place("iterations")
-          .warn(fmt::format("the solid is thicker than the set by about {:.2g}: wanted {:g} or more, or no "
-                            "\"iterations\"",
-                            thicker, wanted));
+          .warn(fmt::format("the solid is thicker than the set by about {:.2g}: wanted {} or more, or a "
+                            "smaller \"bailout\"",
+                            thicker, std::max(enough, field_.iterations + 1)));
   }
 
   std::string of_points() const { return fmt::format("of {} points of its interval", found_.points); }
+
+  /// The formula, or a hybrid's last.
+  JsonValue last_value() const {
+    if (!value_.json().contains("steps")) return value_;
+    return value_.member("steps", "").items("")[field_.steps.size() - 1];
+  }
 
   JsonValue place(const char* key) const {
     return value_.json().contains(key) ? value_.member(key, "") : value_;
@@ -118,8 +127,7 @@ class FormulaJudge {
 
   /// For a map that scales, r log r / (2 dr) is longer than the distance, so that steps must be short.
   void judge_estimate() {
-    JsonValue last = value_;
-    if (value_.json().contains("steps")) last = value_.member("steps", "").items("")[field_.steps.size() - 1];
+    const JsonValue last = last_value();
     if (last_.estimate == EscapeEstimate::logarithmic && last.json().contains("map") &&
         !last.json().contains("estimate") && !has_safety_)
       last.member("map", "").warn(

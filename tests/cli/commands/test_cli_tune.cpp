@@ -120,7 +120,7 @@ TEST_CASE("settings at which the driver crashes are rejected, and the others tun
   REQUIRE(folder.render("before.exr").status == 0);
   CommandOptions options;
   options.environment["SUNDOG_FAULTS"] = "crash@0:0#25";
-  const CommandResult tuned = folder.run({folder.scene, "--device", "0:0", "--budget", "6"}, options);
+  const CommandResult tuned = folder.run({folder.scene, "--device", "0:0", "--budget", "20"}, options);
   CAPTURE(tuned.out, tuned.err);
   CHECK(tuned.status == 0);
   CHECK_THAT(tuned.out,

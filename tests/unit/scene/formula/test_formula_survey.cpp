@@ -166,6 +166,9 @@ TEST_CASE("a linear estimate has as many iterations as keep its solid thin, and 
   CHECK(few.fields.at(0).root.formula.iterations == 8);
   CHECK(says(few, "/iterations", "thicker than the set by about 0.15: wanted 12 or more"));
   CHECK(menger({{"bailout", 4}}).fields.at(0).root.formula.iterations == 8);
+  nlohmann::json half{{"type", "formula"}, {"map", "z = 2 * z - vec3(1, 0, 0)"}, {"estimate", "linear"}};
+  const auto hybrid = scene_of_formula({{"type", "hybrid"}, {"steps", {half}}});
+  CHECK(hybrid.fields.at(0).root.formula.iterations == 18);  // 1000 / 2^18 is 0.004, the interval 6.9 across
 }
 
 TEST_CASE("a map that scales is measured, and told to take the linear estimate; a power is not") {
