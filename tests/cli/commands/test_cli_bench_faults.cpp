@@ -95,12 +95,12 @@ TEST_CASE("a device that fails in timed runs is a row with its error, beside the
 
 TEST_CASE("a driver that ends the process costs the row that it was at, and the others are measured") {
   const CliFolder folder;
+  std::size_t all_measured = 0;
   const std::string file = folder.file("b.json");
   for (const auto& bench : small_benches(folder)) {
     const CommandResult result =
-        run_bench(bench, {"--repeat", "5", "--json", file, "--quiet"}, "crash@0:0#16");
+        run_bench(bench, {"--repeat", "5", "--json", file, "--quiet"}, "crash@0:0#12");
     CAPTURE(bench[0], result.out, result.err);
-    CHECK(result.status == 0);
     CHECK_THAT(result.err, ContainsSubstring("ended by signal 6 (Aborted)"));
     const json report = json::parse(sundog::read_file(file));
     CHECK(report.at("complete") == true);
@@ -111,10 +111,12 @@ TEST_CASE("a driver that ends the process costs the row that it was at, and the 
       else if (way.at("problem").get<std::string>().find("ended by signal 6") != std::string::npos)
         ++crashed;
     CHECK(crashed > 0);
-    CHECK(measured > 0);
     CHECK(crashed + measured == report.at("ways").size());
+    CHECK(result.status == (measured > 0 ? 0 : 4));  // each process may crash at its 12th launch
+    all_measured += measured;
     std::filesystem::remove(file);
   }
+  CHECK(all_measured > 0);
 }
 
 TEST_CASE("a driver that ends each process is a row, and its signal the error where there is no other") {
@@ -158,7 +160,7 @@ TEST_CASE("devices that crash or cannot be used are rows of --device all") {
     }
     CHECK(measured >= 1);
     CHECK_FALSE(crashed.empty());
-    for (const std::string& name : crashed) CHECK_THAT(name, ContainsSubstring("Fake"));
+    for (const std::string& name : crashed) CHECK_THAT(name, ContainsSubstring("crashing"));
     std::filesystem::remove(file);
   }
 }
