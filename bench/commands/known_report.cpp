@@ -47,7 +47,7 @@ MeasuredWay way_of(const json& value) {
 KnownReport read_report(const std::string& file) {
   try {
     const json report = json::parse(read_input(file));
-    if (!report.contains("bench")) throw SceneError(file, "", "is no report of `sundog bench`");
+    if (!report.contains("bench")) throw SceneError(file, "", "it is no report of sundog bench --json");
     if (report.at("schema") != 2) throw SceneError(file, "", "it has another schema; measure anew");
     KnownReport known{text_of(report.at("bench")),
                       text_of(report.at("facts").at("revision")),

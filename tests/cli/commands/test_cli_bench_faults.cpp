@@ -95,7 +95,6 @@ TEST_CASE("a device that fails in timed runs is a row with its error, beside the
 
 TEST_CASE("a driver that ends the process costs the row that it was at, and the others are measured") {
   const CliFolder folder;
-  std::size_t all_measured = 0;
   const std::string file = folder.file("b.json");
   for (const auto& bench : small_benches(folder)) {
     const CommandResult result =
@@ -113,10 +112,8 @@ TEST_CASE("a driver that ends the process costs the row that it was at, and the 
     CHECK(crashed > 0);
     CHECK(crashed + measured == report.at("ways").size());
     CHECK(result.status == (measured > 0 ? 0 : 4));  // each process may crash at its 12th launch
-    all_measured += measured;
     std::filesystem::remove(file);
   }
-  CHECK(all_measured > 0);
 }
 
 TEST_CASE("a driver that ends each process is a row, and its signal the error where there is no other") {
