@@ -16,8 +16,8 @@ struct Picture {
   const AovImages& aovs;
   const Film& film;
   std::uint64_t key = 0;  // of the scene, for a checkpoint
-  std::filesystem::path checkpoint =
-      {};                        // takes the film if `path` cannot be written; empty: none was asked for
+  // Takes the film if `path` cannot be written; empty: none was asked for.
+  std::filesystem::path checkpoint = {};
   bool checkpoint_kept = false;  // the frame is there
   std::string format = "png";    // of image_formats(), where the path is "-"
   FileOptions file = {};
