@@ -264,7 +264,8 @@ int bench_devices_command(const BenchOptions& asked) {
       "more than 0.02 (linear color) from the first device's; more than one pixel in 200 is a problem. "
       "Efficiency is the combination's frames a second over the sum of its devices' alone, by the medians.");
   for (const std::string& file : options.scenes)
-    run.measure(std::make_shared<DeviceRanking>(scene_name(file), run.compiled(file), devices, unusable));
+    run.measure(
+        std::make_shared<DeviceRanking>(scene_name(options, file), run.compiled(file), devices, unusable));
   return run.publish();
 }
 

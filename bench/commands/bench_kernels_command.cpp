@@ -189,8 +189,8 @@ int bench_kernels(const BenchOptions& options) {
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
     for (const DeviceInfo& info : devices) {
-      show_step(options, fmt::format("{} on {}", scene_name(file), info.label()));
-      if (!run.is_stopped()) add_device(report, scene_name(file), *scene, info, known);
+      show_step(options, fmt::format("{} on {}", scene_name(options, file), info.label()));
+      if (!run.is_stopped()) add_device(report, scene_name(options, file), *scene, info, known);
     }
   }
   report.notes.push_back(

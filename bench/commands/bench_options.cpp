@@ -113,7 +113,12 @@ void show_step(const BenchOptions& options, const std::string& step) {
   if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K{}", step);
 }
 
-std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+std::string scene_name(const BenchOptions& options, const std::string& file) {
+  const auto stem = [](const std::string& name) { return std::filesystem::path(name).stem().string(); };
+  const bool shared = std::ranges::any_of(
+      options.scenes, [&](const auto& other) { return other != file && stem(other) == stem(file); });
+  return shared ? file : stem(file);
+}
 
 SceneDescription bench_description(const std::string& file, const BenchOptions& options,
                                    const std::vector<std::string>& more) {

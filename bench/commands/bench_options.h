@@ -48,8 +48,9 @@ void add_bench_size(Arguments* app, BenchOptions& options);
 /// Shows the current step on stderr if that is a terminal.
 void show_step(const BenchOptions& options, const std::string& step);
 
-/// The file's name without folder and extension.
-std::string scene_name(const std::string& file);
+/// The name of one of the options' scenes: its file's without folder and extension; the whole file where
+/// another one's is the same.
+std::string scene_name(const BenchOptions& options, const std::string& file);
 
 /// Loads and compiles with the options' overrides and `more`.
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,

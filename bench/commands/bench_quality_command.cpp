@@ -190,7 +190,7 @@ int bench_quality(const QualityOptions& options) {
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes)
     for (const DeviceInfo& device : devices) {
-      plan.scene = scene_name(file);
+      plan.scene = scene_name(options, file);
       plan.device = device;
       plan.ways = quality_ways(options, file);
       plan.compile_for = [&run, file](const QualityWay& way, int samples) {

@@ -62,10 +62,10 @@ int bench_rays(const RaysOptions& options) {
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const auto scene = run.compiled(file);
-    head.facts.emplace_back(scene_name(file), describe(*scene));
+    head.facts.emplace_back(scene_name(options, file), describe(*scene));
     if (scene->info.instance_count == 0) continue;
     for (const DeviceInfo& info : devices)
-      run.measure(std::make_shared<RayTimes>(scene_name(file), scene, info, size, kinds), 0,
+      run.measure(std::make_shared<RayTimes>(scene_name(options, file), scene, info, size, kinds), 0,
                   options.no_times ? 0 : options.repeat);
   }
   return run.publish(true);

@@ -151,7 +151,7 @@ int bench_roofline(const RooflineOptions& options) {
   std::vector<TracedScene> scenes;
   for (const std::string& file : options.scenes)
     if (const auto scene = run.compiled(file); scene->info.instance_count > 0)
-      scenes.push_back({scene_name(file), scene});
+      scenes.push_back({scene_name(options, file), scene});
     else
       run.head().notes.push_back(file + ": left out: it has nothing that is traced, only marched fields");
   const std::vector<DeviceInfo> devices = run.devices();

@@ -133,7 +133,7 @@ void BenchRun::add_devices(const std::vector<DeviceInfo>& devices) {
   for (const DeviceInfo& device : devices) {
     head_.facts.emplace_back("device", device_fact(device));
     add_device_row(head_.devices, device);
-    check_known(known_devices_, head_.devices, "label", options_.continue_from);
+    check_known(known_devices_, head_.devices, {"label"}, options_.continue_from);
   }
   const auto energy = std::make_shared<EnergyMeter>(devices);
   head_.facts.emplace_back("energy", energy->source());
@@ -148,9 +148,11 @@ std::vector<DeviceInfo> BenchRun::devices() {
   return all;
 }
 
-void BenchRun::add_scene(const std::string& name, const std::string& file, const CompiledScene& scene) {
-  add_row(head_.scenes, {{"name", "", name},
+void BenchRun::add_scene(const std::string& file, const CompiledScene& scene,
+                         const std::vector<std::string>& more) {
+  add_row(head_.scenes, {{"name", "", scene_name(options_, file)},
                          {"file", "", file},
+                         {"settings", "", fmt::format("{}", fmt::join(more, " "))},
                          {"width", "pixels", static_cast<double>(scene.info.width)},
                          {"height", "pixels", static_cast<double>(scene.info.height)},
                          {"samples", "", static_cast<double>(scene.info.samples)},
@@ -158,13 +160,13 @@ void BenchRun::add_scene(const std::string& name, const std::string& file, const
                          {"integrator", "", scene.integrator},
                          {"max depth", "", static_cast<double>(scene.info.max_depth)},
                          {"hash", "", fmt::format("{:016x}", hash_scene(scene))}});
-  check_known(known_scenes_, head_.scenes, "name", options_.continue_from);
+  check_known(known_scenes_, head_.scenes, {"name", "settings"}, options_.continue_from);
 }
 
 std::shared_ptr<const CompiledScene> BenchRun::compiled(const std::string& file,
                                                         const std::vector<std::string>& more) {
   auto scene = std::make_shared<const CompiledScene>(bench_scene(file, options_, more));
-  add_scene(scene_name(file), file, *scene);
+  add_scene(file, *scene, more);
   return scene;
 }
 

@@ -25,8 +25,10 @@ class BenchRun {
   void add_devices(const std::vector<DeviceInfo>& devices);
   /// Those that the options mean, added.
   std::vector<DeviceInfo> devices();
-  /// Throws UsageError where the report to continue has measured another scene of that name.
-  void add_scene(const std::string& name, const std::string& file, const CompiledScene& scene);
+  /// `more`: the bench's own settings of the scene. Throws UsageError where the report to continue has
+  /// measured another scene of that name with the same ones.
+  void add_scene(const std::string& file, const CompiledScene& scene,
+                 const std::vector<std::string>& more = {});
   std::shared_ptr<const CompiledScene> compiled(const std::string& file,
                                                 const std::vector<std::string>& more = {});
 

@@ -281,7 +281,7 @@ int bench_samples(const SamplesOptions& options) {
       const auto compile_with = [&run, file](const std::vector<std::string>& overrides) {
         return run.compiled(file, overrides);
       };
-      run.measure(std::make_shared<SampleTimes>(SampleScaling{scene_name(file), compile_with, device,
+      run.measure(std::make_shared<SampleTimes>(SampleScaling{scene_name(options, file), compile_with, device,
                                                               sample_ways(options, counts), reference}),
                   options.budget / parts);
     }

@@ -81,9 +81,9 @@ int bench_textures(const BenchOptions& options) {
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const SceneDescription scene = bench_description(file, options);
-    run.add_scene(scene_name(file), file, compile(scene));
+    run.add_scene(file, compile(scene));
     for (const DeviceInfo& device : devices)
-      run.measure(std::make_shared<TextureCost>(scene_name(file), scene, device));
+      run.measure(std::make_shared<TextureCost>(scene_name(options, file), scene, device));
   }
   return run.publish();
 }

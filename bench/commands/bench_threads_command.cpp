@@ -92,6 +92,7 @@ PixelCost pixel_cost(const ThreadScaling& plan) {
   const int side = std::min(greatest_side, plan.sizes.front());
   const double pixels = static_cast<double>(side) * side;
   PixelCost cost;
+  if (!enter_row(plan.scene + ", a small frame").empty()) return cost;
   try {
     const CompiledScene scene = plan.compile_for(side);
     DeviceInfo part = plan.device;
@@ -286,11 +287,12 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
   std::vector<ThreadScaling> plans;
   for (const std::string& file : options.scenes) {
     ThreadScaling plan = usual;
-    plan.scene = scene_name(file);
+    plan.scene = scene_name(options, file);
     plan.compile_for = [&run, &options, file](int size) {
-      auto scene = bench_scene(file, options,
-                               {fmt::format("/image/width={}", size), fmt::format("/image/height={}", size)});
-      run.add_scene(scene_name(file), file, scene);
+      const std::vector<std::string> more{fmt::format("/image/width={}", size),
+                                          fmt::format("/image/height={}", size)};
+      auto scene = bench_scene(file, options, more);
+      run.add_scene(file, scene, more);
       return scene;
     };
     show_step(options, plan.scene + ", a small frame for the estimate");

@@ -145,7 +145,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
     const auto scene = run.compiled(file);
     for (const DeviceInfo& device : devices)
       for (const std::string& name : kernels) {
-        head.scene = scene_name(file);
+        head.scene = scene_name(options, file);
         head.device = device_title(device);
         head.name = is_frame(name) ? integrator_kernel(*scene) : name;
         const auto open = [=, rays = options.rays] {

@@ -67,23 +67,24 @@ std::string known_cell(const Table& table, const std::vector<Cell>& row, const s
   return {};
 }
 
-void check_known(const Table& known, const Table& rows, const std::string& name, const std::string& file) {
+void check_known(const Table& known, const Table& rows, const std::vector<std::string>& keys,
+                 const std::string& file) {
   const std::vector<Cell>& mine = rows.rows.back();
-  const std::string own = known_cell(rows, mine, name);
   bool any = false;
   for (const auto& row : known.rows) {
-    if (known_cell(known, row, name) != own) continue;
+    const auto same = [&](const std::string& column) {
+      return known_cell(known, row, column) == known_cell(rows, mine, column);
+    };
+    if (!std::ranges::all_of(keys, same)) continue;
     any = true;
-    const bool same = std::ranges::all_of(known.columns, [&](const Column& column) {
-      return column.name == "file" ||
-             known_cell(known, row, column.name) == known_cell(rows, mine, column.name);
-    });
-    if (same) return;
+    if (std::ranges::all_of(known.columns,
+                            [&](const Column& column) { return column.name == "file" || same(column.name); }))
+      return;
   }
   if (any)
     throw UsageError(fmt::format(
         "--continue {}: it has measured another {}; measure anew, or give the options that made it", file,
-        own));
+        known_cell(rows, mine, keys.front())));
 }
 
 }  // namespace sundog

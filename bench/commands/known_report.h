@@ -19,8 +19,9 @@ KnownReport read_report(const std::string& file);
 /// A cell of a row, by the name that the JSON has for the column; empty: there is none.
 std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column);
 
-/// Throws UsageError where `known` has rows named (by the column `name`) as the last one of `rows`, but none
-/// equal to it.
-void check_known(const Table& known, const Table& rows, const std::string& name, const std::string& file);
+/// Throws UsageError where `known` has rows that are as the last one of `rows` in the columns `keys`, the
+/// first of which names it, but none equal to it.
+void check_known(const Table& known, const Table& rows, const std::vector<std::string>& keys,
+                 const std::string& file);
 
 }  // namespace sundog

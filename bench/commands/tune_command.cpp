@@ -66,7 +66,7 @@ struct NamedScene {
 std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
   std::vector<NamedScene> scenes;
   for (const std::string& file : options.bench.scenes)
-    scenes.push_back({scene_name(file), bench_scene(file, options.bench)});
+    scenes.push_back({scene_name(options.bench, file), bench_scene(file, options.bench)});
   if (!scenes.empty()) return scenes;
   SceneDescription built_in = self_check_scene();
   built_in.image.width = 320;

@@ -242,6 +242,37 @@ TEST_CASE("a bench that is interrupted leaves its report, and another run contin
   CHECK_THAT(wrong.err, ContainsSubstring("it is of bench threads"));
 }
 
+TEST_CASE("a bench that compiles variants of a scene is continued with further ones") {
+  const CliFolder folder;
+  const std::string file = folder.file("s.json");
+  const auto samples = [&](const std::string& counts, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"--repeat", "1", "--reference", "8", "--json", file};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_bench({"samples", folder.scene, "--device", "0:0", "--size", "32x24", "--adaptive", "0.05",
+                      "--counts", counts},
+                     all);
+  };
+  REQUIRE(samples("1,2", {}).status == 0);
+  const CommandResult further = samples("1,2,4", {"--continue", file});
+  CAPTURE(further.err);
+  CHECK(further.status == 0);
+  CHECK(samples("1,2", {"--continue", file, "--set", "/render/max_depth=2"}).status == 2);
+}
+
+TEST_CASE("scenes in files of one name have their own rows in a bench") {
+  const CliFolder folder;
+  const std::string file = folder.file("d.json");
+  std::filesystem::create_directory(folder.file("other"));
+  const std::string other = folder.file("other/" + std::filesystem::path(folder.scene).filename().string());
+  std::filesystem::copy_file(folder.scene, other);
+  REQUIRE(run_bench({"devices", folder.scene, other, "--device", "0:0", "--size", "32x24"},
+                    {"--repeat", "1", "--json", file})
+              .status == 0);
+  const json report = json::parse(sundog::read_file(file));
+  CHECK(report.at("measurements").at(0).at("scene") == folder.scene);
+  CHECK(report.at("measurements").at(1).at("scene") == other);
+}
+
 TEST_CASE("bench devices measures a device and its parts, told apart by their labels") {
   const CliFolder folder;
   const std::string file = folder.file("d.json");
