@@ -105,6 +105,20 @@ void check_extent(const std::filesystem::path& path, const Model& model) {
   }
 }
 
+bool has_area(const Mesh& mesh, const glm::uvec3& triangle) {
+  const glm::vec3& v0 = mesh.positions[triangle.x];
+  return glm::cross(mesh.positions[triangle.y] - v0, mesh.positions[triangle.z] - v0) != glm::vec3(0);
+}
+
+void warn_of_unseen(Model& model) {
+  const auto unseen = std::ranges::count_if(model.meshes, [](const Mesh& mesh) {
+    return std::ranges::none_of(mesh.triangles, [&](const auto& triangle) { return has_area(mesh, triangle); });
+  });
+  if (unseen == 0) return;
+  model.warnings.push_back(fmt::format("{} of its {} mesh{} cannot be seen: no triangle there has an area",
+                                       unseen, model.meshes.size(), model.meshes.size() == 1 ? "" : "es"));
+}
+
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
@@ -124,6 +138,7 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options)
     model.for_paths = options.for_paths.value_or(model.for_paths && model.lights.empty());
     models::bring_near(model);
     check_extent(path, model);
+    warn_of_unseen(model);
     if (model.dropped_polygons > 0)
       model.warnings.push_back(fmt::format("{} face{} of one or two corners {} left out",
                                            model.dropped_polygons, model.dropped_polygons == 1 ? "" : "s",

@@ -156,9 +156,10 @@ std::string resolve_names(const json& document, std::string_view pointer) {
   std::string result;
   const json* place = &document;
   for (const std::string& token : split_pointer(pointer)) {
-    const auto index = place && place->is_array() ? item_index(*place, token) : std::nullopt;
+    auto index = place && place->is_array() ? item_index(*place, token) : std::nullopt;
+    if (place && place->is_array() && !place->empty() && token == "-") index = place->size() - 1;
     result = join_pointer(result, index ? std::to_string(*index) : token);
-    if (place) place = child_of(*place, token);
+    if (place) place = index ? &(*place)[*index] : child_of(*place, token);
   }
   return result;
 }

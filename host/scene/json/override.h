@@ -18,7 +18,7 @@ void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::jso
 /// of another form.
 void apply_override(nlohmann::json& document, std::string_view setting, const std::filesystem::path& file);
 
-/// The pointer with indices in place of items' names.
+/// The pointer with indices in place of items' names, and that of the last item in place of "-".
 std::string resolve_names(const nlohmann::json& document, std::string_view pointer);
 
 /// resolve_names() of an override's pointer.

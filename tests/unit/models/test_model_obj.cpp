@@ -79,6 +79,12 @@ TEST_CASE("OBJ faces of one or two corners are dropped and counted", "[models]")
   CHECK(model.meshes.at(0).triangles.size() == 1);
 }
 
+TEST_CASE("a model whose triangles have no area warns that it cannot be seen", "[models]") {
+  CHECK(load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 1\nf 1 2 1\n").warnings ==
+        std::vector<std::string>{"1 of its 1 mesh cannot be seen: no triangle there has an area"});
+  CHECK(load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 1\nf 1 2 3\n").warnings.empty());
+}
+
 TEST_CASE("an OBJ without faces has no mesh", "[models]") {
   CHECK(load_text("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n").meshes.empty());
 }

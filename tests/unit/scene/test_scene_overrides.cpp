@@ -59,6 +59,8 @@ TEST_CASE("an override's value is JSON, or else a string") {
   check_error("/camera/fov=\xff", "/camera/fov", "wanted a number, found the string \"\xEF\xBF\xBD\"");
   const SceneError last = error_of(scene, {"/camera/fov=30", "/camera/fov=wide"});
   CHECK_THAT(last.reason, ContainsSubstring("(changed by the setting /camera/fov=wide)"));
+  const SceneError added = error_of(scene, {R"(/lights/-={"type": "lamp"})"});
+  CHECK_THAT(added.reason, ContainsSubstring("(changed by the setting /lights/-="));
 }
 
 TEST_CASE("escapes lead an override to keys with / and ~") {
