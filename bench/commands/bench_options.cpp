@@ -126,7 +126,7 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
   if (!options.size.empty())
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  return load_beside(options.all(), [&] {
+  return load_and_check_outputs(options.all(), [&] {
     return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
   });
 }

@@ -20,12 +20,6 @@
 namespace sundog {
 namespace {
 
-int run(const Command& command) {
-  if (command.in_first_thread) return command.run();
-  if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
-  return std::async(std::launch::async, command.run).get();
-}
-
 int run_command_line(int argc, char** argv) {
   // All processes of a job have the same command line: its errors are reported once.
   Command command;
@@ -36,7 +30,9 @@ int run_command_line(int argc, char** argv) {
   // mpirun ends a job at the first rank that fails, and may lose what another prints then: rank 0 alone
   // fails.
   if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
-  const int status = run(command);
+  if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
+  const int status =
+      command.in_first_thread ? command.run() : std::async(std::launch::async, command.run).get();
   flush_standard_output();
   return status;
 }

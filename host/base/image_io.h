@@ -57,6 +57,11 @@ bool drops_alpha(const std::filesystem::path& path);
 /// Whether a file of this name is a PNG.
 bool is_png(const std::filesystem::path& path);
 
+/// The channels that a file of this name keeps of a frame: 3, or 4 with coverage.
+inline int image_channels(const std::filesystem::path& path, bool transparent) {
+  return drops_alpha(path) && !(transparent && is_png(path)) ? 3 : 4;
+}
+
 /// Whether a file of this name shows colours as a screen does, sRGB from 0 to 1: .png, .jpg, .jpeg.
 bool is_for_screens(const std::filesystem::path& path);
 

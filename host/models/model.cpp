@@ -112,7 +112,8 @@ bool has_area(const Mesh& mesh, const glm::uvec3& triangle) {
 
 void warn_of_unseen(Model& model) {
   const auto unseen = std::ranges::count_if(model.meshes, [](const Mesh& mesh) {
-    return std::ranges::none_of(mesh.triangles, [&](const auto& triangle) { return has_area(mesh, triangle); });
+    return std::ranges::none_of(mesh.triangles,
+                                [&](const auto& triangle) { return has_area(mesh, triangle); });
   });
   if (unseen == 0) return;
   model.warnings.push_back(fmt::format("{} of its {} mesh{} cannot be seen: no triangle there has an area",

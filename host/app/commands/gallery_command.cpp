@@ -77,8 +77,7 @@ void make_folder(const std::string& folder) {
 std::vector<std::string> overrides_of(const GalleryOptions& options) {
   std::vector<std::string> all;
   if (!options.size.empty()) all = parse_image_size(options.size);
-  if (!options.samples.empty())
-    all.push_back(fmt::format("/render/samples={}", parse_number("--samples", options.samples, 1, 65536)));
+  if (!options.samples.empty()) all.push_back(render_setting("--samples", "samples", options.samples));
   return all;
 }
 
@@ -101,7 +100,7 @@ std::vector<std::string> output_files(const GalleryOptions& options) {
 GalleryPicture make_picture(const GalleryOptions& options, const std::string& scene, RenderSession& session) {
   LoadOptions load;
   load.outside_files = options.outside_files;
-  const SceneDescription description = load_beside(
+  const SceneDescription description = load_and_check_outputs(
       output_files(options), [&] { return load_scene(scene, overrides_of(options), with_streams(load)); });
   if (!options.quiet) print_warnings(description.warnings);
   const auto flat = std::make_shared<const CompiledScene>(compile(description));

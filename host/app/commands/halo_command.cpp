@@ -15,7 +15,6 @@
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
-#include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
@@ -53,7 +52,7 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
     if (!options.overrides.empty()) throw UsageError("--set changes a scene: wanted a SCENE with it");
     return usual_halo();
   }
-  const SceneDescription scene = load_beside({options.picture.out}, [&] {
+  const SceneDescription scene = load_and_check_outputs({options.picture.out}, [&] {
     return load_scene(options.scene, options.overrides,
                       with_streams({.outside_files = options.outside_files}));
   });

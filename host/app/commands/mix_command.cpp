@@ -13,7 +13,6 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/options/picture_options.h"
-#include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/names.h"

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/numbers.h"
+#include "scene/json/schema.h"
 
 namespace sundog {
 namespace {
@@ -32,21 +33,24 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
-/// The options that are numbers of a ToneMap: the limits are the schema's.
+/// The options that are numbers of a ToneMap.
 struct ToneOption {
   const char *option, *key;
   std::string PictureOptions::* typed;
   double ToneMap::* value;
-  double low, high;
 };
 
 constexpr ToneOption tone_options[] = {
-    {"--exposure", "exposure", &PictureOptions::exposure, &ToneMap::exposure, -32, 32},
-    {"--white-balance", "white_balance", &PictureOptions::white_balance, &ToneMap::white_balance, least_white,
-     greatest_white},
-    {"--contrast", "contrast", &PictureOptions::contrast, &ToneMap::contrast, 0.25, 4},
-    {"--vignette", "vignette", &PictureOptions::vignette, &ToneMap::vignette, 0, 1},
-    {"--bloom", "bloom", &PictureOptions::bloom, &ToneMap::bloom, 0, 1}};
+    {"--exposure", "exposure", &PictureOptions::exposure, &ToneMap::exposure},
+    {"--white-balance", "white_balance", &PictureOptions::white_balance, &ToneMap::white_balance},
+    {"--contrast", "contrast", &PictureOptions::contrast, &ToneMap::contrast},
+    {"--vignette", "vignette", &PictureOptions::vignette, &ToneMap::vignette},
+    {"--bloom", "bloom", &PictureOptions::bloom, &ToneMap::bloom}};
+
+/// The schema's limits of a number in a section of a scene.
+Range limits_of(const char* section, const char* key, SchemaRule::Type type) {
+  return schema_rule(section)->keys.at(key).rule->as(type)->range;
+}
 
 }  // namespace
 
@@ -60,8 +64,10 @@ ToneMap parse_tone_map(const PictureOptions& picture) {
   map.automatic = picture.exposure == "auto";
   for (const ToneOption& one : tone_options)
     if (const std::string& typed = picture.*one.typed;
-        !typed.empty() && !(map.automatic && &typed == &picture.exposure))
-      map.*one.value = parse_real(one.option, typed, one.low, one.high);
+        !typed.empty() && !(map.automatic && &typed == &picture.exposure)) {
+      const Range limits = limits_of("tone_map", one.key, SchemaRule::Type::number);
+      map.*one.value = parse_real(one.option, typed, limits.low, limits.high);
+    }
   return map;
 }
 
@@ -82,6 +88,12 @@ int parse_number(const char* option, const std::string& text, int low, int high)
   if (!value)
     throw UsageError(fmt::format("{} {}: wanted a whole number from {} to {}", option, text, low, high));
   return *value;
+}
+
+std::string render_setting(const char* option, const char* key, const std::string& text) {
+  const Range limits = limits_of("render", key, SchemaRule::Type::integer);
+  return fmt::format("/render/{}={}", key,
+                     parse_number(option, text, static_cast<int>(limits.low), static_cast<int>(limits.high)));
 }
 
 WorkGroup parse_work_group(const std::string& text, const char* option) {

@@ -15,6 +15,9 @@ namespace sundog {
 /// A whole number from `low` to `high`.
 int parse_number(const char* option, const std::string& text, int low, int high);
 
+/// A whole number as an override of the scene's render section, within the schema's limits of that key.
+std::string render_setting(const char* option, const char* key, const std::string& text);
+
 /// "64", "8x8", "auto" or "driver".
 WorkGroup parse_work_group(const std::string& text, const char* option = "--work-group");
 

@@ -13,6 +13,7 @@
 
 #include "app/options/option_values.h"
 #include "app/process/standard_streams.h"
+#include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
 
@@ -122,6 +123,20 @@ void check_not_read(const std::vector<std::string>& outputs, const std::vector<R
     throw UsageError(fmt::format("{}: {}is read, and would be written over: give the output another name",
                                  output, link ? "is a link to " + name + ", which " : ""));
   }
+}
+
+void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file) {
+  if (drops_alpha(path) || file.color == ExrColor::full) return;
+  const auto channels = static_cast<std::size_t>(image.channels);
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < image.data.size(); i += channels)
+    cut +=
+        std::any_of(&image.data[i], &image.data[i] + 3, [](float v) { return std::abs(v) > greatest_half; });
+  if (cut > 0)
+    print_warnings(
+        {{fmt::format("{}: {} pixels are brighter than {}, the most that half floats hold, and are "
+                      "cut off there: write 32-bit floats with --float",
+                      path.string(), cut, greatest_half)}});
 }
 
 }  // namespace sundog

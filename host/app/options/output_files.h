@@ -19,6 +19,9 @@ inline bool dithers(const PictureOptions& picture) { return !picture.no_dither &
 /// How that file is written.
 FileOptions file_options(const PictureOptions& picture);
 
+/// Warns of colours that an EXR of halves cuts off.
+void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
+
 /// The AOVs that a frame makes: those asked for, and those that the denoiser wants.
 std::vector<std::string> made_aovs(const RenderCommand& command);
 
@@ -38,7 +41,7 @@ void check_not_read(const std::vector<std::string>& outputs, const std::vector<R
 
 /// Returns load(). Throws UsageError if it read one of the outputs.
 template <class Load>
-auto load_beside(const std::vector<std::string>& outputs, const Load& load) {
+auto load_and_check_outputs(const std::vector<std::string>& outputs, const Load& load) {
   const ReadLog log;
   auto loaded = load();
   check_not_read(outputs, log.files());

@@ -32,15 +32,12 @@ struct TypedRender {
 std::vector<std::string> collect_overrides(const TypedRender& typed) {
   std::vector<std::string> all;
   if (!typed.size.empty()) all = parse_image_size(typed.size);
-  if (!typed.samples.empty())
-    all.push_back(fmt::format("/render/samples={}", parse_number("--samples", typed.samples, 1, 65536)));
+  if (!typed.samples.empty()) all.push_back(render_setting("--samples", "samples", typed.samples));
   if (typed.seed == "frame")
     all.emplace_back("/render/seed=frame");
   else if (!typed.seed.empty())
-    all.push_back(fmt::format("/render/seed={}", parse_number("--seed", typed.seed, 0, 2147483647)));
-  if (!typed.max_depth.empty())
-    all.push_back(
-        fmt::format("/render/max_depth={}", parse_number("--max-depth", typed.max_depth, 1, 65536)));
+    all.push_back(render_setting("--seed", "seed", typed.seed));
+  if (!typed.max_depth.empty()) all.push_back(render_setting("--max-depth", "max_depth", typed.max_depth));
   const Integrator* named = find_integrator(typed.integrator);
   if (typed.caustics && !typed.integrator.empty() && !(named && named->photons))
     throw UsageError(fmt::format("--caustics: photons are for --integrator path, not {}", typed.integrator));

@@ -12,12 +12,12 @@
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/environment.h"
-#include "app/process/save_image.h"
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "app/render/draft.h"
 #include "app/render/render_result.h"
+#include "app/render/save_image.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "bench/runs/energy.h"
@@ -166,7 +166,7 @@ LoadOptions load_options(const RenderCommand& command) {
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
                              TimeLedger& times) {
   LoadedScene scene;
-  scene.description = timed(times.load, [&] { return load_beside(output_files(command), load); });
+  scene.description = timed(times.load, [&] { return load_and_check_outputs(output_files(command), load); });
   scene.flat = timed(times.compile_scene, [&] {
     trace_halo(command, scene.description, setup);
     return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)

@@ -82,7 +82,7 @@ std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
   for (const int frame : command.frames)
     for (std::string& file : output_files(frame_command(command, frame))) outputs.push_back(std::move(file));
   auto frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
-  print_warnings(load_beside(outputs, [&] { return frames->check(command.frames); })->warnings);
+  print_warnings(load_and_check_outputs(outputs, [&] { return frames->check(command.frames); })->warnings);
   return frames;
 }
 

@@ -4,7 +4,6 @@
 
 #include "app/commands/formulas_command.h"
 #include "app/options/option_values.h"
-#include "app/process/save_image.h"
 #include "app/serve/folder.h"
 #include "app/serve/messages.h"
 #include "app/serve/page_files.h"

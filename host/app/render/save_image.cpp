@@ -1,5 +1,5 @@
 // Writes the image; if the disk fails, keeps a checkpoint, or the image in the temporary folder.
-#include "app/process/save_image.h"
+#include "app/render/save_image.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
+#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
-#include "app/process/warnings.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "render/film/checkpoint.h"
@@ -76,20 +75,6 @@ void save(const Picture& picture, const fs::path& path, const char* what, const 
 }
 
 }  // namespace
-
-void warn_of_halves(const fs::path& path, const Image& image, const FileOptions& file) {
-  if (drops_alpha(path) || file.color == ExrColor::full) return;
-  const auto channels = static_cast<std::size_t>(image.channels);
-  std::size_t cut = 0;
-  for (std::size_t i = 0; i < image.data.size(); i += channels)
-    cut +=
-        std::any_of(&image.data[i], &image.data[i] + 3, [](float v) { return std::abs(v) > greatest_half; });
-  if (cut > 0)
-    print_warnings(
-        {{fmt::format("{}: {} pixels are brighter than {}, the most that half floats hold, and are "
-                      "cut off there: write 32-bit floats with --float",
-                      path.string(), cut, greatest_half)}});
-}
 
 void save_image(Picture picture, const fs::path& path) {
   picture.image =

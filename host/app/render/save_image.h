@@ -25,14 +25,6 @@ struct Picture {
   bool dithered = true;
 };
 
-/// The channels that a file of this name keeps of a frame: 3, or 4 with coverage.
-inline int image_channels(const std::filesystem::path& path, bool transparent) {
-  return drops_alpha(path) && !(transparent && is_png(path)) ? 3 : 4;
-}
-
-/// Warns of colours that an EXR of halves cuts off.
-void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
-
 /// Writes the image as a file of its name shows it (shown_in()) to `path`; "-" is the standard output. Warns
 /// of colours that the file cuts off. When that fails the frame is kept as a checkpoint, or as an image in
 /// the folder for temporary files: IoError says what happened and where it is.
