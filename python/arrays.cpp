@@ -72,9 +72,9 @@ sundog::Image image_of(const PixelsIn& pixels) {
   return {int(pixels.shape(1)), int(pixels.shape(0)), channels, std::span(pixels.data(), pixels.size())};
 }
 
-void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& positions,
-              const Indices& triangles, const std::optional<Floats3>& normals,
-              const std::optional<Floats2>& uvs, const std::optional<Floats3>& colors) {
+void add_mesh(OwnScene& scene, const std::string& name, const Floats3& positions, const Indices& triangles,
+              const std::optional<Floats3>& normals, const std::optional<Floats2>& uvs,
+              const std::optional<Floats3>& colors) {
   sundog::MeshView mesh{.positions = groups<3>(positions), .triangles = groups<3>(triangles)};
   if (normals) mesh.normals = groups<3>(*normals);
   if (uvs) mesh.uvs = groups<2>(*uvs);
@@ -83,6 +83,7 @@ void add_mesh(sundog::Scene& scene, const std::string& name, const Floats3& posi
   mesh.owner = std::shared_ptr<const HeldArrays>(
       new HeldArrays{positions, triangles, normals, uvs, colors, nullptr}, let_go);
   scene.add_mesh(name, mesh);
+  ++scene.edits;
   free_let_go(nullptr);
 }
 
@@ -96,11 +97,32 @@ std::string json_of(nb::handle value) {
 
 nb::object value_of(const std::string& json) { return nb::module_::import_("json").attr("loads")(json); }
 
+namespace {
+
 sundog::Scene scene_of(nb::handle value) {
-  if (nb::isinstance<sundog::Scene>(value)) return nb::cast<sundog::Scene&>(value);
+  if (nb::isinstance<OwnScene>(value)) {
+    if (!nb::inst_ready(value)) throw nb::type_error("sundog.Scene: its __init__() was not called");
+    return nb::cast<OwnScene&>(value);
+  }
   if (nb::isinstance<nb::dict>(value)) return sundog::Scene::from_json(json_of(value));
   const nb::bytes file(nb::module_::import_("os").attr("fsencode")(value));
-  return sundog::Scene::load(std::string(file.c_str(), file.size()));
+  const std::string name(file.c_str(), file.size());
+  const Unlocked unlocked;
+  return sundog::Scene::load(name);
+}
+
+}  // namespace
+
+SceneInUse::SceneInUse(nb::handle value) : copy_(scene_of(value)) {
+  if (!nb::isinstance<OwnScene>(value)) return;
+  owner_ = nb::borrow(value);
+  edits_ = nb::cast<OwnScene&>(value).edits;
+}
+
+SceneInUse::~SceneInUse() {
+  if (!owner_.is_valid()) return;
+  auto& own = nb::cast<OwnScene&>(owner_);
+  if (own.edits == edits_) static_cast<sundog::Scene&>(own) = std::move(copy_);
 }
 
 std::vector<sundog::Device> devices_of(nb::handle value) {
@@ -112,8 +134,13 @@ std::vector<sundog::Device> devices_of(nb::handle value) {
   for (const nb::handle item : nb::iter(value))
     if (nb::isinstance<nb::str>(item))
       specs.push_back(nb::cast<std::string>(item));
-    else
+    else if (nb::isinstance<sundog::Device>(item))
       devices.push_back(nb::cast<sundog::Device>(item));
+    else
+      throw nb::type_error(
+          ("devices: wanted a sundog.Device, a text such as \"cpu\", or a list of these, found " +
+           nb::cast<std::string>(nb::repr(item)))
+              .c_str());
   if (!specs.empty())
     for (sundog::Device& device : sundog::choose_devices(specs)) devices.push_back(std::move(device));
   return devices;

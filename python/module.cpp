@@ -12,7 +12,7 @@
 #include "values.h"
 
 using namespace sundog;
-using Unlocked = nb::call_guard<nb::gil_scoped_release>;
+using WithoutLock = nb::call_guard<Unlocked>;
 
 namespace {
 
@@ -61,9 +61,11 @@ void add_error(nb::module_& m) {
       type);
 }
 
-nb::bytes png_of(const Image& image) {
+/// None where no PNG holds its channels: a notebook then shows its text.
+nb::object png_of(const Image& image) {
+  if (image.channels() < 3) return nb::none();
   const std::string bytes = [&] {
-    nb::gil_scoped_release release;
+    const Unlocked unlocked;
     return image.encode("png");
   }();
   return nb::bytes(bytes.data(), bytes.size());
@@ -105,7 +107,7 @@ Film render_scene(nb::handle scene, nb::handle devices, const std::vector<std::s
                   std::optional<std::pair<unsigned, unsigned>> work_group, int tile, double time_limit,
                   std::function<nb::object(std::uint64_t, std::uint64_t, double)> on_progress,
                   std::function<void(Image)> on_picture, double picture_seconds) {
-  const Scene copy = scene_of(scene);  // other threads may change theirs meanwhile
+  const SceneInUse used(scene);
   std::stop_source stop;
   RenderOptions options{.devices = devices_of(devices), .aovs = aovs, .tile = tile, .time_limit = time_limit};
   if (work_group) options.work_group = {.x = work_group->first, .y = work_group->second};
@@ -121,19 +123,20 @@ Film render_scene(nb::handle scene, nb::handle devices, const std::vector<std::s
       on_picture(image);
     };
   options.picture_seconds = picture_seconds;
-  return interruptible([&] { return render(copy, options); }, [&] { stop.request_stop(); });
+  return interruptible([&] { return render(used.scene(), options); }, [&] { stop.request_stop(); });
 }
 
 /// A session that ends without the interpreter's lock: it waits for its threads. The lock is let go of before
 /// the last base goes, and taken again behind it.
-struct WithoutLock {
+struct ReleasedAtEnd {
+  std::optional<Call> call;
   std::optional<nb::gil_scoped_release> released;
 };
-struct OpenSession : private WithoutLock, public Session {
+struct OpenSession : private ReleasedAtEnd, public Session {
   using Session::Session;
   OpenSession(const OpenSession&) = delete;
   OpenSession& operator=(const OpenSession&) = delete;
-  ~OpenSession() { released.emplace(); }
+  ~OpenSession() { call.emplace(), released.emplace(); }
 };
 
 void add_images(nb::module_& m) {
@@ -151,7 +154,7 @@ void add_images(nb::module_& m) {
       .def_ro("usable", &Device::usable)
       .def_ro("problem", &Device::problem, "Why it is not usable.")
       .def("__repr__", [](const Device& device) { return "<sundog.Device " + device.label + ">"; });
-  m.def("devices", &devices, Unlocked(), "Every device, the broken ones too.");
+  m.def("devices", &devices, WithoutLock(), "Every device, the broken ones too.");
   m.def(
       "choose_devices",
       [](nb::handle specs) { return specs.is_none() ? choose_devices() : devices_of(specs); },
@@ -178,22 +181,29 @@ void add_images(nb::module_& m) {
       .def(
           "tone_mapped",
           [](const Image& image, const std::string& curve, double exposure, double white_balance) {
+            const Unlocked unlocked;
             return image.tone_mapped({curve, exposure, white_balance});
           },
           nb::arg("curve") = "none", nb::arg("exposure") = 0.0, nb::arg("white_balance") = 0.0)
       .def_static(
           "load", [](const std::filesystem::path& file) { return Image::load(file); }, nb::arg("file"),
-          Unlocked())
+          WithoutLock())
       .def(
           "save", [](const Image& image, const std::filesystem::path& file) { image.save(file); },
-          nb::arg("file"), Unlocked(), "Writes .png .jpg .exr .hdr or .pfm.")
+          nb::arg("file"), WithoutLock(), "Writes .png .jpg .exr .hdr or .pfm.")
       .def("_repr_png_", &png_of);
   nb::class_<Film>(m, "Film", "A finished or stopped render.")
       .def_prop_ro("width", &Film::width)
       .def_prop_ro("height", &Film::height)
       .def_prop_ro("complete", &Film::complete, "False: stopped, or out of time.")
       .def_prop_ro("image", &Film::image, "Linear RGBA; alpha is coverage.")
-      .def_prop_ro("shown", &Film::shown, "The image after the scene's tone map.")
+      .def_prop_ro(
+          "shown",
+          [](const Film& film) {
+            const Unlocked unlocked;
+            return film.shown();
+          },
+          "The image after the scene's tone map.")
       .def("aov", &Film::aov, nb::arg("name"))
       .def_prop_ro("aovs", &Film::aovs)
       .def_prop_ro(
@@ -201,52 +211,67 @@ void add_images(nb::module_& m) {
       .def_prop_ro("warnings", [](const Film& film) { return texts_of(film.warnings()); })
       .def(
           "save", [](const Film& film, const std::filesystem::path& file) { film.save(file); },
-          nb::arg("file"), Unlocked(), "As `sundog render -o` does.")
+          nb::arg("file"), WithoutLock(), "As `sundog render -o` does.")
       .def("_repr_png_", [](const Film& film) { return png_of(film.shown()); });
 }
 
 void add_scene(nb::module_& m) {
-  nb::class_<Scene>(m, "Scene",
-                    "A JSON document (docs/reference/scene-reference.md), with meshes from memory.")
+  nb::class_<OwnScene>(m, "Scene",
+                       "A JSON document (docs/reference/scene-reference.md), with meshes from memory.")
       .def(
           "__init__",
-          [](Scene* self, nb::handle source) {
-            new (self) Scene(source.is_none() ? Scene() : scene_of(source));
+          [](OwnScene* self, nb::handle source) {
+            if (source.is_none())
+              new (self) OwnScene();
+            else
+              new (self) OwnScene(SceneInUse(source).scene());
           },
           nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
       .def_static(
           "load",
           [](const std::filesystem::path& file, std::optional<double> frame, bool native_code,
              bool outside_files, std::array<int, 2> size) {
-            return Scene::load(
+            const Unlocked unlocked;
+            return OwnScene(Scene::load(
                 file,
-                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size});
+                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size}));
           },
           nb::arg("file"), nb::arg("frame") = nb::none(), nb::arg("native_code") = false,
           nb::arg("outside_files") = false, nb::arg("size") = std::array{0, 0},
           "A scene or model file; `size` is the picture's (width, height), which a model's camera fits.")
-      .def("to_dict", [](const Scene& scene) { return value_of(scene.to_json()); })
+      .def("to_dict", [](const OwnScene& scene) { return value_of(scene.to_json()); })
       .def(
-          "__getitem__", [](const Scene& scene, const std::string& at) { return value_of(scene.get(at)); },
+          "__getitem__", [](const OwnScene& scene, const std::string& at) { return value_of(scene.get(at)); },
           "The value at a JSON pointer: scene[\"/camera/fov\"].")
       .def(
           "__setitem__",
-          [](Scene& scene, const std::string& at, nb::handle value) { scene.set(at, json_of(value)); },
+          [](OwnScene& scene, const std::string& at, nb::handle value) {
+            scene.set(at, json_of(value)), ++scene.edits;
+          },
           nb::arg("at"), nb::arg("value").none())
-      .def("__delitem__", [](Scene& scene, const std::string& at) { scene.remove(at); })
-      .def("__contains__", &Scene::contains)
-      .def("__copy__", [](const Scene& scene) { return Scene(scene); })
-      .def("__deepcopy__", [](const Scene& scene, nb::handle) { return Scene(scene); })
-      .def("copy", [](const Scene& scene) { return Scene(scene); })
+      .def("__delitem__", [](OwnScene& scene, const std::string& at) { scene.remove(at), ++scene.edits; })
+      .def("__contains__", [](const OwnScene& scene, std::string_view at) { return scene.contains(at); })
+      .def("__copy__", [](const OwnScene& scene) { return OwnScene(scene); })
+      .def("__deepcopy__", [](const OwnScene& scene, nb::handle) { return OwnScene(scene); })
+      .def("copy", [](const OwnScene& scene) { return OwnScene(scene); })
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
            nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
            "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. "
            "Arrays of float32 and uint32 in C order are held, not copied: leave them as they are.")
       .def(
-          "add", [](Scene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)); },
+          "add",
+          [](OwnScene& scene, nb::handle object) { scene.set("/objects/-", json_of(object)), ++scene.edits; },
           nb::arg("object"), "Appends a dict to the objects.")
       .def(
-          "check", [](const Scene& scene) { return texts_of(scene.check()); },
+          "check",
+          [](nb::handle self) {
+            const SceneInUse used(self);
+            const std::vector<std::string> warnings = [&] {
+              const Unlocked unlocked;
+              return used.scene().check();
+            }();
+            return texts_of(warnings);
+          },
           "Reads the whole scene; returns warnings, raises Error.");
 }
 
@@ -276,65 +301,54 @@ void add_session(nb::module_& m) {
       .def(
           "start",
           [](OpenSession& session, nb::handle scene, bool coarse, double patience) {
-            const Scene copy = scene_of(scene);
-            const nb::gil_scoped_release release;
-            return session.start(copy, {.coarse = coarse, .patience = patience});
+            const SceneInUse used(scene);
+            const Unlocked unlocked;
+            return session.start(used.scene(), {.coarse = coarse, .patience = patience});
           },
           nb::arg("scene"), nb::arg("coarse") = true, nb::arg("patience") = 0.15,
           "Draws this scene from now on.")
       .def(
-          "cancel", [](OpenSession& session) { session.cancel(); }, Unlocked())
+          "cancel", [](OpenSession& session) { session.cancel(); }, WithoutLock())
       .def(
           "use_devices",
           [](OpenSession& session, nb::handle devices) {
             const std::vector<Device> chosen = devices_of(devices);
-            const nb::gil_scoped_release release;
+            const Unlocked unlocked;
             session.use_devices(chosen);
           },
           nb::arg("devices").none())
       .def(
           "snapshot", [](const OpenSession& session, bool picture) { return session.snapshot(picture); },
-          nb::arg("picture") = true, Unlocked())
+          nb::arg("picture") = true, WithoutLock())
       .def(
           "wait",
           [](const OpenSession& session, double seconds) {
-            std::atomic<bool> leave = false;
-            const auto begun = std::chrono::steady_clock::now();
-            return interruptible(
-                [&] {
-                  while (!leave && !session.wait_for(0.02))
-                    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() >
-                        seconds)
-                      return false;
-                  return true;
-                },
-                [&] { leave = true; });
+            return waited([&](double slice) { return session.wait_for(slice); }, seconds);
           },
-          nb::arg("seconds") = 1e9, "Waits until the picture is settled; whether it is.")
+          nb::arg("seconds") = 1e9,
+          "Waits until the picture is settled, stopped or failed (snapshot().state); False: not within that "
+          "time.")
       .def(
           "wait_for_change",
           [](const OpenSession& session, std::uint64_t revision, double seconds) {
-            return session.wait_for_change(revision, seconds);
+            return waited([&](double slice) { return session.wait_for_change(revision, slice); }, seconds);
           },
-          nb::arg("revision"), nb::arg("seconds"), Unlocked())
+          nb::arg("revision"), nb::arg("seconds"),
+          "Waits until snapshot().revision is another one; False: not within that time.")
       .def(
           "finish",
           [](const OpenSession& session) {
-            std::atomic<bool> leave = false;
-            interruptible(
-                [&] {
-                  while (!leave && !session.wait_for(0.02)) {
-                  }
-                  return true;
-                },
-                [&] { leave = true; });
-            const nb::gil_scoped_release release;
+            waited([&](double slice) { return session.wait_for(slice); }, 1e9);
+            const Unlocked unlocked;
             return session.finish();
           },
           "wait(), then the picture.")
       .def(
-          "pick", [](OpenSession& session, int x, int y) { return session.pick(x, y); }, nb::arg("x"),
-          nb::arg("y"), Unlocked());
+          "pick",
+          [](OpenSession& session, int x, int y) {
+            return interruptible([&] { return session.pick(x, y); }, [&] { session.cancel(); });
+          },
+          nb::arg("x"), nb::arg("y"), "Casts one ray; the first may build a kernel.");
 }
 
 }  // namespace
@@ -351,7 +365,7 @@ NB_MODULE(_sundog, m) {
       nb::arg("devices").none() = nb::none(),
       "How many threads drivers have not let go of; the process waits for them at its exit, whichever the "
       "devices.");
-  m.def("wait_for_threads", &wait_for_threads, Unlocked(), "Waits for these threads, up to a minute.");
+  m.def("wait_for_threads", &wait_for_threads, WithoutLock(), "Waits for these threads, up to a minute.");
   m.def(
       "_end",
       [process = ::getpid()] {
@@ -360,7 +374,7 @@ NB_MODULE(_sundog, m) {
           std::this_thread::sleep_for(std::chrono::milliseconds(10));
         wait_for_threads();
       },
-      Unlocked(), "The interpreter calls it at its end.");
+      nb::call_guard<nb::gil_scoped_release>(), "The interpreter calls it at its end.");
   m.def("render", &render_scene, nb::arg("scene"), nb::arg("devices").none() = nb::none(),
         nb::arg("aovs") = std::vector<std::string>(), nb::arg("work_group") = nb::none(), nb::arg("tile") = 0,
         nb::arg("time_limit") = 0.0, nb::arg("on_progress").none() = nb::none(),

@@ -172,6 +172,11 @@ sundog_status sundog_scene_load(const char* file, sundog_scene** scene, sundog_e
   return made(error, scene, "scene", [&] { return Scene::load(&wanted(file, "file")); });
 }
 
+sundog_status sundog_scene_load_frame(const char* file, double frame, sundog_scene** scene,
+                                      sundog_error* error) noexcept {
+  return made(error, scene, "scene", [&] { return Scene::load(&wanted(file, "file"), {.frame = frame}); });
+}
+
 sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene,
                                      sundog_error* error) noexcept {
   return made(error, scene, "scene",
@@ -252,6 +257,10 @@ sundog_status sundog_render(const sundog_scene* scene, const sundog_options* opt
 }
 
 int sundog_film_complete(const sundog_film* film) noexcept { return film && film->film.complete() ? 1 : 0; }
+
+const char* sundog_film_warning(const sundog_film* film, size_t index) noexcept {
+  return film && index < film->film.warnings().size() ? film->film.warnings()[index].c_str() : nullptr;
+}
 
 sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels, int* width,
                                  int* height, int* channels, sundog_error* error) noexcept {

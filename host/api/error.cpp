@@ -33,8 +33,12 @@ void throw_public() {
   } catch (const UsageError& error) {
     throw Error(ErrorKind::usage, error.what());
   } catch (const SceneError& error) {
+    const bool has_file = std::filesystem::path(error.file).filename() != no_file;
     throw Error(ErrorKind::scene, error.what(),
-                {.file = error.file, .place = error.place, .reason = error.reason, .log = {}});
+                {.file = has_file ? error.file : std::string(),
+                 .place = error.place,
+                 .reason = error.reason,
+                 .log = {}});
   } catch (const DeviceError& error) {
     throw Error(ErrorKind::device, error.what(),
                 {.file = {}, .place = {}, .reason = {}, .log = {}, .status = error.status});

@@ -18,6 +18,9 @@ inline namespace v0 {
 /// The version, "0.2.0".
 const char* version_text() noexcept;
 
+/// The file name in messages about scenes without a file.
+inline constexpr const char* no_file = "(scene)";
+
 /// Rethrows the current exception as an Error; exceptions of callbacks stay as they are.
 [[noreturn]] void throw_public();
 

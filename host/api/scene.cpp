@@ -13,9 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Replaces the file name in messages about scenes without a file.
-constexpr const char* no_file = "(scene)";
-
 [[noreturn]] void fail_at(std::string_view pointer, const std::string& reason) {
   throw Error(ErrorKind::usage, std::string(pointer) + ": " + reason,
               {.file = {}, .place = std::string(pointer), .reason = reason, .log = {}});
@@ -108,7 +105,7 @@ Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options)
     Scene scene;
     scene.impl_->options = options_of(options);
     scene.impl_->document = read_scene_document(file, scene.impl_->options);
-    scene.impl_->file = file;
+    scene.impl_->file = std::filesystem::absolute(file);  // the program may change its folder
     return scene;
   });
 }

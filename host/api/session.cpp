@@ -3,21 +3,57 @@
 
 #include <sundog/session.h>
 
+#include <cstdlib>
+#include <set>
+
 namespace sundog {
 inline namespace v0 {
 
-struct SUNDOG_LOCAL Session::Impl {
-  mutable std::mutex mutex;
-  std::unique_ptr<RenderSession> session;
-  std::shared_ptr<const SceneDescription> newest;  // guarded by the mutex
+namespace {
 
-  explicit Impl(const std::vector<DeviceInfo>& devices) : session(std::make_unique<RenderSession>(devices)) {}
+/// Sessions that the process has not closed. Never destroyed, for a thread may close one during the exit.
+struct OpenSessions {
+  std::mutex mutex;
+  std::set<RenderSession*> all;
+};
+OpenSessions& open_sessions() {
+  static auto* const sessions = new OpenSessions;
+  return *sessions;
+}
+
+/// Their threads end before what they use is destroyed.
+void close_sessions() {
+  if (is_forked()) return;
+  {
+    const std::lock_guard lock(open_sessions().mutex);
+    for (RenderSession* session : open_sessions().all) session->close();
+  }
+  wait_for_threads();
+}
+
+}  // namespace
+
+struct SUNDOG_LOCAL Session::Impl {
+  std::unique_ptr<RenderSession> session;
+
+  explicit Impl(const std::vector<DeviceInfo>& devices) : session(std::make_unique<RenderSession>(devices)) {
+    // The drivers are loaded by now, so their own exit handlers run later.
+    [[maybe_unused]] static const int registered = std::atexit(close_sessions);
+    const std::lock_guard lock(open_sessions().mutex);
+    open_sessions().all.insert(session.get());
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     // A forked child lacks the session's threads, so waiting would hang: the session leaks.
-    if (is_forked()) [[maybe_unused]]
-      const auto* const left = session.release();
+    if (is_forked()) {
+      [[maybe_unused]] const auto* const left = session.release();
+      return;
+    }
+    {
+      const std::lock_guard lock(open_sessions().mutex);
+      open_sessions().all.erase(session.get());
+    }
     session.reset();
     wait_for_threads_at_exit();
   }
@@ -53,10 +89,6 @@ std::uint64_t Session::start(const Scene& scene, const SessionOptions& options) 
     settings.patience = seconds_of("patience", options.patience);
     settings.work_group = group_of(options.work_group);
     settings.tile = tile_of(options.tile);
-    std::shared_ptr<const SceneDescription>
-        before;  // destroyed outside the lock: owners of its meshes may run any code
-    const std::lock_guard lock(impl_->mutex);
-    before = std::exchange(impl_->newest, description);
     return impl_->entered().start(std::move(description), settings);
   });
 }
@@ -98,23 +130,21 @@ bool Session::wait_for_change(std::uint64_t revision, double seconds) const {
 }
 
 Image Session::finish() const {
-  wait();
-  Snapshot now = snapshot();
-  if (now.state == SessionState::failed) throw Error(ErrorKind::device, now.error);
-  return now.picture;
+  return translated([&] {
+    impl_->entered().wait();
+    core::Snapshot now = impl_->entered().snapshot();
+    if (now.state == core::SessionState::failed) std::rethrow_exception(now.cause);
+    return share(std::move(now.picture));
+  });
 }
 
 std::optional<Pick> Session::pick(int x, int y) {
   return translated([&]() -> std::optional<Pick> {
-    std::shared_ptr<const SceneDescription> scene;
-    {
-      const std::lock_guard lock(impl_->mutex);
-      scene = impl_->newest;
-    }
     const auto picked = impl_->entered().pick(x, y);
     if (!picked) return std::nullopt;
-    return Pick{name_of(scene->objects, picked->object), name_of(scene->materials, picked->material),
-                values_of(picked->position), values_of(picked->normal), picked->depth};
+    return Pick{name_of(picked->scene->objects, picked->object),
+                name_of(picked->scene->materials, picked->material), values_of(picked->position),
+                values_of(picked->normal), picked->depth};
   });
 }
 

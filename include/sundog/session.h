@@ -81,8 +81,8 @@ class SUNDOG_API Session {
   bool wait_for(double seconds) const;
   /// Waits until Snapshot::revision differs from `revision`, for at most `seconds`; returns false on timeout.
   bool wait_for_change(std::uint64_t revision, double seconds) const;
-  /// Waits, then returns the picture, equal to render()'s to the bit. Throws Error (device) when drawing
-  /// failed.
+  /// Waits, then returns the picture, equal to render()'s to the bit. Throws the Error that ended the
+  /// drawing.
   Image finish() const;
 
   /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene, or

@@ -67,6 +67,9 @@ SUNDOG_C_API void sundog_error_free(sundog_error* error) SUNDOG_NOEXCEPT;
 /** Reads a scene or model file. */
 SUNDOG_C_API sundog_status sundog_scene_load(const char* file, sundog_scene** scene,
                                              sundog_error* error) SUNDOG_NOEXCEPT;
+/** Reads the scene at a frame of its animation; frames may have fractions. */
+SUNDOG_C_API sundog_status sundog_scene_load_frame(const char* file, double frame, sundog_scene** scene,
+                                                   sundog_error* error) SUNDOG_NOEXCEPT;
 /** Reads a scene from text; file names in it are relative to `folder` (NULL: the current one). */
 SUNDOG_C_API sundog_status sundog_scene_from_json(const char* text, const char* folder, sundog_scene** scene,
                                                   sundog_error* error) SUNDOG_NOEXCEPT;
@@ -136,6 +139,8 @@ SUNDOG_C_API sundog_status sundog_render(const sundog_scene* scene, const sundog
                                          sundog_film** film, sundog_error* error) SUNDOG_NOEXCEPT;
 /** 1: every pixel has all its samples; 0: stopped, out of time, or NULL. */
 SUNDOG_C_API int sundog_film_complete(const sundog_film* film) SUNDOG_NOEXCEPT;
+/** A warning about the render, counted from 0: one line. Valid as long as the film; NULL: there is none. */
+SUNDOG_C_API const char* sundog_film_warning(const sundog_film* film, size_t index) SUNDOG_NOEXCEPT;
 /** The picture (`aov` NULL: linear RGBA) or an AOV: width * height * channels floats, row 0 at the top. Valid
  * as long as the film; any argument after `pixels` may be NULL. */
 SUNDOG_C_API sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels,

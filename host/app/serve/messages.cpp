@@ -149,7 +149,8 @@ json status_message(const Snapshot& now) {
           {"devices", std::move(devices)}};
 }
 
-json picked_message(const Picked& picked, const SceneDescription& scene) {
+json picked_message(const Picked& picked) {
+  const SceneDescription& scene = *picked.scene;
   json message = {{"is", "picked"}, {"position", to_json(picked.position)}, {"object", nullptr}};
   if (picked.object < 0 || picked.object >= std::ssize(scene.objects)) return message;
   message["object"] = object_json(scene, scene.objects[static_cast<std::size_t>(picked.object)]);

@@ -24,6 +24,6 @@ nlohmann::json resolved_json(const SceneDescription& scene);
 
 nlohmann::json status_message(const Snapshot& now);
 
-nlohmann::json picked_message(const Picked& picked, const SceneDescription& scene);
+nlohmann::json picked_message(const Picked& picked);
 
 }  // namespace sundog

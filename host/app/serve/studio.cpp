@@ -265,9 +265,7 @@ void Studio::pick(ClientId client, const json& message) {
   asks_.post([this, client, x, y, id] {
     json answer = {{"is", "picked"}, {"object", nullptr}};
     try {
-      const std::optional<Picked> picked = session_.pick(x, y);
-      const std::lock_guard lock(mutex_);
-      if (picked) answer = picked_message(*picked, *drawn_);
+      if (const std::optional<Picked> picked = session_.pick(x, y)) answer = picked_message(*picked);
     } catch (const std::exception& error) {
       answer["error"] = error.what();
     }

@@ -60,7 +60,7 @@ void LiveSession::begin(const Workers& workers) {
 void LiveSession::end() {
   {
     const std::lock_guard lock(mutex);
-    closing = true;
+    if (std::exchange(closing, true)) return;
     drop_frame();
     drop_picks();
     note();
@@ -137,10 +137,12 @@ void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   std::shared_ptr<SessionFrame> made;
   std::string failure;
+  std::exception_ptr thrown;
   try {
     made = prepare(order, std::move(workers), before, speed);
-  } catch (const std::exception& thrown) {
-    failure = thrown.what();
+  } catch (const std::exception& what) {
+    failure = what.what();
+    thrown = std::current_exception();
   }
   lock.lock();
   retire(std::move(order.scene));
@@ -149,7 +151,7 @@ void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   if (order.generation != newest || is_at_rest(state) || is_held())  // replaced, or cancelled
     return retire(std::move(made));
   if (!made) {
-    error = failure;
+    error = failure, cause = thrown;
     drop_picks();
     set_state(SessionState::failed);
     return;
@@ -219,15 +221,17 @@ void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
   Frame& frame = *mine->frame;
   retire_hanging(frame);
   std::string failure;
+  std::exception_ptr thrown;
   {
     const std::lock_guard frame_lock(frame.mutex);
+    thrown = frame.last_error;
     if (!frame.workers.empty() && std::ranges::all_of(frame.workers, &Frame::Worker::failed))
       for (const Frame::Worker& worker : frame.workers)
         failure += (failure.empty() ? "" : "; ") + worker.report.messages.back();
   }
   lock.lock();
   if (failure.empty() || mine != current || mine->generation != newest || is_at_rest(state)) return;
-  error = failure;
+  error = failure, cause = thrown;
   drop_picks();
   set_state(SessionState::failed);
 }

@@ -36,6 +36,7 @@ struct LiveSession : FrameLoop {
   Generation newest = 0;
   SessionState state = SessionState::idle;
   std::string error;
+  std::exception_ptr cause;  // of the error
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> shown;
   std::deque<Pick> picks;
@@ -78,6 +79,7 @@ struct LiveSession : FrameLoop {
   }
 
   void begin(const Workers& workers);
+  /// Ends the threads. A second call does nothing.
   void end();
   /// Renders a frame to its end in place of what is drawn.
   void run_final(const std::shared_ptr<SessionFrame>& mine);

@@ -53,7 +53,9 @@ RenderSession::RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& wo
   live_->begin(workers);
 }
 
-RenderSession::~RenderSession() { live_->end(); }
+RenderSession::~RenderSession() { close(); }
+
+void RenderSession::close() { live_->end(); }
 
 Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
                                 const SessionSettings& settings) {
@@ -64,6 +66,7 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
   if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
   s.error.clear();
+  s.cause = nullptr;
   s.set_state(SessionState::compiling);
   return s.newest;
 }
@@ -119,6 +122,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
     snapshot.revision = s.revision;
     snapshot.state = s.state;
     snapshot.error = s.error;
+    snapshot.cause = s.cause;
     snapshot.prepared = s.rested == s.newest && s.newest > 0;
     for (const auto& thread : s.threads) workers.push_back(thread->of_scenes);
     current = s.drawn();
@@ -207,6 +211,7 @@ bool RenderSession::wait_for_change(std::uint64_t revision, double seconds) cons
 
 std::optional<Picked> RenderSession::pick(int x, int y) {
   LiveSession& s = *live_;
+  std::shared_ptr<const SceneDescription> scene;  // destroyed outside the lock
   std::future<std::optional<Picked>> answer;
   {
     std::unique_lock lock(s.mutex);
@@ -222,9 +227,12 @@ std::optional<Picked> RenderSession::pick(int x, int y) {
       return std::nullopt;
     s.picks.push_back({mine, x, y, {}});
     answer = s.picks.back().answer.get_future();
+    scene = s.drawn()->scene;
     s.note();
   }
-  return answer.get();
+  std::optional<Picked> picked = answer.get();
+  if (picked) picked->scene = std::move(scene);
+  return picked;
 }
 
 }  // namespace sundog

@@ -87,6 +87,7 @@ struct Snapshot {
   std::uint64_t revision = 0;  // grows with each change of any member
   SessionState state = SessionState::idle;
   std::string error;            // of the compiler or the last device, if failed
+  std::exception_ptr cause;     // the exception behind it
   unsigned pass = 0;            // complete passes of `shown`, including coarse ones
   unsigned samples = 0;         // minimum over the pixels; 0 while the picture is coarse
   unsigned wanted_samples = 0;  // of the scene
@@ -107,10 +108,11 @@ struct Snapshot {
 
 /// The surface at a pixel's centre.
 struct Picked {
-  int object = -1;               // index into SceneDescription::objects; -1: none
-  int material = -1;             // index into SceneDescription::materials; one past its end: the default
-  dvec3 position{0}, normal{0};  // in world space
-  double depth = 0;              // along the view; infinite if nothing is hit
+  std::shared_ptr<const SceneDescription> scene;  // the one that the pixel shows
+  int object = -1;                                // index into its objects; -1: none
+  int material = -1;                              // index into its materials; one past the end: the default
+  dvec3 position{0}, normal{0};                   // in world space
+  double depth = 0;                               // along the view; infinite if nothing is hit
 };
 
 /// Likewise, but reports that a complete draft waits for a kernel.
@@ -125,7 +127,7 @@ class RenderSession {
   explicit RenderSession(const std::vector<DeviceInfo>& devices);
   /// For other workers than this process's devices.
   explicit RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& workers);
-  /// Stops drawing: waits for launches (about 50 ms), not for a driver that hangs or compiles.
+  /// close()
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;
   RenderSession& operator=(const RenderSession&) = delete;
@@ -149,6 +151,9 @@ class RenderSession {
 
   /// Stops drawing at once. The picture so far remains.
   void cancel();
+
+  /// Stops drawing for good: waits for launches (about 50 ms), not for a driver that hangs or compiles.
+  void close();
 
   /// Takes effect at the next start(). Devices in both lists keep their kernels and tables. Throws
   /// DeviceError without devices.

@@ -168,7 +168,8 @@ TEST_CASE("a storm of starts, cancels, picks and looks ends with the last scene"
     while (!over) {
       const auto x = static_cast<int>(random() % width), y = static_cast<int>(random() % height);
       if (const std::optional<Picked> picked = session.pick(x, y))
-        wrong_picks += picked->normal.x != x || picked->normal.y != y;
+        wrong_picks += picked->normal.x != x || picked->normal.y != y ||
+                       picked->normal.z != static_cast<float>(picked->scene->lights[0].intensity);
       std::this_thread::yield();
     }
   };
