@@ -1,5 +1,5 @@
-// Halos: the plan of what to trace, on a device (render/device/halo_tracer.h) or on the host, and the
-// resulting map. The map is the same to the bit either way.
+// Halos: plans the rays to trace, on a device (render/device/halo_tracer.h) or on the host, and sums them to
+// a map, which is the same to the bit either way.
 #pragma once
 #include <functional>
 #include <glm/glm.hpp>
@@ -10,7 +10,7 @@
 
 namespace sundog {
 
-/// Words of the tallies: pairs of low and high.
+/// Number of words of the tallies, each a low and a high word.
 inline constexpr std::size_t halo_tally_words = std::size_t{2} * HALO_TALLIES;
 
 /// Rays by wavelength band, and the bands' colours.

@@ -1,5 +1,5 @@
-// Integrates the lobes of kernels/plain/shade/layer_lobes.cl over a grid of directions; a matte ground weighs
-// sums that are made once.
+// Integrates the lobes of kernels/plain/shade/layer_lobes.cl over a grid of directions; the matte ground's
+// albedo is a weighted mean of sums that are computed once.
 #include "compile/layers/albedos.h"
 
 #include <tbb/parallel_for.h>
