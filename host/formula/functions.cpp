@@ -1,4 +1,5 @@
-// A function is a row: its call and meaning for the help, its numbers of arguments, and its rule.
+// A function is a row: its call and meaning for the help, its least and greatest argument count, and its
+// rule.
 #include "formula/functions.h"
 
 #include <functional>

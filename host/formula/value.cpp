@@ -1,4 +1,4 @@
-// Each operation checks types, adds nodes to the graph, and says whether the slope is still a tight bound.
+// Each operation checks types, adds nodes to the graph, and determines whether the slope is a tight bound.
 #include "formula/value.h"
 
 #include <cmath>

@@ -20,7 +20,7 @@ struct Value {
   ValueType type = ValueType::scalar;
   std::array<NodeId, 4> part{no_node, no_node, no_node, no_node};
   bool varies = false;     // changes with p
-  bool depends_z = false;  // through z
+  bool depends_z = false;  // varies through z
   bool tight = true;
   NodeId slope = no_node;
 
@@ -82,7 +82,7 @@ class Values {
   Graph& g;
   std::vector<DomainGuard> guards;
   bool radial = false;  // triplex powers use the slope along z only
-  bool folds = false;   // a fold, inversion or repetition was used; |z| is a fold
+  bool folds = false;   // a fold, inversion or repetition was used; |z| counts as a fold
 
  private:
   friend class Powers;

@@ -261,9 +261,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, Instances& out, u32 mesh_stack)
   settings.block_width = 1;
   settings.block_cost = 3;  // an instance costs more than a node
   const bool shared = std::ranges::any_of(bounded, [](const Placed& one) { return !one.sharing.empty(); });
-  if (shared || refs.size() > bounded.size())
-    settings.max_leaf_blocks = 1;  // blocks of larger leaves are
-                                   // consecutive
+  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's blocks are adjacent
   WideBvh tree =
       build_wide_bvh(refs.size(), [&](std::span<Ref> to) { std::ranges::copy(refs, to.begin()); }, settings);
   const bool alone = bounded.size() == 1;
