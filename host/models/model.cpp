@@ -1,4 +1,5 @@
-// load_model(): selects one reader per format.
+// load_model(): selects the format's reader, moves far meshes near their origin, and checks the model's
+// extent.
 #include "models/model.h"
 
 #include <fmt/format.h>
@@ -72,7 +73,7 @@ constexpr double farthest = 1e17;
 
 bool is_near(const dmat4& world_from_object, const glm::vec3& point) {
   const dvec3 at(world_from_object * glm::dvec4(point, 1));
-  return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= farthest;  // false for no number
+  return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= farthest;  // false for NaN
 }
 
 /// Whether the box around all vertices, used or not, is near.
@@ -112,7 +113,8 @@ bool has_area(const Mesh& mesh, const glm::uvec3& triangle) {
 
 void warn_of_unseen(Model& model) {
   const auto unseen = std::ranges::count_if(model.meshes, [](const Mesh& mesh) {
-    return std::ranges::none_of(mesh.triangles, [&](const auto& triangle) { return has_area(mesh, triangle); });
+    return std::ranges::none_of(mesh.triangles,
+                                [&](const auto& triangle) { return has_area(mesh, triangle); });
   });
   if (unseen == 0) return;
   model.warnings.push_back(fmt::format("{} of its {} mesh{} cannot be seen: no triangle there has an area",

@@ -1,4 +1,4 @@
-// Triangulates polygons.
+// Splits a polygon, given by its corners in order, into triangles of corner indices.
 #pragma once
 #include <cstddef>
 #include <glm/glm.hpp>
