@@ -19,8 +19,7 @@ constexpr int iterations = 0, bailout = 1, inside = 2, safety = 3, inside_safety
 
 struct LeafTable {
   std::vector<double> values;
-  std::map<std::tuple<std::size_t, char, NodeId>, std::size_t> places;  // of derived numbers, by step and
-                                                                        // section
+  std::map<std::tuple<std::size_t, char, NodeId>, std::size_t> places;  // of numbers, by step and section
 };
 
 class LeafEmitter {

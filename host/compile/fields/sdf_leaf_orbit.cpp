@@ -263,9 +263,7 @@ void LeafEmitter::loop() {
     count_ = code_.declare("count", FIELD_COPY, {Operand::literal(0)});
   }
   std::vector<GraphWriter> maps = begin_maps();
-  if (escapes())
-    entered_ = code_.declare("entered", FIELD_COPY_MASK, {alive_});  // alive before the last
-                                                                     // iteration
+  if (escapes()) entered_ = code_.declare("entered", FIELD_COPY_MASK, {alive_});  // in the last iteration
   code_.begin_iterations(leaf_slot::iterations);
   if (bails_out()) code_.leave_if_none(alive_);
   iteration(maps);

@@ -340,8 +340,7 @@ nlohmann::json parse(const Source& source, std::string_view text) {
   } catch (const nlohmann::json::exception& error) {
     const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
     std::string what = error.what();
-    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may end within a
-                                                                                   // character
+    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may cut a character
       const std::size_t rest = what.rfind("; expected ");
       what.erase(read, rest == what.npos || rest < read ? what.npos : rest - read);
     }
