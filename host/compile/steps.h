@@ -18,7 +18,7 @@ struct FieldView;
 using SceneFile = Unkeyed<std::string>;
 inline SceneFile file_of(const SceneDescription& scene) { return {scene.file.string()}; }
 
-/// Whether the world's fog is a scattering medium instead of emitting light itself.
+/// Whether the world's fog is a medium that scatters light, rather than one that emits it.
 bool fog_scatters(const SceneDescription& scene);
 
 struct ViewInputs {

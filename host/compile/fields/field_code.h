@@ -21,7 +21,7 @@ const char* type_name(FieldType type);
 struct Operand {
   enum class Kind { none, variable, table, literal } kind = Kind::none;
   std::size_t index = 0;  // index of the variable, or into the table
-  int part = -1;          // a point's coordinate, 0 to 2; -1: the whole
+  int part = -1;          // a point's coordinate, 0 to 2; -1: the whole value
   double value = 0;
 
   static Operand literal(double value) { return {Kind::literal, 0, -1, value}; }

@@ -49,8 +49,9 @@ HaloMap trace_halo(const HaloPlan& plan, const std::function<bool(std::uint64_t)
 /// Radiance per steradian towards `d`, interpolated between cells; d: unit, the sun above +x, z up.
 glm::dvec3 halo_radiance(const HaloMap& map, const glm::dvec3& d);
 
-/// Fraction of the cloud's sunlight that one steradian of full light sends from a height: single scattering
-/// in a horizontal layer of this optical depth. Arguments are the sines of the heights of sun and direction.
+/// Radiance from single scattering in a horizontal layer of this optical depth, relative to the irradiance
+/// facing the sun times the fraction scattered per steradian. Arguments are the sines of the heights of sun
+/// and direction.
 double halo_depth(double optical_depth, double sun, double direction);
 
 }  // namespace sundog

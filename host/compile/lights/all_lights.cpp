@@ -16,7 +16,7 @@ void set_light_groups(const AllLightsInputs& in, AllLights& out) {
     if (light.type != LightType::ambient) of_rows.push_back(number_of_group(in.groups, light.group));
   auto& lights = out.lights.edit();
   for (std::size_t row = 0; row < lights.size(); ++row)
-    if (lights[row].kind != LIGHT_TRIANGLE)  // they have their materials' (mesh_lights.cpp)
+    if (lights[row].kind != LIGHT_TRIANGLE)  // they have their materials' groups (mesh_lights.cpp)
       lights[row].color.w = static_cast<float>(row < of_rows.size() ? of_rows[row] : around);
   for (Environment& environment : out.environments.edit()) environment.ahead.w = static_cast<float>(around);
   auto& materials = out.materials.edit();

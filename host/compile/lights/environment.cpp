@@ -25,7 +25,7 @@ constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
 /// Columns: right, up and ahead, with the picture's rotation.
 glm::dmat3 axes_of(const EnvironmentDescription& e) {
   const dvec3 up = glm::normalize(e.up);
-  // As close to +x and -z as in an upright picture.
+  // Right and ahead stay as close to +x and -z as in an upright picture.
   dvec3 right = glm::cross(dvec3(0, 0, -1), up);
   if (glm::length(right) < 1e-6) right = dvec3(1, 0, 0);
   right = glm::normalize(right);

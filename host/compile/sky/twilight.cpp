@@ -27,7 +27,7 @@ using Spectrum = std::array<double, bands>;
 /// (Serdyuchenko and others 2014), means of each band.
 constexpr Spectrum sunlight = {1.66, 1.77, 2.04, 1.99, 1.90, 1.89, 1.85, 1.80, 1.70, 1.62, 1.54, 1.46};
 constexpr Spectrum ozone_section = {0.03, 0.11, 0.36, 0.80, 1.70, 2.80, 3.60, 4.60, 4.70, 3.20, 1.90, 1.00};
-constexpr double ozone_column = 8.07e18, ozone_depth = 15;  // 300 DU in molecules per cm^2; km
+constexpr double ozone_column = 8.07e18, ozone_depth = 15;  // molecules/cm^2 in 300 DU; half width in km
 constexpr double haze_albedo = 0.9, haze_g = 0.76;
 constexpr double air_height = 8, haze_height = 1.2;  // scale heights: density falls to 1/e
 constexpr double night = 2e-4;                       // night sky, cd/m^2 (Leinert and others 1998)
