@@ -40,8 +40,7 @@ struct FormulaDefinition {
   std::string start, map, distance;  // statements; statements; one expression
   EscapeEstimate estimate = EscapeEstimate::logarithmic;
   FormulaDerivative derivative = FormulaDerivative::automatic;
-  bool normalize = false;  // direct: the expression is not a distance; divide it by the length of its
-                           // gradient
+  bool normalize = false;  // direct: the expression is not a distance; divide by its gradient's length
   std::vector<FormulaParameter> parameters;
   int iterations = 8;        // 1..max_iterations
   double bailout = 16;       // radius at which an orbit has escaped, 0: never
@@ -50,8 +49,7 @@ struct FormulaDefinition {
   // predicts.
   double inside_safety = 0.1;
   double safety = 1;      // (0, 1]: factor that makes the estimate a bound, as tests measure it
-  double exceptions = 0;  // fraction of the interval where it may not be a bound (triplex powers: near the
-                          // poles)
+  double exceptions = 0;  // fraction of the interval where that may fail (triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
   std::string old_name = {};                                      // accepted as well
   bool smooth = false;  // without detail at every scale: hits are refined

@@ -1,5 +1,4 @@
-// A function is a row: its call and meaning for the help, its least and greatest argument count, and its
-// rule.
+// A function is a row: its call and meaning for the help, its range of argument counts, and its rule.
 #include "formula/functions.h"
 
 #include <functional>

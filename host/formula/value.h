@@ -73,8 +73,7 @@ class Values {
   Value invert(const Value& v, const Value& square_radius);
   Value wrap(const Value& v, const Value& period);
   Value rotate(const Value& v, const Value& axis, const Value& angle);
-  /// Applies op per component, widening scalars to the other operand's type. Lengths grow by at most
-  /// `growth`.
+  /// Applies op per component, widening scalars to the other operand's type.
   Value each(Op op, const Value& a);
   Value each(Op op, const Value& a, const Value& b);
   Value clamped(const Value& v, const Value& low, const Value& high);

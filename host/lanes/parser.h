@@ -9,8 +9,8 @@ namespace sundog::spmd {
 
 using IsPlain = std::function<bool(const std::string& path)>;
 
-/// A recursive-descent parser. Throws BuildError with the place. Skips functions of files for which
-/// `is_plain` is false, which may be called with uniform arguments.
+/// A recursive-descent parser. Throws BuildError with the place. Skips the bodies of functions in files for
+/// which `is_plain` is false; these may be called with uniform arguments.
 class Parser {
  public:
   explicit Parser(IsPlain is_plain);

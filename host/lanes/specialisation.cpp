@@ -61,7 +61,7 @@ void Specialisation::find_only_result() {
   });
   if (all.size() != 1) return;
   for (const StatementPtr& part :
-       function.body->body)  // in a block within, its name would not be known at the end
+       function.body->body)  // in an inner block its name would be out of scope at the end
     if (part->is(Statement::Kind::declare) &&
         std::ranges::find(part->variables, *all.begin()) != part->variables.end())
       only_result = *all.begin();

@@ -1,4 +1,4 @@
-// Writes reads and writes of tables and arrays at varying places, structures, and calls.
+// Writes accesses to tables and arrays at varying places, structures, and calls.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
@@ -21,7 +21,7 @@ std::string Writer::index_of(const Expression& e) {
   return e.type.is_natural() ? fmt::format("AS_MASK({})", text) : text;
 }
 
-/// Gathers table[index].member[place].x, with an own place for each lane; of a vector, the given part.
+/// Gathers table[index].member[place].x at the places of all lanes; of a vector, the given part.
 std::string Writer::gather(const Expression& e, std::size_t part) {
   int offset = 0, stride = 0;
   std::string table, index, places;

@@ -6,8 +6,8 @@ namespace {
 
 using StatementKind = Statement::Kind;
 
-constexpr double cheap = 12;      // a branch of at most so many operations is computed, not skipped
-constexpr double long_rest = 24;  // remaining operations from which on testing for active lanes pays
+constexpr double cheap = 12;      // operations up to which a branch is computed rather than skipped
+constexpr double long_rest = 24;  // remaining operations above which testing for active lanes pays
 
 /// The type of a variable that is set later on.
 Type settable(Type type) {

@@ -1,5 +1,4 @@
-// load_model(): selects the format's reader, moves far meshes near their origin, and checks the model's
-// extent.
+// load_model(): selects the format's reader, moves far meshes near their origin, and checks the extent.
 #include "models/model.h"
 
 #include <fmt/format.h>

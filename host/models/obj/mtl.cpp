@@ -57,7 +57,7 @@ double read_opacity(TextReader& text) {
   return std::clamp(text.number("d"), 0.0, 1.0);
 }
 
-/// `key` is in lower case, because programs differ.
+/// `key` is in lower case, because programs differ in case.
 void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
   if (key == "ka") m.ambient = read_color(text);
   if (key == "kd") m.diffuse = read_color(text);

@@ -34,9 +34,9 @@ inline constexpr std::string_view pbr_numbers[] = {"pr", "pm", "ps", "pc", "pcr"
 /// Whether the statements define a physically based material. Numbers that are all 0 count as unused.
 bool has_pbr(const MtlStatements& m);
 
-/// Converts the statements to a material as glTF has it (gltf/gltf_materials.h), without relief and opacity
-/// texture, and adds it; returns its index. Kd is the base colour, `opacity` its alpha, Ni above 1 the index,
-/// Tf transmits through a thin wall. Without Pr, Ns gives the roughness by Blender's formula.
+/// Converts the statements to a glTF material (gltf/gltf_materials.h), without relief and opacity texture,
+/// adds it, and returns its index. Kd is the base colour, `opacity` its alpha, Ni the index if above 1; Tf
+/// transmits through a thin wall. Without Pr, Ns gives the roughness by Blender's formula.
 int add_pbr(const MtlStatements& m, double opacity, const Source& obj, MtlTextures& textures, Model& model);
 
 }  // namespace sundog::models

@@ -1,4 +1,4 @@
-// The camera and the picture, as a scene file or a model has them.
+// The camera and the picture, as a scene file or a model describes them.
 #pragma once
 #include <glm/glm.hpp>
 #include <limits>

@@ -1,4 +1,4 @@
-// Materials and media, as a scene file or a model has them.
+// Materials and media, as a scene file or a model describes them.
 #pragma once
 #include <glm/glm.hpp>
 #include <optional>

@@ -230,7 +230,7 @@ struct RoundBoxShape {  // outer half sizes, edge radius
   }
 };
 
-/// A surface of revolution about y, to the right of its profile, whose middle height is 0.
+/// A surface of revolution about y. Its outside is to the right of the profile, whose middle height is 0.
 struct LatheShape {
   std::vector<ProfileCubic> profile{{{0, -1}, {0, -1}, {1, -1}, {1, -1}},
                                     {{1, -1}, {0.2, -0.4}, {0.2, 0.4}, {1, 1}},
