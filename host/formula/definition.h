@@ -16,7 +16,7 @@ struct FormulaParameter {
   double minimum = -1e6, maximum = 1e6;
   bool whole = false;
   std::string meaning = {};
-  std::string old_name = {};  // accepted as well
+  std::string old_name = {};  // also accepted
 };
 
 /// escape: the solid is the set of points whose orbit stays within the bailout radius; distance from |z| and
@@ -51,7 +51,7 @@ struct FormulaDefinition {
   double safety = 1;      // (0, 1]: factor that makes the estimate a bound, as tests measure it
   double exceptions = 0;  // fraction of the interval where that may fail (triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
-  std::string old_name = {};                                      // accepted as well
+  std::string old_name = {};                                      // also accepted
   bool smooth = false;  // without detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;
   static constexpr std::size_t max_parameters = 32;

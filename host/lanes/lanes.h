@@ -24,8 +24,8 @@ class Lanes {
   /// `shows_helpers`: in files without ENTRY functions, all functions count as ENTRY functions, for authors.
   explicit Lanes(ReadFile read, bool shows_helpers = false);
 
-  /// Converts the plain file `path` to lanes: the wanted ones among its structures, its ENTRY functions and
-  /// their callees. `lines`: #line directives name the plain file.
+  /// Converts the plain file `path` to lanes: its structures, its ENTRY functions and their callees, as far
+  /// as they are wanted. `lines`: #line directives name the plain file.
   std::string text(
       const std::string& path, bool lines,
       const IsWanted& is_wanted = [](const std::string&) { return true; });

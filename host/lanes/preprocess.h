@@ -74,7 +74,7 @@ class Preprocessor {
   ReadFile read_;
   std::function<bool(const std::string&)> keeps_names_;
   std::deque<std::string> paths_;                             // file names, for places
-  std::map<std::string, std::vector<std::string>> includes_;  // direct ones of each file read
+  std::map<std::string, std::vector<std::string>> includes_;  // direct includes of each file read
   std::map<std::string, Macro> macros_;
   std::vector<bool> open_;  // whether the branch of each open #if is taken
   Tokens pending_, out_;    // pending_: not yet expanded, because a macro's arguments may span lines

@@ -1,4 +1,4 @@
-// Writes expressions: those with one value for all lanes as in the source, others in lanes.
+// Writes expressions: as in the source if they have one value for all lanes, otherwise in lanes.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {

@@ -76,8 +76,8 @@ double sun_share(const EnvironmentDescription& e) {
   return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));
 }
 
-/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below it. The row below
-/// the horizon repeats the one above: interpolated with the ground, the sky would have a dark rim there.
+/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below. The row below the
+/// horizon repeats the row above it, because interpolation with the ground would darken the sky's rim.
 template <class Light>
 Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, const Light& light_along) {
   const dvec3 factor = e.color * e.intensity;

@@ -131,7 +131,7 @@ struct CellSearch {
   }
 };
 
-/// Places the second of two solids that revolve about one axis, one of them a lathe, in the first's unit
+/// If both solids revolve about one axis and one of them is a lathe, places the second in the first's unit
 /// space.
 std::optional<dmat4> about_one_axis(const RoundSolid& a, const RoundSolid& b) {
   const auto revolves = [](const RoundSolid& solid) {

@@ -41,7 +41,7 @@ double add_distances(Filter filter, double radius, double sign, float* distances
     const double wanted = area.back() * k / FILTER_STEPS;
     auto above = std::upper_bound(area.begin(), area.end(), wanted);
     if (above > end) above = end;
-    if (above == area.begin()) continue;  // there is no such part
+    if (above == area.begin()) continue;  // the filter has no such part
     const auto below = above - 1;
     const double share = *above > *below ? (wanted - *below) / (*above - *below) : 0;
     distances[k] = static_cast<float>(radius * (static_cast<double>(below - area.begin()) + share) / steps);

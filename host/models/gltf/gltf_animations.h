@@ -21,7 +21,7 @@ struct NodePose {
 /// The normalised quaternion; nothing for 0.
 std::optional<glm::dquat> unit_quaternion(double x, double y, double z, double w);
 
-/// The names of the document's animations; the index of an unnamed one. Reads nothing else of them.
+/// The names of the document's animations; an unnamed animation gets its index. Reads nothing else.
 std::vector<std::string> animation_names(const nlohmann::json& document);
 
 class GltfAnimations {

@@ -185,7 +185,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   }
 }
 
-/// Reads the texture `name`; only one `channel` of it unless -1.
+/// Reads the texture `name`; only its channel `channel`, unless that is -1.
 std::optional<TextureDescription> GltfMaterials::read_texture(const std::optional<JsonAt>& of,
                                                               const char* name, int channel) const {
   const auto found = of ? of->find(name) : std::nullopt;
@@ -232,7 +232,7 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   m.coat = 0;
 }
 
-/// The textures of KHR_materials_specular: alpha of one, colour of the other. Only non-metals use them.
+/// The textures of KHR_materials_specular: one's alpha and the other's colour. Only non-metals use them.
 void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const {
   const auto extension = at.extension("KHR_materials_specular");
   if (!extension || (!entry.by_values && entry.values.metalness > 0)) return;
