@@ -14,9 +14,9 @@ namespace sundog {
 struct SamplingPlan {
   Sampling settings;
   u32 samples = 1;                       // maximum per pixel
-  double noise = 0;                      // the frame ends when its mean error is below; 0: never
+  double noise = 0;                      // the frame ends when its mean error is below this; 0: never
   bool surfaces = false;                 // AOVs are needed for every pixel
-  bool sums = false;                     // and have sums over all of its samples
+  bool sums = false;                     // those AOVs include sums over all samples
   std::vector<std::uint8_t> panes = {};  // of materials; 1: partly clear, see clear_materials()
 };
 
