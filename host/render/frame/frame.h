@@ -21,11 +21,10 @@ namespace sundog {
 
 /// Coarse passes before a frame's own passes, for an interactive viewer.
 struct CoarsePasses {
-  CoarsePicture picture;  // the last complete coarse picture
-  int block = 0;          // block edge of the current pass; 0: it is one of the frame's own
-  unsigned count = 0;     // complete coarse passes
-  double pixel_seconds =
-      0;  // seconds per pixel and sample in the last coarse pass, full pass or frame; 0: unknown
+  CoarsePicture picture;     // the last complete coarse picture
+  int block = 0;             // block edge of the current pass; 0: it is one of the frame's own
+  unsigned count = 0;        // complete coarse passes
+  double pixel_seconds = 0;  // seconds per pixel and sample in the last pass or frame; 0: unknown
 };
 
 /// State that the frame's threads share. It lives until the last thread has left, which may be after the

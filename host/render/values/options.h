@@ -51,8 +51,8 @@ struct RenderOptions {
   bool passes = false;            // double the samples pass by pass, even if the scene asks for all at once
   int channels = 4;               // of the image; 3: without alpha; 0: neither image nor AOVs are made
   std::filesystem::path resume;   // a checkpoint; read if it exists
-  std::filesystem::path
-      checkpoint;  // written regularly and on interrupt; the caller removes it; empty: `resume`
+  std::filesystem::path checkpoint;             // written regularly and on interrupt; the caller removes it;
+                                                // empty: `resume`
   bool renews_checkpoint = false;               // a damaged checkpoint, or one of another frame, is ignored
   double checkpoint_seconds = 60;               // between checkpoints
   std::shared_ptr<Faults> faults;               // simulated when checkpoints are written
@@ -64,8 +64,7 @@ struct RenderOptions {
   double picture_seconds = 0;
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
   const std::atomic<bool>* stop = nullptr;  // set: finish running tiles and return the film so far
-  bool keep_failed =
-      false;  // if every device fails, return the film so far and the failure instead of throwing
+  bool keep_failed = false;  // if every device fails, return film and failure instead of throwing
 };
 
 }  // namespace sundog
