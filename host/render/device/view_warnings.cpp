@@ -1,4 +1,4 @@
-// Compares a pixel's size with the spacing of floats at the camera and at each field.
+// Compares a pixel's size with the precision of floats at the camera and at each field.
 #include "render/device/view_warnings.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ float pixel_angle(const CompiledScene& scene) {
   return std::sqrt(dx.x * dx.x + dx.y * dx.y + dx.z * dx.z) * spread;
 }
 
-// Relative to the largest coordinate: the error of estimates in doubles.
+// The error of estimates in doubles, relative to the largest coordinate.
 constexpr double double_footprint = 8e-15;
 
 bool ends_doubles(const FieldView& view) {

@@ -219,8 +219,8 @@ std::function<std::unique_ptr<Channel>()> Mailbox::connector(int rank) const {
     const Lock lock(state->mutex);
     const Key key{rank, ++state->last_channel};
     state->inboxes[key];
-    post(*state, rank, key.second,
-         {Message::alive, {}, {}});  // registers channels at the rank in ascending order
+    // Registers channels at the rank in ascending order.
+    post(*state, rank, key.second, {Message::alive, {}, {}});
     return std::make_unique<RankChannel>(state, key, label);
   };
 }
@@ -274,8 +274,8 @@ bool Mailbox::leave(int status) {
   else
     state_->abort = status;
   state_->outgoing_changed.notify_one();
-  state_->arrived.wait(lock,
-                       [&] { return state_->over; });  // if ranks are missing, abort() ends the process here
+  // If ranks are missing, abort() ends the process here.
+  state_->arrived.wait(lock, [&] { return state_->over; });
   return true;
 }
 

@@ -44,10 +44,9 @@ struct LiveSession : FrameLoop {
   double pixel_seconds = 0;
   Generation rested = 0;  // the last generation after which a worker prepared for later work
   std::thread control;
-  SceneCompiler compiler;  // the control thread's
-  std::mutex rendering;    // locked before `mutex`: one frame at a time is rendered to its end
-  const void* rated =
-      nullptr;  // the scene of the last such frame, by which the threads' speeds were measured
+  SceneCompiler compiler;       // the control thread's
+  std::mutex rendering;         // locked before `mutex`: one frame at a time is rendered to its end
+  const void* rated = nullptr;  // the last such frame's scene, by which the threads' speeds are known
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
