@@ -1,4 +1,4 @@
-// Ice crystals in a sky, and the map of the light that they scatter. Plain values.
+// Ice crystals in a sky, and the map of the light that they scatter: plain values.
 #pragma once
 #include <vector>
 
@@ -23,8 +23,8 @@ struct HaloDescription {
   int size = 1024;              // cells per side of the map
 };
 
-/// Light scattered by crystals, by direction: the sphere as kernels/plain/halo/sky_map.cl maps it to a
-/// square.
+/// Light scattered by crystals, by direction: the sphere mapped to a square as in
+/// kernels/plain/halo/sky_map.cl.
 struct HaloMap {
   int side = 0;
   std::vector<float> cells;  // 3 each, row by row: red, green, blue per steradian; their integral is 1
