@@ -34,8 +34,7 @@ struct TileResult {
   std::vector<float4> sums;
   std::vector<float> weights;
   std::vector<float4> aovs;
-  std::vector<u32>
-      rays;  // per pixel if counted; with `costs` a group's rays may be counted at one of its pixels
+  std::vector<u32> rays;  // per pixel if counted; with `costs`, perhaps all of a group's at one pixel
   RayCounts counts{};
 };
 
