@@ -77,12 +77,12 @@ struct EnvironmentDescription {
   dvec3 color{1};
   double intensity = 1;
   dvec3 up{0, 1, 0};
-  double rotate = 0;          // degrees about `up`
-  int samples = 1;            // shadow rays from each surface to it, and as many to its sun
-  bool visible = true;        // whether camera rays that hit nothing show it; other rays always do
-  bool hidden = false;        // no ray shows it
-  std::string group;          // light group, for AOVs; empty: none
-  Image picture;              // image: equirectangular, zenith in row 0
+  double rotate = 0;    // degrees about `up`
+  int samples = 1;      // shadow rays from each surface to the environment, and as many again to its sun
+  bool visible = true;  // whether camera rays that hit nothing show it; other rays always do
+  bool hidden = false;  // no ray shows it
+  std::string group;    // light group, for AOVs; empty: none
+  Image picture;        // image: equirectangular, zenith in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the sine of the elevation
   // Sky, and halo, which is a sky with ice crystals:
   double sun_altitude = 40, sun_azimuth = 60;  // degrees, from -18 (halo: 0); clockwise from ahead

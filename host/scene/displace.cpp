@@ -226,7 +226,7 @@ Mesh refine(Mesh mesh, double edge, std::size_t most) {
 }
 
 void displace_meshes(SceneDescription& scene) {
-  std::map<std::pair<int, int>, int> made;  // by mesh and the object's material
+  std::map<std::pair<int, int>, int> made;  // key: mesh and the object's material
   for (Object& object : scene.objects) {
     auto* shape = std::get_if<MeshShape>(&object.shape);
     bool wanted = displaces(scene, object.material);

@@ -17,7 +17,7 @@ struct HaloCrystals {
 
 struct HaloDescription {
   std::vector<HaloCrystals> crystals;
-  double optical_depth = 0.05;  // of the cloud, vertically, for scattered light
+  double optical_depth = 0.05;  // the cloud's, vertically, for scattered light
   double index = 0;             // refractive index for all colours; 0: that of ice
   int rays = 10'000'000;        // rays that hit crystals
   int size = 1024;              // cells per side of the map

@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// As many as a film has sums for, minus one for lights in no group.
+/// Maximum number of groups: the sums that a film has, minus one for the lights in no group.
 inline constexpr std::size_t most_light_groups = LIGHT_PART_COUNT - 1;
 
 /// The names of all groups, sorted.

@@ -73,8 +73,8 @@ class SceneFrames {
   /// The shutter of the document's camera.
   Shutter shutter() const;
   /// Checks these frames: throws the first error that reading them would, but reads no model and generates no
-  /// mesh for a place that had one in an earlier frame, and skips surveys of fields and displacement. Returns
-  /// the first scene.
+  /// mesh for a place that had one in an earlier frame, and skips field surveys and displacement. Returns the
+  /// first scene.
   std::shared_ptr<const SceneDescription> check(const std::vector<int>& frames);
 
  private:

@@ -74,7 +74,7 @@ double brightness_of(const Model& model) {
 struct MadeUpLights {
   dvec3 direction;
   double key = 0, sky = 0;  // intensities
-  dvec3 bottom, top;        // of the sky
+  dvec3 bottom, top;        // colours of the sky
   /// The light reflected by a white ground.
   dvec3 on_ground() const {
     const dvec3 above =
@@ -84,8 +84,7 @@ struct MadeUpLights {
 };
 
 /// Exposes the model's brightest material to 0.75 where it faces the key light and the zenith; light from
-/// surrounding objects adds to that. Treats dark materials as at least 0.5 bright, so that their lights are
-/// limited.
+/// surrounding objects adds to that. Treats dark materials as at least 0.5 bright, which limits their lights.
 MadeUpLights expose(const Model& model, const Camera& camera, const ImageSettings& image) {
   const dvec3 forward = glm::normalize(camera.target - camera.position);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -171,7 +170,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}, {"conserve", true}}}}};
   if (model.lights.empty()) {
     document["environment"] = soft_sky(made_up);
-    // Caustics of the key light from shiny materials would leave bright dots on matte surfaces.
+    // Limits samples: the key light reflected by shiny materials would leave bright dots on matte surfaces.
     document["render"] = {{"integrator", "path"}, {"samples", 64}, {"max_component", 4}};
   }
   set_view(document, model);

@@ -32,7 +32,7 @@ struct FrameKernels {
   bool counts_rays = false;   // the integrator counts rays per pixel
   KernelChoice choice = KernelChoice::own;
   SceneKernel<Buffer<u32>> find_media;  // built once the camera has been inside a solid
-  std::string entry;                    // of the integrator
+  std::string entry;                    // the integrator's kernel file
   bool camera_inside = false;           // tables.camera_media differ from those outside all solids
   unsigned most_run = 1;                // items that a work-item of the integrator can process
   std::size_t most_group = 0;           // maximum work-group size; 0: unknown

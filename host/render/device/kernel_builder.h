@@ -30,8 +30,7 @@ class KernelBuilder {
   // Call from the worker's thread only, unless stated otherwise.
   /// Builds `order` next, before the waiting orders; skips orders that were built or failed.
   void want(KernelOrder order);
-  /// Builds these in turn once nothing else has been wanted for a second. Replaces earlier orders of this
-  /// kind.
+  /// Builds these in turn once no other order has come for a second. Replaces earlier orders of this kind.
   void want_later(std::vector<KernelOrder> orders);
   /// Cancels want_later().
   void forget_later();

@@ -22,7 +22,7 @@ struct LaunchLimits {
 
 /// The cause of a failed launch.
 enum class LaunchFailure {
-  group_too_large,   // for the kernel's registers or stack
+  group_too_large,   // too large for the kernel's registers or stack
   out_of_resources,  // a smaller group or launch may fit
   loops_cut_short    // the driver ended loops early: fewer samples may stay within its limit
 };

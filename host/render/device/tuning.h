@@ -34,7 +34,7 @@ struct TuningEntry {
 
 struct TuningFile {
   std::string platform, device, driver, kernels;  // kernels: hash of their sources
-  unsigned units = 0;                             // of a sub-device; 0: the whole device
+  unsigned units = 0;                             // a sub-device's compute units; 0: the whole device
   std::vector<TuningEntry> entries;               // one per kernel and class
 };
 

@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-constexpr float least_angle = 4e-7f;  // of a pixel: a few float spacings at 1
+constexpr float least_angle = 4e-7f;  // a pixel's angle: a few float spacings at 1
 
 float pixel_angle(const CompiledScene& scene) {
   const float4& dx = scene.info.camera_dx;

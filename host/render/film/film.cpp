@@ -121,7 +121,7 @@ PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
 }
 
 const AovPlace* find_place(const std::string& name) {
-  if (is_light_group(name)) return &places[number_of_group(name)];  // in place of a part of light
+  if (is_light_group(name)) return &places[number_of_group(name)];  // groups replace the parts of light
   const auto* place =
       std::find_if(std::begin(places), std::end(places), [&](const AovPlace& p) { return name == p.name; });
   return place == std::end(places) ? nullptr : place;

@@ -36,7 +36,7 @@ std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
 // passes the expected errors and the list of pixels that get more samples.
 constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 + 4 + 20 + 8 + 8;
 
-// Bytes per pixel of tiles in flight, on the device and off it, and of what the allocator retains from them.
+// Bytes per pixel of tiles in flight, on the device and off it, including memory that the allocator retains.
 // Measured with frames that are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 10;
 

@@ -15,7 +15,7 @@ struct FrameOutput {
   int tile = 0;              // edge of the tiles; 0: small compared with the frame
   bool passes = false;       // rendered in passes (render/plan/passes.h)
   bool denoise = false;      // a denoiser runs, with at most most_denoiser_bytes
-  int channels = 3;          // of the image
+  int channels = 3;          // channels of the image
   int bits = 8;              // bits of a PNG's channel
 };
 

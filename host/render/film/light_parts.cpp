@@ -12,7 +12,7 @@ float sum_of(const PartValues& parts) { return std::accumulate(parts.begin(), pa
 namespace {
 
 /// Whether changing part `k` alone can make the sum `whole`; otherwise restores it. Sums round to even, so
-/// those of adjacent floats may lie on either side of `whole`.
+/// the sums for adjacent floats may lie on either side of `whole`.
 bool fits(PartValues& parts, std::size_t k, float whole) {
   constexpr float far = std::numeric_limits<float>::infinity();
   const float before = parts[k];

@@ -1,4 +1,4 @@
-// The AOV motion: where what a pixel shows is in the next frame.
+// The AOV "motion": where each pixel's visible point is in the next frame.
 #pragma once
 #include "base/image_io.h"
 #include "base/pixels/shot.h"

@@ -8,7 +8,7 @@ namespace sundog {
 
 /// The devices selected among those one rank sees, with `rank` and `host` set.
 struct RankDevices {
-  unsigned cores = 0;  // on which the rank may run; 0: unknown
+  unsigned cores = 0;  // cores on which the rank may run; 0: unknown
   std::vector<DeviceInfo> devices;
 };
 

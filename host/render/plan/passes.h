@@ -17,7 +17,7 @@ struct SamplingPlan {
   double noise = 0;                      // the frame ends when its mean error is below this; 0: never
   bool surfaces = false;                 // AOVs are needed for every pixel
   bool sums = false;                     // those AOVs include sums over all samples
-  std::vector<std::uint8_t> panes = {};  // of materials; 1: partly clear, see clear_materials()
+  std::vector<std::uint8_t> panes = {};  // per material; 1: partly clear, see clear_materials()
 };
 
 /// Marks materials through which the camera sees other surfaces straight on.

@@ -13,19 +13,19 @@ constexpr double longest_tile = 0.25;  // seconds; keeps progress bars moving an
 // Seconds: long compared with a tile's overhead besides its launches (0.1 ms), short enough that each device
 // gets several tiles of a 30 ms frame.
 constexpr double shortest_tile = 0.001;
-constexpr double unknown_tile = 0.02;     // seconds assumed for a tile on a device of unknown speed
-constexpr double growth = 4;              // of a tile, relative to the pixels by which the speed was measured
-constexpr std::uint64_t cell = 16;        // pixels of the smallest tile, 4x4
-constexpr std::uint64_t probe = 4096;     // pixels of a device's first tile
+constexpr double unknown_tile = 0.02;  // seconds assumed for a tile on a device of unknown speed
+constexpr double growth = 4;           // a tile's pixels relative to those in the speed measurement, at most
+constexpr std::uint64_t cell = 16;     // pixels of the smallest tile, 4x4
+constexpr std::uint64_t probe = 4096;  // pixels of a device's first tile
 constexpr std::uint64_t tiny_probe = 64;  // pixels if the device is expected to be a burden
 // A device is stuck if it takes this many times longer than expected, and this many seconds.
 constexpr double stuck_factor = 4, stuck_seconds = 1;
-constexpr double dearer = 8;  // how many times as long pixels of one place may take as those of another
+constexpr double dearer = 8;  // pixels of one place may take this many times as long as pixels of another
 // A repeated tile must be likely to win, because speeds differ over the image.
 constexpr double clear_win = 0.8;
 
-/// The sum of the speeds of the others that work, or of all that have not failed. Estimates do not count: a
-/// device that boasts would leave crumbs to the others.
+/// The total speed of the other devices: those that work, or all that have not failed. Only measured speeds
+/// count: an overestimated device would leave crumbs for the others.
 double others_speed(std::span<const DeviceSpeed> devices, std::size_t device, bool working) {
   double total = 0;
   for (std::size_t i = 0; i < devices.size(); ++i)
@@ -33,7 +33,7 @@ double others_speed(std::span<const DeviceSpeed> devices, std::size_t device, bo
   return total;
 }
 
-/// Seconds that a device is expected to need for so many pixels; 0 if unknown.
+/// Seconds that a device is expected to need for this many pixels; 0 if unknown.
 double expected_seconds(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t pixels) {
   const double speed = expected_speed(devices, device);
   return speed > 0 ? static_cast<double>(pixels) / speed : 0;

@@ -8,11 +8,11 @@
 
 namespace sundog {
 
-/// A device loses more by sharing its cores with one slower by this ratio than the slower one adds.
+/// Above this ratio of speeds, a device loses more by sharing its cores than the slower device adds.
 constexpr double burden_factor = 8;
 
-/// A device slower than another on its cores by this ratio of estimates is not even started: compiling for it
-/// would cost the frame more time than it can ever save.
+/// Above this ratio of estimates, the slower of two devices on the same cores is not even started: compiling
+/// for it would cost the frame more time than it can ever save.
 constexpr double hopeless_factor = 64;
 
 /// The known facts about a device's speed.
@@ -50,13 +50,13 @@ struct HeldTile {
   std::vector<Holder> holders;
 };
 
-/// Whether a holder takes so much longer than expected from its speed (four times, and a second) that its
-/// driver may hang and nobody should wait.
+/// Whether a holder takes so much longer than its speed suggests (over four times as long, and over a second)
+/// that its driver may hang and nobody should wait for it.
 bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder);
 
 /// Seconds until the first of its holders will probably finish the tile. An overdue holder is expected to
-/// need as long again as it is overdue; one of unknown speed, as long again as it has taken; a stuck one,
-/// forever.
+/// need as long again as it is overdue; a holder of unknown speed, as long again as it has taken; a stuck
+/// holder, forever.
 double seconds_left(std::span<const DeviceSpeed> devices, const HeldTile& tile);
 
 /// The index of the tile that an idle `device` should also render to finish the frame sooner: of those that

@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-// For the normals of a flat surface at pixels two apart.
+// The least cosine between normals that counts as flat, for pixels two apart.
 constexpr float even_cosine = 0.98f;
 
 /// The image as cells between corners two pixels apart, or one at the far edges.
@@ -91,14 +91,14 @@ std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
   return pick_any(grid, [&](int x, int y) { return !grid.is_corner(x, y) && wanted(x, y); });
 }
 
-/// Whether a pixel's surface matches those of all its corners.
+/// Whether a pixel's surface matches all its corners' surfaces.
 bool fits_corners(const Grid& grid, int x, int y) {
   for (const std::size_t corner : grid.corners(x, y))
     if (!same_surface(grid.film, corner, grid.at(x, y), even_cosine)) return false;
   return true;
 }
 
-/// Whether a sampled pixel's light differs from that of its corners on the same surface: the edge of a shadow
+/// Whether a sampled pixel's light differs from its corners' light on the same surface: the edge of a shadow
 /// or reflection, which may continue between nearby corners.
 bool surprises(const Grid& grid, int x, int y) {
   const std::size_t p = grid.at(x, y);

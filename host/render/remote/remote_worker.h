@@ -13,7 +13,7 @@ struct RemoteDevice {
   DeviceInfo info;
   int processor = -1;                                 // DeviceSpeed::processor
   std::function<std::unique_ptr<Channel>()> connect;  // throws DeviceError
-  nlohmann::json settings;                            // of Message::open
+  nlohmann::json settings;                            // sent with Message::open
   std::uint64_t scene = 0;                            // expected hash_scene()
   unsigned restarts = 0;                              // maximum number of reconnections
   unsigned failures = 3;                              // DeviceWorker::failures_allowed()

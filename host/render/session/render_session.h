@@ -25,7 +25,7 @@ using Generation = std::uint64_t;
 /// Settings of a start() in addition to the scene's (size, samples, sampling, tracer). None changes a bit of
 /// the final picture.
 struct SessionSettings {
-  bool coarse = true;  // if the picture takes longer, start with pixels 8 apart, then 4, then 2
+  bool coarse = true;  // if the picture takes longer, start with coarse pixels, then ever finer ones
   /// Seconds granted to a scene's first full picture before a newer start() replaces it; otherwise no scene
   /// of a quick succession (a drag) would be seen.
   double patience = 0.15;
@@ -56,11 +56,11 @@ std::string state_text(SessionState state);
 /// One device's work on the generation shown.
 struct DeviceActivity {
   DeviceInfo info;
-  std::string doing;  // "drawing", "building a kernel", "uploading", "waiting", "out: ..." with the reason
+  std::string doing;  // "drawing", "building a kernel", "waiting", "out: ..." with the reason
   std::uint64_t tiles = 0, pixels = 0;         // rendered for this generation; every pass counts
-  double share = 0;                            // of all devices' pixels, 0..1
+  double share = 0;                            // share of all devices' pixels, 0..1
   double busy_seconds = 0;                     // rendering tiles
-  std::map<std::string, KernelTimes> kernels;  // of this generation
+  std::map<std::string, KernelTimes> kernels;  // for this generation
   std::vector<std::string> messages;           // its failures
   std::vector<std::string> notes;              // warnings
 };
@@ -84,19 +84,19 @@ struct SessionTimes {
 /// The state of a session at one moment. A value, unaffected by later work.
 struct Snapshot {
   Generation generation = 0;   // the newest that was started; 0: none
-  Generation shown = 0;        // of `picture`: an older one until the newest has a pixel; 0: none
+  Generation shown = 0;        // the generation of `picture`; older until the newest has a pixel; 0: none
   std::uint64_t revision = 0;  // grows with each change of any member
   SessionState state = SessionState::idle;
-  std::string error;            // of the compiler or the last device, if failed
+  std::string error;            // the compiler's or the last device's, if failed
   unsigned pass = 0;            // complete passes of `shown`, including coarse ones
   unsigned samples = 0;         // minimum over the pixels; 0 while the picture is coarse
   unsigned wanted_samples = 0;  // the scene's
-  unsigned block = 1;           // edge in pixels of the picture's blocks: 8, 4, 2, 1
-  double fraction = 0;          // of the work: samples taken / samples wanted
+  unsigned block = 1;           // edge of the picture's blocks in pixels: 32 at most, 1 at full resolution
+  double fraction = 0;          // samples taken / samples wanted
   /// Linear RGBA at the frame's size; alpha is coverage. Once settled, equal to render()'s image bit for bit.
   /// Coarse blocks have their pixel's colour. Shared and immutable; null before the first pixel.
   std::shared_ptr<const Image> picture;
-  RayCounts counts{};  // of `shown`, in the order of COUNT_* (shared/scene.h)
+  RayCounts counts{};  // the rays of `shown`, in the order of COUNT_* (shared/scene.h)
   double seconds = 0;  // since the start() of `shown`; once settled, its duration
   SessionTimes times;
   EditWork work;

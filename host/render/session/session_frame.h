@@ -29,7 +29,7 @@ struct FrameOrder {
   std::vector<std::string> aovs = {};  // AOVs of light groups in the film
 };
 
-/// Makes a frame in passes: coarse ones, then the scene's own passes, or else passes that double the samples.
+/// Makes a frame in passes: coarse passes, then the scene's own, or else passes that double the samples.
 /// Opens no device.
 std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
                                           std::function<void(const RenderProgress&)> on_progress);

@@ -21,7 +21,7 @@ struct Film;
 /// How tiles are shared among devices: on demand by measured speed, or in fixed parts, one per device.
 struct Split {
   enum class Kind { dynamic, fixed } kind = Kind::dynamic;
-  std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
+  std::vector<double> shares;  // for a fixed split; empty: by the devices' estimates
 };
 
 /// The kernels that draw a scene. own: its own. own_when_built: its own, but until they are built others that
@@ -47,9 +47,9 @@ struct RenderOptions {
   Split split;
   PartOfFrame part;               // the part of the frame to render
   std::optional<Tile> region;     // renders only this region of the picture; none: all of it
-  std::vector<std::string> aovs;  // of aov_names()
+  std::vector<std::string> aovs;  // names from aov_names()
   bool passes = false;            // double the samples pass by pass, even if the scene asks for all at once
-  int channels = 4;               // of the image; 3: without alpha; 0: neither image nor AOVs are made
+  int channels = 4;               // the image's; 3: without alpha; 0: neither image nor AOVs are made
   std::filesystem::path resume;   // a checkpoint; read if it exists
   std::filesystem::path checkpoint;             // written regularly and on interrupt; the caller removes it;
                                                 // empty: `resume`

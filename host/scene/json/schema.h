@@ -51,7 +51,7 @@ struct SchemaRule {
   using KeyPair = std::pair<std::string_view, std::string_view>;
   std::vector<KeyPair> clashes;          // keys that exclude each other
   std::vector<KeyPair> needs;            // the first key needs the second
-  std::vector<std::string_view> one_of;  // exactly one of these must be given, where each way is one key
+  std::vector<std::string_view> one_of;  // keys of single-key alternatives, of which exactly one is given
 
   bool bars(const nlohmann::json& value) const;
   /// This rule, or its first option, for values of this type; nullptr: none.

@@ -35,7 +35,7 @@ struct JsonContext {
   std::vector<std::string>* warnings = nullptr;  // if set, collects warnings
   bool measures = true;         // whether to survey formulas; not needed when only keys and types are checked
   bool outside_files = false;   // the scene may name files outside its folder
-  FrameCache* cache = nullptr;  // of the frames before this one
+  FrameCache* cache = nullptr;  // files and meshes of earlier frames
   std::optional<double> seconds = std::nullopt;  // the frame's time; none: the scene as written
   bool* plays = nullptr;  // if set, receives whether a value that depends on `seconds` was read
 };
@@ -183,7 +183,7 @@ class JsonObject {
  public:
   const JsonValue& value() const { return value_; }
 
-  /// The value of a key whose object is not at hand, e.g. a section of a document.
+  /// A section of a document as a value; `kind` and `key` select its rule.
   static JsonValue section(std::string_view kind, std::string_view key, const nlohmann::json& value,
                            const JsonContext& context) {
     return {value, context, join_pointer("", key), schema_rule(kind)->keys.at(key).rule};

@@ -21,8 +21,8 @@ Mesh make_extrusion(const Extrusion& extrusion);
 /// A floor that curves up into a wall behind, so that no horizon shows.
 struct Sweep {
   glm::dvec2 size{8, 6};  // floor along x and z, including the curve; centred at the origin
-  double height = 4;      // of the wall
-  double radius = 1.5;    // of the curve
+  double height = 4;      // height of the wall
+  double radius = 1.5;    // radius of the curve
 };
 
 /// A sheet with exact normals towards the floor's upper side; u along x and v up the sheet, in scene units.

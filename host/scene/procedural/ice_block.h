@@ -14,7 +14,7 @@ namespace sundog {
 /// One surface: a box with tilted sides, cut by random planes and hollowed by random balls, softened and
 /// rippled. The scene reader enforces the ranges given here.
 struct IceSurface {
-  glm::dvec3 size{2, 2, 2};    // of the original box, > 0
+  glm::dvec3 size{2, 2, 2};    // size of the original box, > 0
   glm::dvec3 offset{0, 0, 0};  // from the block's origin to its centre; the origin must stay well inside
   int chips = 12;              // planes that cut off edges and corners, 0..1000
   int dents = 6;               // shallow hollows, 0..1000

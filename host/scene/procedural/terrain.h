@@ -12,7 +12,7 @@ namespace sundog {
 struct Terrain {
   std::uint64_t seed = 1;
   glm::dvec2 size{10, 10};  // along x and z, about the origin
-  double height = 2;        // of the highest point above the lowest, which is at y = 0
+  double height = 2;        // height of the highest point above the lowest, which is at y = 0
   double feature = 4;       // width of the largest hills
   double ridges = 0.7;      // 0: rolling hills, 1: sharp ridges over flat valleys
   int octaves = 9;          // 1..16; each half the size of the previous

@@ -43,7 +43,8 @@ class FormulaJudge {
     const auto& json = value_.json();
     bool is_changed = is_own_ || json.contains("parameters");
     for (const char* key : {"steps", "iterations", "bailout"}) is_changed |= escapes && json.contains(key);
-    // A power's derivative is bounded; for a set that only scales, the distance depends on the set's size.
+    // A power's derivative bounds the distance; for a set that only scales, the distance also depends on its
+    // size.
     const auto scale = is_changed && escapes ? FormulaEvaluator(field_).scale() : std::nullopt;
     const bool closely = is_changed && (!escapes || scale);
     size_ = glm::length(upper - lower);

@@ -6,8 +6,8 @@
 namespace sundog {
 
 /// Surveys every formula under `root`, which was read from `value`, in its part of the interval. If an
-/// expression overestimates distance, or its parameters need less than the list's safety, sets a safety that
-/// corrects it, unless the scene sets "safety". Warns of this and of other likely mistakes
+/// expression overestimates distance, or its parameters require a lower safety than the list's, sets a safety
+/// that corrects it, unless the scene sets "safety". Warns of this and of other likely mistakes
 /// (JsonContext::warnings). Throws SceneError if no picture is possible.
 void judge_field(SdfNode& root, const JsonValue& value, const glm::dvec3& lower, const glm::dvec3& upper);
 

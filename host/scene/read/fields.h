@@ -11,8 +11,8 @@ namespace sundog {
 /// Object types that are distance fields: fractal, formula, hybrid, union, ...
 Names field_types();
 
-/// Reads an object of such a type, except for its "type". Checks formulas by evaluating them. Throws
-/// SceneError; a place inside a formula is given by line and column.
+/// Reads an object of such a type, except for its "type". Checks and surveys formulas. Throws SceneError; a
+/// place inside a formula is given by line and column.
 SdfDescription read_field(JsonObject& object, std::string_view type);
 
 /// Reads an entry of the scene's "fields" table, whose tree is under "field".

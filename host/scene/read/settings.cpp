@@ -273,7 +273,7 @@ LightDescription read_light(const JsonValue& value, double unit) {
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
-    object.check("name");  // for pointers
+    object.check("name");  // used only by pointers
     const auto read = [&](std::string_view key, auto& to) {
       if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
     };

@@ -24,10 +24,10 @@ struct TrackKey {
 
 /// One value of the document over time. All kinds but rotate interpolate between keys, and hold the first and
 /// last value outside them; values other than numbers step. smooth is a cubic Hermite spline with Catmull-Rom
-/// slopes, limited so that values between two keys lie between the keys' values (Fritsch and Carlson 1980),
-/// and 0 at the ends. bezier has handles; missing handles lie on that spline. slerp interpolates quaternions
-/// x, y, z, w the short way (Shoemake 1985). rotate turns a point or direction about an axis, by `degrees`
-/// from frame `first` to frame `last`.
+/// slopes, which are 0 at the ends and limited so that values between two keys lie between the keys' values
+/// (Fritsch and Carlson 1980). bezier has handles; missing handles lie on that spline. slerp interpolates
+/// quaternions x, y, z, w the short way (Shoemake 1985). rotate turns a point or direction about an axis, by
+/// `degrees` from frame `first` to frame `last`.
 struct Track {
   enum class Kind { step, linear, smooth, bezier, slerp, rotate } kind = Kind::linear;
   std::string pointer;         // to the animated value
