@@ -63,7 +63,7 @@ struct RenderOptions {
   std::function<void(const Film&)> on_picture;  // the film so far, every `picture_seconds`
   double picture_seconds = 0;
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
-  const std::atomic<bool>* stop = nullptr;  // set: finish running tiles and return the film so far
+  const std::atomic<bool>* stop = nullptr;  // set: finish running launches and return the film so far
   bool keep_failed = false;  // if every device fails, return film and failure instead of throwing
 };
 
