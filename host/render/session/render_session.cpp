@@ -1,4 +1,4 @@
-// The session's public functions: they pass orders to its frame loop and return its picture so far.
+// The session's public functions, which pass orders to LiveSession and return the picture so far.
 #include "render/session/render_session.h"
 
 #include <algorithm>
@@ -170,7 +170,7 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     const std::lock_guard lock(live_->mutex);
     threads = live_->threads;
   }
-  // A single device keeps no other waiting, so an outdated speed does no harm.
+  // A single device makes no other wait, so an outdated speed does no harm.
   const bool comparable = threads.size() == 1 || live_->rated == scene.get();
   for (const auto& thread : threads)
     plans.push_back({thread->worker->info(), thread->worker->processor(),
