@@ -1,4 +1,4 @@
-// The public Session over the host's RenderSession.
+// Implements the public Session with the host's RenderSession.
 #include "api/impl.h"
 
 #include <sundog/session.h>

@@ -30,10 +30,10 @@ class SUNDOG_API Image {
   int width() const noexcept;     ///< in pixels; 0: empty
   int height() const noexcept;    ///< in pixels; 0: empty
   int channels() const noexcept;  ///< floats a pixel: 1, 3 or 4
-  /// width() * height() * channels() floats, row 0 at the top. Valid as long as any Image shares them.
+  /// width() * height() * channels() floats, row 0 at the top. Valid while any Image shares them.
   std::span<const float> pixels() const noexcept;
 
-  /// Returns the image as a display shows it, still linear. Throws Error (usage) for values out of range.
+  /// Returns the tone-mapped image, still linear. Throws Error (usage) for values out of range.
   Image tone_mapped(const ToneMap& map) const;
 
   /// Reads .png, .jpg, .exr, .hdr or .pfm, recognised by content, as four channels. Throws Error (scene).
