@@ -1,5 +1,5 @@
-// Stores rows as differences to the row above, which suits smooth pictures without trials, and deflates them
-// (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
+// Stores each row as the difference to the row above, a good filter for smooth pictures, and deflates the
+// rows (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
 #include "base/pixels/quick_png.h"
 
 #include <libdeflate.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_quick_bytes = std::size_t{1} << 30;
 constexpr char filter_up = 2;
 
-/// Cells of floats from 2^-13 to 1, by exponent and leading fraction bits.
+/// Floats from 2^-13 to 1 are divided into cells by exponent and leading fraction bits.
 constexpr unsigned cell_shift = 16;
 constexpr std::uint32_t first_bits = std::uint32_t{127 - 13} << 23, end_bits = std::uint32_t{127} << 23;
 
