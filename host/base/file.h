@@ -20,8 +20,7 @@ void write_file(const std::filesystem::path& path, std::string_view bytes,
 /// Writes all bytes at an open file's current position. Returns false and sets errno on failure.
 bool write_all(int file, std::string_view bytes);
 
-/// Removes temporary files that killed processes of this machine left when writing `named`; never a running
-/// process's.
+/// Removes temporary files for `named` that killed processes of this machine left; never those in use.
 void remove_left_over(const std::filesystem::path& named);
 
 /// Throws IoError if write_file() would fail because of the name, the folder or permissions. Call it before

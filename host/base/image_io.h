@@ -40,8 +40,8 @@ struct FileOptions {
 void write_image(const Image& image, const std::filesystem::path& path, const AovImages& aovs = {},
                  const FileOptions& options = {});
 
-/// Sets the number of OpenEXR's threads in this process, which compress written files; keeps the old number
-/// if they cannot be started. For programs; a library must not change it.
+/// Sets the number of OpenEXR's threads in this process, which compress written files, or to as many as can
+/// be started. For programs; a library must not change it.
 void share_exr_work(unsigned threads);
 
 /// The bytes that write_image() would write.
@@ -81,8 +81,7 @@ void check_image_path(const std::filesystem::path& path, bool with_aovs);
 void check_image_size(const std::filesystem::path& path, int width, int height);
 
 /// Reads an image as linear RGBA floats. PNG and JPEG are decoded from sRGB, unless a PNG states another
-/// gamma; an EXR's colours are converted to sRGB primaries by its chromaticities. Throws SceneError for a bad
-/// file.
+/// gamma; an EXR's colours are converted to sRGB primaries. Throws SceneError for a bad file.
 Image read_image(const std::filesystem::path& path);
 
 /// An image, and whether the file has alpha; if not, the image's alpha is 1.

@@ -1,5 +1,4 @@
-// Writes JSON as text. nlohmann's dump() throws for bytes that are not UTF-8, which file names and settings
-// may contain.
+// Writes JSON as text. nlohmann's dump() throws for bytes that are not UTF-8, as file names may contain.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -71,8 +71,7 @@ MaybeBytes left_up_from(const fs::path& mount, const std::string& group, const N
   return least;
 }
 
-/// The minimum over the process's cgroups, from lines "0::/group" (version 2) or "7:memory:/group" (version
-/// 1).
+/// The minimum over the process's cgroups. Lines: "0::/group" (version 2), "7:memory:/group" (version 1).
 MaybeBytes left_in_groups(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   MaybeBytes least;

@@ -13,13 +13,11 @@ namespace sundog {
 /// sys.
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
-/// Requests huge pages for memory that has not been touched yet; first touches then cost much less. Ignores
-/// small blocks.
+/// Requests huge pages for untouched memory, so that first touches cost much less. Ignores small blocks.
 void prefer_large_pages(void* at, std::size_t bytes);
 
 /// For programs that render many frames: keeps up to 256 MiB of freed memory for later allocations; otherwise
-/// every 4 KiB of the next frame's films cost a page fault. Does nothing without glibc. Call before starting
-/// threads.
+/// every 4 KiB of the next frame's films cost a page fault. Needs glibc. Call before starting threads.
 void keep_freed_memory();
 
 /// Grows an empty vector to `size` zeros.

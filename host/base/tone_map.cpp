@@ -110,8 +110,7 @@ dvec3 contrasted(const dvec3& c, double contrast) {
   return shown;
 }
 
-/// The share of light that the vignette leaves; the loss grows with the square of the distance from the
-/// centre.
+/// The share of light that the vignette leaves; the loss is quadratic in the distance from the centre.
 double vignetted(const ToneMap& map, const Image& image, std::size_t pixel) {
   const auto width = static_cast<std::size_t>(image.width);
   const dvec2 size(image.width, image.height), place = dvec2(pixel % width, pixel / width) + 0.5 - size / 2.0;

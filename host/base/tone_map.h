@@ -12,8 +12,7 @@ namespace sundog {
 /// reinhard: L / (1 + L) on the luminance (Reinhard and others 2002, "Photographic Tone Reproduction for
 /// Digital Images", equation 3). Never reaches white.
 /// aces: the output transform of ACES 1.3 for standard range (aces.h).
-/// agx: Sobotka's AgX with the matrices that Wrensch published in 2023: a range of 16.5 stops; bright colours
-/// fade to white.
+/// agx: Sobotka's AgX with Wrensch's matrices (2023): a range of 16.5 stops; bright colours fade to white.
 enum class ToneCurve { none, reinhard, aces, agx };
 
 inline constexpr std::array tone_curves = {

@@ -20,9 +20,8 @@ struct BuildWish {
 /// (HostEnvironment, such as -cl-nv-maxrregcount=64). Later options replace earlier ones of the same name.
 std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, const KernelText& text);
 
-/// Options that a tuning may build `entry` with on the device. Each list holds the alternatives of one name
-/// (options, or "!OPTION" to remove one) that change the build; alternatives of different names may be
-/// combined.
+/// Options that a tuning may build `entry` with on the device. Each list has the alternatives of one name
+/// (options, or "!OPTION" to remove one) that change the build. Those of different names may be combined.
 std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry);
 
 /// Whether a tuning could have produced these options: each is listed to be tried on some device.

@@ -92,8 +92,7 @@ class Program {
   std::shared_ptr<ProgramRecord> record_;
 };
 
-/// The types of a kernel's parameters as in its source, e.g. {"Ray*", "u32"}; empty if the driver does not
-/// report them.
+/// The types of a kernel's parameters as in its source, e.g. {"Ray*", "u32"}; empty if not reported.
 std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
 /// Adds an OpenCL context to `info` that all its Devices share, unless it has one or is a sub-device. Some

@@ -40,8 +40,7 @@ constexpr std::array rules{
                         "!-DDEVICE_INLINES_ALL"},
     // Intel's own driver. If the GPU offers 256 registers per thread instead of 128, at half the threads, the
     // compiler uses them for programs that spill. render_path and the tracer always get them; the tracer then
-    // takes 16 rays per thread without spills, where the compiler would choose 8. Other GPUs ignore both
-    // options.
+    // takes 16 rays per thread without spills, where the compiler would choose 8. Other GPUs ignore these.
     DeviceRule{.name = "intel",
                .reports = "Intel(R) OpenCL",
                .of_gpus = true,

@@ -14,8 +14,7 @@ struct HostEnvironment;
 /// The kind of kernel that suits a device (by what it reports, never by its name).
 enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray per lane
 
-/// A device as its driver reports it. Every device has a row; a platform without devices has a row with
-/// device = -1.
+/// A device as its driver reports it. A platform without devices has a row too, with device = -1.
 struct DeviceInfo {
   int platform = 0, device = -1;  // as `clinfo -l` prints them
   std::string platform_name, platform_version, name, vendor, driver, version, c_version, extensions;

@@ -137,8 +137,7 @@ bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl:
   return record.program() != nullptr;
 }
 
-/// Creates the program from the binary that another process has built for the same key; null if there is
-/// none.
+/// Creates the program from another process's binary if it has the same key, else null.
 cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record, const cl::Context& context,
                           const cl::Device& device) {
   if (!prepared.begun || prepared.begun->key != record.key) return {};

@@ -65,9 +65,8 @@ class SUNDOG_API Session {
   Session& operator=(Session&&) noexcept;  ///< stops what this session draws
 
   /// Draws the scene as it is now, replacing the previous scene. Returns its generation once the scene is
-  /// read; snapshot() then gives the picture. Only parts that differ from the previous scene are compiled
-  /// again. Throws Error (scene; internal for a frame that exceeds the memory) and then keeps the previous
-  /// scene.
+  /// read; snapshot() then gives the picture. Only changed parts are compiled again. Throws Error (scene;
+  /// internal for a frame that exceeds the memory); the previous scene then stays.
   std::uint64_t start(const Scene& scene, const SessionOptions& options = {});
   /// Stops drawing; the picture so far remains.
   void cancel();

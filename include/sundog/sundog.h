@@ -110,8 +110,7 @@ SUNDOG_C_API sundog_status sundog_devices_choose(const char* specs, sundog_devic
 SUNDOG_C_API size_t sundog_devices_count(const sundog_devices* devices) SUNDOG_NOEXCEPT;
 /** A device's label. Valid until `devices` is freed; NULL for an index out of range. */
 SUNDOG_C_API const char* sundog_devices_label(const sundog_devices* devices, size_t index) SUNDOG_NOEXCEPT;
-/** Why the device is unusable; empty if usable. Valid until `devices` is freed; NULL for an index out of
- * range. */
+/** Why the device is unusable, or empty. Valid until `devices` is freed; NULL for an index out of range. */
 SUNDOG_C_API const char* sundog_devices_problem(const sundog_devices* devices, size_t index) SUNDOG_NOEXCEPT;
 /** Frees a handle; accepts NULL. */
 SUNDOG_C_API void sundog_devices_free(sundog_devices* devices) SUNDOG_NOEXCEPT;

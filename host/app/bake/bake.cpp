@@ -172,7 +172,7 @@ class Baker {
     }
   }
 
-  /// Gives texels without a value that of the plain surface; dilate() replaces those near baked texels.
+  /// Fills missing texels with the plain surface's value; dilate() overwrites those near baked texels.
   void fill_missing() {
     for (std::size_t i = 0; i < filled_.size(); ++i) {
       if (filled_[i]) continue;

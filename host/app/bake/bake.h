@@ -1,5 +1,4 @@
-// Bakes a map of a detailed model for a plain model by tracing rays on a device from the plain surface to the
-// detailed one.
+// Bakes a map of a detailed model for a plain one: traces rays between their surfaces on a device.
 #pragma once
 #include <functional>
 

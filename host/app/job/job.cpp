@@ -47,8 +47,7 @@ Listed list_of(Channel& channel, const std::string& name) {
       fmt::format("{}: its drivers have not listed their devices for {} s", name, patience_with_drivers));
 }
 
-/// Selects by SPECs; without any, the fastest device and others like it, so that each rank of a machine gets
-/// one.
+/// Selects by SPECs; without any, takes the fastest device and others like it, for the ranks of a machine.
 std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::vector<std::string>& specs,
                                std::vector<std::string>& warnings) {
   std::vector<DeviceInfo> chosen = select_devices(all, specs, &warnings);
@@ -61,8 +60,7 @@ std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::ve
   return chosen;
 }
 
-/// Collects the devices that the command selects on each rank. Warns about ranks without devices if another
-/// rank has some.
+/// Collects the devices that the command selects on each rank. Warns about ranks without any.
 class Choice {
  public:
   explicit Choice(Mailbox& job) : job_(job), ranks_(static_cast<std::size_t>(job.size())) {}

@@ -1,5 +1,4 @@
-// A render that mpirun runs as several processes: rank 0 renders the frame, the other ranks serve their
-// devices to it.
+// A render by several processes under mpirun: rank 0 renders, the other ranks serve their devices to it.
 #pragma once
 #include <memory>
 #include <vector>

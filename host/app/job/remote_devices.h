@@ -1,5 +1,4 @@
-// Devices in other processes, for `render`: makes the settings that are sent to them, and opens workers from
-// such settings.
+// Devices in other processes, for `render`: makes settings to send to them, and opens workers from these.
 #pragma once
 #include <map>
 #include <memory>

@@ -1,5 +1,4 @@
-// `sundog worker DESCRIPTOR NAME`: serves one device to the sundog process that started it (--isolate). Not
-// for users.
+// `sundog worker DESCRIPTOR NAME`: serves one device to its parent process (--isolate). Not for users.
 #include <signal.h>
 #include <unistd.h>
 

@@ -21,8 +21,7 @@ struct Command {
 /// Declares a command below `root`; stores it in `chosen` if the command line names it.
 using AddCommand = void(Arguments& root, Command& chosen);
 
-/// X(name) for each command, in the order of help. The last two are not for users: sundog's processes start
-/// them.
+/// X(name) for each command, in the order of help. Only sundog itself starts the last two.
 #define SUNDOG_COMMANDS(X) \
   X(render)                \
   X(devices)               \

@@ -1,5 +1,4 @@
-// Checks the words of a command line before CLI11 parses it, and suggests the nearest name for misspelt
-// words.
+// Checks a command line before CLI11 parses it, and suggests the nearest name for a misspelt word.
 #pragma once
 #include <string>
 #include <vector>

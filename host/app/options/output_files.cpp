@@ -1,5 +1,4 @@
-// Checks output files: compares files by device and inode and by resolved path. Outputs may share a pipe or
-// device.
+// Compares files by device and inode and by resolved path. Outputs may share a pipe or device.
 #include "app/options/output_files.h"
 
 #include <fmt/format.h>

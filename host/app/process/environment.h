@@ -8,8 +8,7 @@
 
 namespace sundog {
 
-/// Read at the first call, which a command makes before it starts threads. Throws UsageError for a malformed
-/// SUNDOG_FAULTS.
+/// Read at the first call, before a command starts threads. Throws UsageError for a malformed SUNDOG_FAULTS.
 const EnvironmentPtr& program_environment();
 
 /// The threads left in drivers. While there are any, the process must end by _exit(), because static

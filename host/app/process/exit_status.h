@@ -16,8 +16,7 @@ enum ExitStatus {
   exit_interrupted = 130,
 };
 
-/// Runs the command and returns its status or, if it throws, the error's status; prints the error if
-/// `speaks`.
+/// Runs the command. Returns its status or, if it throws, the error's; prints the error if `speaks`.
 int exit_status_of(const std::function<int()>& command, bool speaks = true);
 
 }  // namespace sundog

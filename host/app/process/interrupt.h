@@ -19,11 +19,9 @@ class StopOnSignal {
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
-  /// From now on a signal sets the flag, and a second one ends the program with status 130. This is the
-  /// initial state.
+  /// From now on (and initially) a signal sets the flag, and a second one ends the program with status 130.
   void asks() const;
-  /// From now on a signal ends the program at once with status 130 and prints "sundog: interrupted: " and
-  /// `why`.
+  /// From now on a signal prints "sundog: interrupted: " and `why`, and ends the program with status 130.
   void ends_all(const std::string& why) const;
 
   const std::atomic<bool>& flag() const;

@@ -7,8 +7,7 @@
 namespace sundog {
 
 /// Number of triangles (unique, and as placed by objects), objects by shape, lights by type, materials and
-/// media; the BVH's statistics; bytes by kind of table; the bounds of all bounded objects (null if there are
-/// none).
+/// media; the BVH's statistics; bytes by kind of table; the bounds of all bounded objects (null: none).
 nlohmann::json scene_figures(const SceneDescription& scene, const CompiledScene& flat);
 
 }  // namespace sundog

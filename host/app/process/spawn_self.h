@@ -15,8 +15,7 @@ namespace sundog {
 std::filesystem::path program_file();
 
 /// Starts this program with `arguments` (without its name). Adds `variables` ("NAME=VALUE") to its
-/// environment and hands down `descriptors`; stdin and stdout are /dev/null unless among these. Throws
-/// IoError.
+/// environment and hands down `descriptors`; stdin and stdout not among these are /dev/null. Throws IoError.
 pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
                  const std::vector<std::string>& variables = {});
 

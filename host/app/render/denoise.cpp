@@ -129,8 +129,7 @@ Image Denoiser::clean(std::initializer_list<Input> inputs, std::initializer_list
   return clean;
 }
 
-// Albedo and normal are denoised first, because they are noisy behind glass and their noise would remain in
-// the picture.
+// Albedo and normal are noisy behind glass, so they are denoised first; their noise would stay otherwise.
 void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
   const auto channels = static_cast<std::size_t>(image.channels);
   const Image clean_albedo = clean({{"albedo", albedo}}, {}), clean_normal = clean({{"normal", normal}}, {});

@@ -24,8 +24,7 @@ namespace {
 
 constexpr std::int64_t first_lock = std::int64_t{1} << 40, append_lock = first_lock - 1;
 
-/// Locks or unlocks a byte. Returns false if another process holds the lock; true if the file system has no
-/// locks.
+/// Locks or unlocks a byte. Returns false if another process holds the lock; true without support for locks.
 bool set_lock(int file, int command, short type, std::int64_t byte) {
   struct flock lock = {};
   lock.l_type = type;

@@ -17,8 +17,7 @@ struct FramePicture {
 /// The exclusive right to render a frame; released by its destruction or the end of the process.
 using FrameLock = std::shared_ptr<const std::int64_t>;
 
-/// Appends a line of JSON for each finished frame; a picture's last line counts. Records nothing without a
-/// path.
+/// Appends a line of JSON for each finished frame; a picture's last line counts. No path: records nothing.
 class FrameLog {
  public:
   /// Opens or creates the file; renames a file that is no such list, with a warning. Throws IoError.

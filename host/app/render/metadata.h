@@ -1,5 +1,4 @@
-// Makes the texts that `render --metadata` writes into a picture's file: its scene, settings, devices and
-// time.
+// Makes the texts that `render --metadata` writes into a file: program, scene, settings, devices, time.
 #pragma once
 #include <ctime>
 

@@ -268,8 +268,7 @@ class FrameRun {
     return command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume);
   }
 
-  /// Whether the frame and its scene are small enough (1 GiB) to hold another at once; never in a job or with
-  /// --denoise.
+  /// Whether the frame and its scene take less than 1 GiB, to hold two at once. Not in a job or to denoise.
   bool fits_twice(const Frame& frame) const {
     const auto pixels =
         static_cast<std::uint64_t>(frame.picture.width) * static_cast<unsigned>(frame.picture.height);

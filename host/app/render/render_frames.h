@@ -12,8 +12,7 @@ RenderCommand frame_command(const RenderCommand& command, int frame);
 /// The file that lists finished frames (FrameLog); empty: none.
 std::string frame_list(const RenderCommand& command);
 
-/// Renders the frames that are not done, and waits for frames that another process renders. Returns the exit
-/// status.
+/// Renders the frames that are not done; waits for other processes' frames. Returns the exit status.
 int render_frames(const RenderCommand& command, Setup& setup);
 
 }  // namespace sundog

@@ -21,8 +21,7 @@ FrameOutput frame_output(const RenderCommand& command, const ImageSettings& imag
 Shot frame_shot(const RenderCommand& command, const SceneDescription& scene,
                 const std::optional<NextShot>& next);
 
-/// Writes the image or the part, then removes the checkpoint of a complete frame. Moves image and AOVs out of
-/// `result`.
+/// Writes the image or part, then removes a complete frame's checkpoint. Moves image and AOVs from `result`.
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const Shot& shot, RenderResult& result, const std::string& checkpoint);
 

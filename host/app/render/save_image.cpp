@@ -46,8 +46,7 @@ bool keep_checkpoint(const Picture& picture) {
   }
 }
 
-/// Keeps the frame elsewhere. Returns where, as the end of an error message. `write_to` writes the file to
-/// another path.
+/// Keeps the frame elsewhere. Returns where, as the end of an error message. `write_to` writes to a path.
 template <class Write>
 std::string rescue(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
   if (keep_checkpoint(picture))

@@ -1,5 +1,4 @@
-// Writes an image or a part of a frame; if that fails, keeps the frame in a checkpoint or in the temporary
-// folder.
+// Writes an image or a part of a frame; on failure, keeps it in a checkpoint or the temporary folder.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -217,8 +217,7 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
         fmt::format("{} rays entered more solids inside each other than the media stack holds, 8, {}: "
                     "take some of them apart",
                     deep, lost_pixels(counts, scene)));
-  // A few stray exits come from rays that start within rounding of a closed mesh's edge; an open mesh causes
-  // many more.
+  // Rays that start within rounding of a closed mesh's edge cause a few; an open mesh causes many more.
   constexpr std::uint64_t rays_per_stray = 1'000'000;
   const std::uint64_t strays = counts[COUNT_STRAY_EXIT];
   if (strays > 0 && strays * rays_per_stray >= ray_count(counts))

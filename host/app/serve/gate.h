@@ -1,6 +1,5 @@
 // Admits requests to the viewer's server. A request must name this server as its Host, one of its pages as
-// its Origin (if any), and the token. Only calls and the socket's path accept POST. Uses no socket and no
-// clock.
+// its Origin (if any), and the token. Only calls and the socket's path accept POST. Does no input or output.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -35,8 +34,7 @@ inline constexpr std::string_view socket_path = "/ws";
 std::string random_token();
 
 /// Reads the token from the file, or creates the file, readable by this user only, so that open pages
-/// reconnect after a restart. Throws UsageError for a file with other contents, or one that others may read;
-/// IoError.
+/// reconnect after a restart. Throws UsageError for other contents, or a file that others may read; IoError.
 std::string kept_token(const std::filesystem::path& file);
 
 /// A name by which browsers reach the server, and the ports that they connect to.

@@ -16,8 +16,7 @@ std::string picture_message(const Snapshot& now, std::uint64_t version);
 
 class PictureStream {
  public:
-  /// `version_of` returns the document's version that a generation draws. `server` and `session` must outlive
-  /// the stream.
+  /// `version_of` returns the document's version that a generation draws. References outlive the stream.
   PictureStream(WebServer& server, RenderSession& session,
                 std::function<std::uint64_t(Generation)> version_of);
   ~PictureStream();

@@ -33,8 +33,7 @@ constexpr std::uint64_t bytes_a_shown_pixel = 130;
 double gigabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e9; }
 
 /// Throws SceneError at /image/width or /image/height if pages cannot show a picture of this size, or if it
-/// needs more than a quarter of the `available` bytes (none: unknown). Memory for `shown` pixels is already
-/// in use.
+/// needs more than a quarter of the `available` bytes (none: unknown). `shown` pixels are already in memory.
 void check_frame(const SceneDescription& scene, std::int64_t shown, std::optional<std::uint64_t> available) {
   const int width = scene.image.width, height = scene.image.height;
   const auto refuse = [&](bool wide, const std::string& why) {

@@ -1,5 +1,5 @@
-// Handles pages' messages, with a function for each "do". A change draws a new generation and notifies all
-// pages.
+// Handles pages' messages, with a function for each "do". A change draws a new generation; all pages hear of
+// it.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>

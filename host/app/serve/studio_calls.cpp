@@ -63,8 +63,7 @@ WebAnswer Studio::answer(const WebRequest& request) {
   }
 }
 
-/// Opens a model that was dropped on the page. It is the only file in its folder, so files that it names are
-/// missing.
+/// Opens a model that was dropped on the page, alone in its folder: files that it names are missing.
 void Studio::open_model(const std::string& name, const std::string& bytes) {
   try {
     document_.open(uploads_.keep(name, bytes));

@@ -24,8 +24,7 @@ struct WebAnswer {
 
 using ClientId = std::uint64_t;
 
-/// The server's thread calls these, so they must not block. Any thread may call `reply` and the server's
-/// functions.
+/// The server's thread calls these, so they must not block. Any thread may call `reply`.
 struct WebHandlers {
   std::function<void(WebRequest, std::function<void(WebAnswer)> reply)> answer;
   std::function<void(ClientId)> opened;  // a socket has sent the token

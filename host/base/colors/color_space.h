@@ -18,8 +18,7 @@ inline constexpr Primaries ap1_primaries = {
 /// CIE XYZ of a chromaticity at luminance 1.
 glm::dvec3 xyz_of(glm::dvec2 chromaticity);
 
-/// The matrix from a space's colours to CIE XYZ, with white at luminance 1. Not finite if the primaries lie
-/// on one line.
+/// The matrix from a space's colours to CIE XYZ; white has luminance 1. Not finite for collinear primaries.
 glm::dmat3 xyz_from(const Primaries& space);
 
 /// The matrix that adapts XYZ from one white to another (Bradford: Lam 1985).

@@ -1,5 +1,4 @@
-// Encodes and decodes PNG with libspng, with limits set before decoding; png_pixels.h decodes the most common
-// files.
+// Encodes and decodes PNG with libspng, under limits; png_pixels.h decodes the most common files.
 #include <fmt/format.h>
 #include <spng.h>
 
