@@ -1,5 +1,5 @@
-// Handles pages' messages, with a function for each "do". A change draws a new generation; all pages hear of
-// it.
+// Handles pages' messages, with a function for each "do". A change starts a new generation and goes to all
+// pages.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>
