@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// Calls body(i) for each i below `count`; a thread takes at least about 4096 indices at a time.
+/// Calls body(i) for each i below `count`; threads take thousands of indices at a time.
 template <class Body>
 void in_parallel(std::size_t count, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {

@@ -78,7 +78,7 @@ double event_ms(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
-/// Whether the driver reports a fast fma(). Not for CPUs: their drivers may report it without the
+/// Whether the driver reports a fused multiply-add. Not for CPUs: their drivers may report it without the
 /// instruction, and their compilers define a macro instead.
 bool has_fma_instruction(const cl::Device& device, const DeviceInfo& info) {
   return info.type != "cpu" && (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;

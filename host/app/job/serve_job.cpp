@@ -44,7 +44,8 @@ class ReadAhead : public Channel {
   std::optional<Message> first_;
 };
 
-/// Passes messages in both directions until one orders to close. Throws ChannelClosed if either end is gone.
+/// Passes messages in both directions until the job orders to close. Throws ChannelClosed if either end is
+/// gone.
 void pass_on(Channel& job, Channel& worker) {
   constexpr double look_again = 0.002;
   while (true) {

@@ -1,5 +1,6 @@
-// Admits requests to the viewer's server. A request must name this server as its Host, one of its pages as
-// its Origin (if any), and the token. Only calls and the socket's path accept POST. Does no input or output.
+// Admits requests to the viewer's server. A request must name this server as its Host and one of its pages as
+// its Origin, if any; calls also need the token. Only calls and the socket's path accept POST. Uses no socket
+// and no clock.
 #pragma once
 #include <filesystem>
 #include <map>

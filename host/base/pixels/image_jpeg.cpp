@@ -18,7 +18,7 @@ struct DestroyJpeg {
 /// A Huffman-coded block of 64 pixels takes at least a bit; doubled for arithmetic coding.
 constexpr std::int64_t jpeg_pixels_a_byte = 1024;
 
-/// Throws for errors and warnings, because libjpeg only warns when it invents missing pixels.
+/// Throws for errors and warnings, except harmless ones: libjpeg only warns when it invents missing pixels.
 void check_jpeg(void* handle, int result) {
   if (result == 0) return;
   const std::string_view reason = tjGetErrorStr2(handle);

@@ -171,8 +171,8 @@ std::uint16_t word_of(float value, Sample kind) {
                               : static_cast<std::uint16_t>(rounded(unit_clamped(value) * 65535));
 }
 
-/// Converts `count` linear pixels to samples: sRGB bytes for colours, linear values for data. Colours
-/// weighted by alpha are divided by it.
+/// Converts `count` linear pixels to samples: sRGB for colours in bytes, else linear. Divides colours that
+/// were weighted by alpha by it.
 template <std::size_t channels>
 void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse use, std::uint8_t* to) {
   const bool by_alpha = use == SampleUse::color_by_alpha && channels == 4;
