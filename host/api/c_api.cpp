@@ -1,4 +1,4 @@
-// The C interface over the C++ one: exceptions become a status and details in the caller's error handle.
+// Implements the C interface with the C++ one: turns exceptions into a status and details in an error handle.
 #include "api/impl.h"
 // Public headers must follow the host's (api/core.h).
 #include <sundog/session.h>

@@ -50,7 +50,7 @@ namespace {
 
 /// Shortens a name that would leave no room for a temporary file's suffix.
 std::string shortened(std::string name) {
-  constexpr std::size_t most = 200;  // of 255
+  constexpr std::size_t most = 200;  // file systems allow 255 bytes
   if (name.size() <= most) return name;
   std::size_t size = most;
   while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0u) == 0x80u) --size;  // whole characters

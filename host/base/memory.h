@@ -1,4 +1,4 @@
-// Available memory, and allocation of large blocks.
+// Measures available memory, and speeds up the allocation of large blocks.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -122,7 +122,7 @@ class Device {
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
-  /// Whether build() would not compile: it has built this before, or the binary cache has it.
+  /// Whether build() needs no compilation, because this device or the binary cache has the program.
   bool has(const std::string& entry, const KernelDefines& defines,
            const GeneratedFiles& generated = {}) const;
 

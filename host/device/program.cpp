@@ -126,7 +126,7 @@ cl::Program program_of_parts(const cl::Context& context, const cl::Device& devic
   return status == CL_SUCCESS && kernels_work(whole) ? whole : cl::Program();
 }
 
-/// Compiles in another process while this one's driver initialises; false: compile it here.
+/// Compiles in another process while this one's driver initialises; false: the program must be compiled here.
 bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                     const std::string& source) {
   auto process = CompileProcess::start(record.device, source, record.options);

@@ -51,7 +51,7 @@ SUNDOG_C_API const char* sundog_version(void) SUNDOG_NOEXCEPT;
 
 /* --- errors ------------------------------------------------------------------------------------------- */
 
-/** A handle for any number of calls, one after another; NULL if out of memory. */
+/** Returns an error handle, which consecutive calls may share; NULL if out of memory. */
 SUNDOG_C_API sundog_error* sundog_error_new(void) SUNDOG_NOEXCEPT;
 /** The message, one line; empty before the first failure and for NULL. Valid until the next failure. */
 SUNDOG_C_API const char* sundog_error_line(const sundog_error* error) SUNDOG_NOEXCEPT;
@@ -139,7 +139,7 @@ SUNDOG_C_API sundog_status sundog_render(const sundog_scene* scene, const sundog
                                          sundog_film** film, sundog_error* error) SUNDOG_NOEXCEPT;
 /** 1: every pixel has all its samples; 0: stopped, out of time, or NULL. */
 SUNDOG_C_API int sundog_film_complete(const sundog_film* film) SUNDOG_NOEXCEPT;
-/** A warning about the render, counted from 0: one line. Valid as long as the film; NULL: there is none. */
+/** A warning about the render, one line; `index` from 0. Valid until the film is freed; NULL: no more. */
 SUNDOG_C_API const char* sundog_film_warning(const sundog_film* film, size_t index) SUNDOG_NOEXCEPT;
 /** The picture (`aov` NULL: linear RGBA) or an AOV: width * height * channels floats, row 0 at the top. Valid
  * until the film is freed; any argument after `pixels` may be NULL. */

@@ -88,7 +88,7 @@ std::string command_of(const GalleryOptions& options, const std::string& scene) 
   return text;
 }
 
-/// The page and all pictures.
+/// The files of the page and of all pictures.
 std::vector<std::string> output_files(const GalleryOptions& options) {
   const fs::path folder = options.folder;
   std::vector<std::string> files = {(folder / "index.html").string()};

@@ -44,8 +44,7 @@ class ReadAhead : public Channel {
   std::optional<Message> first_;
 };
 
-/// Passes messages in both directions until the job orders to close. Throws ChannelClosed if either end is
-/// gone.
+/// Passes messages on both ways until the job orders to close. Throws ChannelClosed if either end is gone.
 void pass_on(Channel& job, Channel& worker) {
   constexpr double look_again = 0.002;
   while (true) {

@@ -14,7 +14,7 @@ struct PictureOptions {
   std::string out;           // "-": the standard output
   std::string format;        // for the standard output, one of image_formats()
   bool full_floats = false;  // an EXR's colours as 32-bit floats
-  // As typed; empty: the scene's.
+  // As typed; empty: the scene's setting.
   std::string tone_curve, exposure, white_balance, contrast, vignette, bloom;
   bool no_dither = false;
   int dpi = 72;                      // pixels per inch, for printers

@@ -7,7 +7,7 @@ namespace sundog {
 /// The exit statuses, which scripts rely on.
 enum ExitStatus {
   exit_done = 0,
-  exit_failure = 1,  // internal or I/O
+  exit_failure = 1,  // internal or I/O error
   exit_usage = 2,
   exit_scene = 3,       // the scene or an input file is bad
   exit_device = 4,      // no such device, or every device failed

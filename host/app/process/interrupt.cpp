@@ -16,7 +16,7 @@
 namespace sundog {
 namespace {
 
-constexpr double at_once = 0.3;  // seconds
+constexpr double at_once = 0.3;  // seconds within which two signals count as one
 
 enum class Answer { ask, end, end_silently };
 

@@ -48,7 +48,7 @@ class FrameLog {
   std::string path_;
   int file_ = -1;
   std::vector<std::string> warnings_;
-  std::map<std::string, Entry> entries_;  // by the picture's name
+  std::map<std::string, Entry> entries_;  // by the picture's file name
 };
 
 /// Whether the file exists and is not empty.

@@ -27,7 +27,7 @@ fs::path named(const Picture& picture, const fs::path& path) {
 }
 
 void write(const Picture& picture, const fs::path& path) {
-  constexpr std::size_t large = 1 << 20;  // values that take longer to compress than threads to start
+  constexpr std::size_t large = 1 << 20;  // with more values, compressing takes longer than starting threads
   if (lower_extension(named(picture, path)) == ".exr" &&
       picture.image.data.size() * (1 + picture.aovs.size()) > large)
     share_exr_work(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));

@@ -1,6 +1,6 @@
 // Admits requests to the viewer's server. A request must name this server as its Host and one of its pages as
-// its Origin, if any; calls also need the token. Only calls and the socket's path accept POST. Uses no socket
-// and no clock.
+// its Origin, if any; calls also need the token. Only calls and the socket's path accept POST. Needs no
+// socket or clock.
 #pragma once
 #include <filesystem>
 #include <map>

@@ -51,7 +51,7 @@ class SceneDocument {
   std::shared_ptr<const SceneDescription> scene() const { return scene_; }
   /// Grows with each change.
   std::uint64_t version() const { return version_; }
-  /// The version that open() or replace() made.
+  /// The version that the last open() or replace() created.
   std::uint64_t opened_version() const { return opened_version_; }
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }

@@ -1,5 +1,4 @@
-// Handles pages' messages, with a function for each "do". A change starts a new generation and goes to all
-// pages.
+// Handles pages' messages, with a function for each "do". A change restarts drawing and goes to all pages.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>

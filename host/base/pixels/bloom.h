@@ -1,4 +1,4 @@
-// Bloom: light that a camera's glass spreads over the surroundings of bright parts.
+// Adds bloom: light that a camera's lens spreads around bright parts.
 #pragma once
 #include "base/image.h"
 

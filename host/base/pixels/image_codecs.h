@@ -26,7 +26,7 @@ bool exr_has_alpha(std::string_view bytes);
 std::string encode_hdr(const Image& image);
 Image decode_hdr(std::string_view file);
 
-/// Three floats a pixel, little-endian, rows bottom-up.
+/// Three floats per pixel, little-endian, rows bottom-up.
 std::string encode_pfm(const Image& image);
 Image decode_pfm(std::string_view bytes);
 

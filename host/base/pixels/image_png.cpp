@@ -55,7 +55,7 @@ spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& st
   const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && !transparent;
   stored.channels = grey ? 1 : 4;
   stored.sample = header.bit_depth == 16 ? StoredImage::Sample::word : StoredImage::Sample::byte;
-  if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in the machine's order
+  if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in native byte order
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
 }
 
@@ -112,7 +112,7 @@ void add_texts(spng_ctx* context, const ImageTexts& texts) {
     spng_text chunk{.keyword = "",
                     .type = SPNG_ITXT,
                     .length = text.size(),
-                    .text = const_cast<char*>(text.data()),  // it is only read
+                    .text = const_cast<char*>(text.data()),  // libspng only reads it
                     .compression_flag = 0,
                     .compression_method = 0,
                     .language_tag = const_cast<char*>(none),
@@ -139,7 +139,7 @@ std::string encode_rows(spng_ihdr header, std::size_t row_bytes, const FileOptio
   if (!context) throw std::bad_alloc();
   std::vector<std::uint8_t> row(row_bytes);
   std::string bytes;
-  bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // it never grows
+  bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // never grows
   check_encoder(spng_set_png_stream(context.get(), append_bytes, &bytes));
   check_encoder(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, level));
   check_encoder(spng_set_option(context.get(), SPNG_FILTER_CHOICE, filters));

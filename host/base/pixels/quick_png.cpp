@@ -25,8 +25,9 @@ constexpr unsigned cell_shift = 16;
 constexpr std::uint32_t first_bits = std::uint32_t{127 - 13} << 23, end_bits = std::uint32_t{127} << 23;
 
 struct ByteSteps {
-  std::array<float, 257> least{};  // the smallest float of each byte; the last is above all
-  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1> at{};  // at the start of a cell
+  std::array<float, 257> least{};  // the smallest float for each byte; the last exceeds all
+  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1>
+      at{};  // the byte at the start of each cell
 };
 
 std::uint8_t slow_byte(float value) {
