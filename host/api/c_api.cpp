@@ -241,6 +241,8 @@ const char* sundog_devices_problem(const sundog_devices* devices, size_t index) 
 
 void sundog_devices_free(sundog_devices* devices) noexcept { delete devices; }
 
+void sundog_wait_for_threads() noexcept { sundog::wait_for_threads(); }
+
 sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options, sundog_film** film,
                             sundog_error* error) noexcept {
   return guarded(error, [&]() -> sundog_status {

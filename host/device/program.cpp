@@ -253,7 +253,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   }
   if (!record->cache_file.empty())
     if (const auto reason = cannot_store(record->cache_file)) {
-      report.note = *reason;
+      report.note = *reason + "; set XDG_CACHE_HOME to a folder that can be written";
       record->cache_file.clear();
     }
   if (!from_source) record->program = program_begun(prepared, *record, context, device);

@@ -115,6 +115,9 @@ SUNDOG_C_API const char* sundog_devices_problem(const sundog_devices* devices, s
 /** Frees a handle; accepts NULL. */
 SUNDOG_C_API void sundog_devices_free(sundog_devices* devices) SUNDOG_NOEXCEPT;
 
+/** Waits, for at most a minute, for threads that a stopped render or session has left in a driver. */
+SUNDOG_C_API void sundog_wait_for_threads(void) SUNDOG_NOEXCEPT;
+
 /* --- renders ------------------------------------------------------------------------------------------ */
 
 /** Called a few times a second by one thread at a time, not always the caller's. Return 0 to continue; other

@@ -190,8 +190,11 @@ std::vector<std::string> warnings_of(const SceneDescription& scene, const Render
     all.push_back(
         "the picture is black, for nothing in the scene shines: give it lights, an environment or a "
         "background");
-  for (const DeviceReport& report : result.devices)
+  for (const DeviceReport& report : result.devices) {
     for (std::string& text : failures_text(report)) all.push_back(std::move(text));
+    for (const std::string& note : report.notes)  // several kernels may have the same
+      if (std::ranges::count(all, note) == 0) all.push_back(note);
+  }
   if (const std::string& left = result.checkpoint_left; !left.empty())
     all.push_back(left.substr(0, left.find("; remove")) + "; the frame began anew");
   return all;
