@@ -129,9 +129,10 @@ static inline float3 left_by_photons(const PathState* path, float3 light) {
   return light;
 }
 
-// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that the ray meets.
-static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
-  return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
+// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that a ray of this depth
+// meets.
+static inline int dimension_here(int depth, UNIFORM u32 offset) {
+  return (depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
 }
 
 #define MOST_SURFACES 65537  // on any path, with those that it passes straight

@@ -16,9 +16,13 @@ typedef struct Beam {
 } Beam;
 
 typedef struct Photon {
-  PathState path;  // throughput is the flux; depth 1 + what has sent the photon on
-  bool bent;       // it has been mirrored or bent
-  int dimmed;      // the light whose falling off with distance is still to come, or NOT_DIMMED
+  SampledSpectrum flux;
+  int depth;                              // 1 + what has sent it on
+  HAVING(HAS_SHADOW_FILTERS) int passed;  // surfaces, straight on, that shadow rays pass, too
+  SampleAt at;
+  SampledWavelengths wavelengths;
+  bool bent;   // it has been mirrored or bent
+  int dimmed;  // the light whose falling off with distance is still to come, or NOT_DIMMED
   HAVING(HAS_SCATTERING) Beam beam;
 } Photon;
 
@@ -33,8 +37,11 @@ typedef struct Landing {
 ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at,
                                         const PhotonStart* start) {
   Photon photon;
-  photon.path = start_path(scene, at);
-  photon.path.throughput = spectrum_of(&photon.path.wavelengths, start->flux);
+  photon.wavelengths = choose_wavelengths(scene, at);
+  photon.flux = spectrum_of(&photon.wavelengths, start->flux);
+  photon.depth = 1;
+  if (HAS_SHADOW_FILTERS) photon.passed = 0;
+  photon.at = *at;
   photon.bent = false;
   photon.dimmed = start->dimmed;
   if (HAS_SCATTERING) {
@@ -45,6 +52,12 @@ ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const Sample
   return photon;
 }
 
+// How often surfaces have done so, but for those that shadow rays pass at no cost.
+static inline int times_sent_on(const Photon* photon) {
+  if (HAS_SHADOW_FILTERS) return photon->depth - photon->passed - 1;
+  return photon->depth - 1;
+}
+
 // A delta light falls off by its own rule up to the point p, where its photon is first bent, and beyond it as
 // the rays spread. So glass receives as much as any surface there.
 static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photon* photon) {
@@ -52,7 +65,7 @@ static inline void dim_with_distance(UNIFORM const Scene* scene, float3 p, Photo
   EACH_ALIKE(int, index, photon->dimmed) {
     const LightSample light = way_to_lamp(scene->lights + index, p);
     const float3 sent = light.radiance * (M_PI_F * light.distance * light.distance);
-    photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sent);
+    photon->flux *= spectrum_of(&photon->wavelengths, sent);
   }
   photon->dimmed = NOT_DIMMED;
 }
@@ -76,12 +89,13 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
     change = flux_by_normals(&at->s, -ray->d, sample->wi);
     photon->bent = true;
   }
-  photon->path.throughput *= spectrum_of(&photon->path.wavelengths, sample->weight * change);
-  if (HAS_DISPERSION) part_wavelengths(scene, at, &lobes->interface, &photon->path, !below);
+  photon->flux *= spectrum_of(&photon->wavelengths, sample->weight * change);
+  if (HAS_DISPERSION)
+    part_wavelengths(scene, at, &lobes->interface, !below, &photon->wavelengths, &photon->flux);
   const bool cut_out = cut_away(&at->bsdf, &lobes->interface) && may_cross(ray);
-  if (!cut_out) ++photon->path.depth;
-  if (HAS_SHADOW_FILTERS && !turns && !cut_out && lobes->interface.eta == 1.0f) ++photon->path.passed;
-  if (!cut_out && limited_depth(&photon->path) > (int)scene->info->max_depth) return false;
+  if (!cut_out) ++photon->depth;
+  if (HAS_SHADOW_FILTERS && !turns && !cut_out && lobes->interface.eta == 1.0f) ++photon->passed;
+  if (!cut_out && times_sent_on(photon) >= (int)scene->info->max_depth) return false;
   leave_surface(scene, met, at, sample, below, cut_out, ray);
   return true;
 }
@@ -90,9 +104,9 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
 HAVING(HAS_SCATTERING)
 static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
                                      const Encounter* met, Photon* photon) {
-  const MediumSegment s = find_medium_segment(scene, begun, ray, met, &photon->path);
+  const MediumSegment s = find_medium_segment(scene, begun, ray, met, &photon->wavelengths, photon->flux);
   if (!photon->bent || !s.scatters) return;
-  const SampledSpectrum flux = photon->path.throughput * spectrum_over(s.decay, s.begin);
+  const SampledSpectrum flux = photon->flux * spectrum_over(s.decay, s.begin);
   const float light = spectrum_greatest(flux) * lost_part(s.mean * s.length);
   if (!(light > 0.0f)) return;
   photon->beam.scattered += light;
@@ -104,8 +118,8 @@ static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay*
   photon->beam.o = s.o;
   photon->beam.d = s.d;
   photon->beam.length = s.length;
-  photon->beam.flux = spectrum_seen(scene, &photon->path.wavelengths, &flux) * (1.0f / light);
-  photon->beam.sent_on = limited_depth(&photon->path) - 1;
+  photon->beam.flux = spectrum_seen(scene, &photon->wavelengths, &flux) * (1.0f / light);
+  photon->beam.sent_on = times_sent_on(photon);
 }
 
 // Perhaps takes the photon's segment for its beam.
@@ -124,26 +138,25 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
   const bool unseen = meet_interfaces(scene, ray, false, &met, counts);
   forget_glow(ray);
   choose_beam(scene, &begun, ray, &met, photon);
-  photon->path.throughput *= spectrum_kept(&photon->path.wavelengths, met.absorbed);
+  photon->flux *= spectrum_kept(&photon->wavelengths, met.absorbed);
   if (unseen || !hit_anything(&met.hit)) return unseen;
-  if (HAS_FOG) photon->path.throughput *= clear_of_fog(scene, &met);
+  if (HAS_FOG) photon->flux *= clear_of_fog(scene, &met);
   SurfaceShading at;
   shade_hit(scene, ray, &met, &at);
-  follow_hero(&photon->path.wavelengths, &at.bsdf);
+  follow_hero(&photon->wavelengths, &at.bsdf);
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
-  const Numbers u =
-      numbers_at(&photon->path.at, dimension_here(&photon->path, BOUNCE_DIRECTION), false, true);
+  const Numbers u = numbers_at(&photon->at, dimension_here(photon->depth, BOUNCE_DIRECTION), false, true);
   const BsdfSample sample = sample_perfect(&at.bsdf, &lobes, -ray->d, u.z * lobes.all);
   if (!sample.specular) {
     // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
     const float rest = scattered_share(&lobes);
-    if (photon->bent && rest > 0.0f && spectrum_greatest(photon->path.throughput) > 0.0f) {
-      const SampledSpectrum flux = photon->path.throughput * (lobes.all / rest);
+    if (photon->bent && rest > 0.0f && spectrum_greatest(photon->flux) > 0.0f) {
+      const SampledSpectrum flux = photon->flux * (lobes.all / rest);
       const Landing here = {true,
                             at.s.p,
                             -ray->d,
-                            spectrum_seen(scene, &photon->path.wavelengths, &flux),
-                            limited_depth(&photon->path) - 1,
+                            spectrum_seen(scene, &photon->wavelengths, &flux),
+                            times_sent_on(photon),
                             at.s.instance};
       *landed = here;
     }
