@@ -5,26 +5,37 @@
 #include "plain/pathtracer/medium_segment.cl"
 #include "plain/pathtracer/photon_start.cl"
 
-// One of the segments on which a medium scatters a photon that was mirrored or bent, chosen by how much
+// The segment on which a medium scatters a photon that was mirrored or bent: one of them, chosen by how much
 // light each of them scatters.
 typedef struct Beam {
-  float3 o, d, flux;  // flux: over this segment's part of the light
-  float length;       // may be infinite
-  int sent_on;        // how often the photon was
-  float scattered;    // light on all segments so far
-  float number;       // in [0, 1), to choose by
+  float scattered;  // light on all segments so far
+  float number;     // in [0, 1), to choose by
 } Beam;
 
 typedef struct Photon {
   SampledSpectrum flux;
   int depth;                              // 1 + what has sent it on
   HAVING(HAS_SHADOW_FILTERS) int passed;  // surfaces, straight on, that shadow rays pass, too
-  SampleAt at;
+  int place;                              // among those of its launch
   SampledWavelengths wavelengths;
   bool bent;   // it has been mirrored or bent
   int dimmed;  // the light whose falling off with distance is still to come, or NOT_DIMMED
   HAVING(HAS_SCATTERING) Beam beam;
 } Photon;
+
+// The sample that has the photon's random numbers.
+SampleAt sample_of_photon(UNIFORM const Scene* scene, UNIFORM const PhotonLaunch* launch, int place);
+
+// Keeps a segment as the photon's beam, of which `beam` is the first row; `flux`: over the segment's part of
+// the light.
+HAVING(HAS_SCATTERING)
+void keep_beam(UNIFORM __global float4* landed, int beam, float3 o, float length, float3 d,
+               int slice_and_sent, float3 flux, HERE);
+
+// The first of the three rows of a photon's beam, behind those of all photons that have landed.
+ENTRY static inline int row_of_beam(UNIFORM const PhotonLaunch* launch, int place) {
+  return (int)(2u * (launch->last - launch->first)) + 3 * place;
+}
 
 // A photon that has landed, with the light that it brings.
 typedef struct Landing {
@@ -34,18 +45,17 @@ typedef struct Landing {
   int instance;        // that it lies on
 } Landing;
 
-ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, const SampleAt* at,
+ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, int place, const SampleAt* at,
                                         const PhotonStart* start) {
   Photon photon;
+  photon.place = place;
   photon.wavelengths = choose_wavelengths(scene, at);
   photon.flux = spectrum_of(&photon.wavelengths, start->flux);
   photon.depth = 1;
   if (HAS_SHADOW_FILTERS) photon.passed = 0;
-  photon.at = *at;
   photon.bent = false;
   photon.dimmed = start->dimmed;
   if (HAS_SCATTERING) {
-    photon.beam.length = 0.0f;
     photon.beam.scattered = 0.0f;
     photon.beam.number = numbers_at(at, (int)DIMENSION_STRETCH, true, false).x;
   }
@@ -102,8 +112,9 @@ static inline bool send_on(UNIFORM const Scene* scene, const Encounter* met, con
 
 // A number that has made one choice is as good for the next.
 HAVING(HAS_SCATTERING)
-static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
-                                     const Encounter* met, Photon* photon) {
+static inline void choose_scattering(UNIFORM const Scene* scene, UNIFORM const PhotonLaunch* launch,
+                                     const BegunRay* begun, const SceneRay* ray, const Encounter* met,
+                                     Photon* photon, UNIFORM __global float4* landed) {
   const MediumSegment s = find_medium_segment(scene, begun, ray, met, &photon->wavelengths, photon->flux);
   if (!photon->bent || !s.scatters) return;
   const SampledSpectrum flux = photon->flux * spectrum_over(s.decay, s.begin);
@@ -115,29 +126,29 @@ static inline void choose_scattering(UNIFORM const Scene* scene, const BegunRay*
   photon->beam.number =
       taken ? photon->beam.number / chance : (photon->beam.number - chance) / real_max(1.0f - chance, 1e-6f);
   if (!taken) return;
-  photon->beam.o = s.o;
-  photon->beam.d = s.d;
-  photon->beam.length = s.length;
-  photon->beam.flux = spectrum_seen(scene, &photon->wavelengths, &flux) * (1.0f / light);
-  photon->beam.sent_on = times_sent_on(photon);
+  const float3 seen = spectrum_seen(scene, &photon->wavelengths, &flux) * (1.0f / light);
+  keep_beam(landed, row_of_beam(launch, photon->place), s.o, s.length, s.d,
+            photon_slice_of(ray) + (int)PHOTON_SLICES * times_sent_on(photon), seen);
 }
 
 // Perhaps takes the photon's segment for its beam.
-static inline void choose_beam(UNIFORM const Scene* scene, const BegunRay* begun, const SceneRay* ray,
-                               const Encounter* met, Photon* photon) {
-  if (HAS_SCATTERING) choose_scattering(scene, begun, ray, met, photon);
+static inline void choose_beam(UNIFORM const Scene* scene, UNIFORM const PhotonLaunch* launch,
+                               const BegunRay* begun, const SceneRay* ray, const Encounter* met,
+                               Photon* photon, UNIFORM __global float4* landed) {
+  if (HAS_SCATTERING) choose_scattering(scene, launch, begun, ray, met, photon, landed);
 }
 
-// Moves the photon by one step. Returns whether it continues; `landed`: it ends on a surface that scatters
+// Moves the photon by one step. Returns whether it continues; `landing`: it ends on a surface that scatters
 // light.
-ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneRay* ray, Landing* landed,
+ENTRY static bool step_photon(UNIFORM const Scene* scene, UNIFORM const PhotonLaunch* launch, Photon* photon,
+                              SceneRay* ray, Landing* landing, UNIFORM __global float4* landed,
                               UNIFORM u32* counts) {
   Encounter met;
-  landed->is = false;
+  landing->is = false;
   const BegunRay begun = begun_ray_of(ray);
   const bool unseen = meet_interfaces(scene, ray, false, &met, counts);
   forget_glow(ray);
-  choose_beam(scene, &begun, ray, &met, photon);
+  choose_beam(scene, launch, &begun, ray, &met, photon, landed);
   photon->flux *= spectrum_kept(&photon->wavelengths, met.absorbed);
   if (unseen || !hit_anything(&met.hit)) return unseen;
   if (HAS_FOG) photon->flux *= clear_of_fog(scene, &met);
@@ -145,7 +156,8 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
   shade_hit(scene, ray, &met, &at);
   follow_hero(&photon->wavelengths, &at.bsdf);
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
-  const Numbers u = numbers_at(&photon->at, dimension_here(photon->depth, BOUNCE_DIRECTION), false, true);
+  const SampleAt sampled = sample_of_photon(scene, launch, photon->place);
+  const Numbers u = numbers_at(&sampled, dimension_here(photon->depth, BOUNCE_DIRECTION), false, true);
   const BsdfSample sample = sample_perfect(&at.bsdf, &lobes, -ray->d, u.z * lobes.all);
   if (!sample.specular) {
     // On a surface that scatters and mirrors, chance decides which of the two the photon represents.
@@ -158,7 +170,7 @@ ENTRY static bool step_photon(UNIFORM const Scene* scene, Photon* photon, SceneR
                             spectrum_seen(scene, &photon->wavelengths, &flux),
                             times_sent_on(photon),
                             at.s.instance};
-      *landed = here;
+      *landing = here;
     }
     return false;
   }
