@@ -24,11 +24,6 @@ static inline void keep_beam(__global float4* landed, MASK beam, REAL3 o, REAL l
 
 #include "plain/pathtracer/photon.cl"
 
-typedef struct PhotonWork {
-  Photons photons;
-  SceneRays rays;
-} PhotonWork;
-
 // Photon `first` and those after it, one a lane.
 NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict light_media,
                              const PhotonLaunch* launch, u32 first, __global float4* restrict landed,
@@ -48,19 +43,24 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   const LaneSamples at = sample_of_photon(scene, launch, places);
   PhotonStarts starts;
   const MASK started = lanes & start_photon(scene, launch->targets, launch->count, &at, &starts, lanes);
-  // Touching faces take enough of the stack.
-  EITHER(HAS_TOUCHING, PhotonWork kept; PhotonWork* const work = &kept;, KEEP_IN_MEMORY(PhotonWork, work);)
-  Photons* photons = &work->photons;
+#if HAS_TOUCHING  // whose faces take enough of the stack
+  Photons kept;
+  SceneRays way;
+  Photons* const photons = &kept;
+  SceneRays* const rays = &way;
+#else
+  KEEP_IN_MEMORY(Photons, photons);
+  KEEP_IN_MEMORY(SceneRays, rays);
+#endif
   *photons = begun_photon(scene, places, &at, &starts, started);
   const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, started);
   const MediaStack outside = {0, 0};
-  work->rays = scene_rays(&begun, outside);
-  EACH_LANE(i, started) set_media(&work->rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
+  *rays = scene_rays(&begun, outside);
+  EACH_LANE(i, started) set_media(rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
   for (lanes = started; any_lane(lanes);) {
     Landings landings CLEARED_ON_GPUS;
     start_marching(counts);
-    const MASK going =
-        lanes & step_photon(scene, launch, photons, &work->rays, &landings, landed, counts, lanes);
+    const MASK going = lanes & step_photon(scene, launch, photons, rays, &landings, landed, counts, lanes);
     EACH_LANE(i, lanes & landings.is) {
       const int to = MASK_LANE(photons->place, i);
       const float3 flux = get3(&landings.flux, i);

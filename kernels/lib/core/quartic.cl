@@ -33,14 +33,15 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
   return x;
 }
 
-// Replaces `count` ascending extrema in x by the roots between them and the ends, of which there may be two
-// more; returns their number; ascending. No root is written before the extrema up to it are read.
+// Replaces `count` ascending extrema, up to MOST_ROOTS, by the first roots between them and the ends; returns
+// their number; ascending. A root is written only where the extrema have been read.
+#define MOST_ROOTS 4u
 static inline u32 extrema_to_roots(const float* c, const float* derivative, float low, float high, u32 count,
                                    float* x) {
   u32 found = 0;
   float left = low, f_left = polynomial(c, low);
 #pragma unroll 1
-  for (u32 i = 0; i <= count; ++i) {
+  for (u32 i = 0; i <= count && found < MOST_ROOTS; ++i) {
     const float right = i < count ? clamp(x[i], low, high) : high;
     const float f_right = polynomial(c, right);
     if (f_left == 0.0f && (found == 0u || x[found - 1u] != left))
@@ -50,11 +51,11 @@ static inline u32 extrema_to_roots(const float* c, const float* derivative, floa
     left = right;
     f_left = f_right;
   }
-  if (f_left == 0.0f && (found == 0u || x[found - 1u] != left)) x[found++] = left;
+  if (f_left == 0.0f && found < MOST_ROOTS && (found == 0u || x[found - 1u] != left)) x[found++] = left;
   return found;
 }
 
-// `roots` has room for six.
+// `roots` has room for MOST_ROOTS.
 static inline u32 quartic_roots(float a2, float a1, float a0, float low, float high, float* roots) {
   const float quartic[5] = {a0, a1, a2, 0.0f, 1.0f}, cubic[5] = {a1, 2.0f * a2, 0.0f, 4.0f, 0.0f},
               quadratic[5] = {2.0f * a2, 0.0f, 12.0f, 0.0f, 0.0f};
@@ -65,5 +66,5 @@ static inline u32 quartic_roots(float a2, float a1, float a0, float low, float h
     count = 2;
   }
   count = extrema_to_roots(cubic, quadratic, low, high, count, roots);
-  return min(extrema_to_roots(quartic, cubic, low, high, count, roots), 4u);
+  return extrema_to_roots(quartic, cubic, low, high, count, roots);
 }

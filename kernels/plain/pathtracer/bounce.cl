@@ -204,13 +204,13 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   bool going = false;
   if (hit_anything(&met.hit)) {
     going = reach_surface(scene, &met, path, ray, &lamp->other, lamp, counts);
+    path->straight = path->straight && going;
   } else {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
     int group = NO_LIGHT_GROUP;
     if (HAS_LIGHT_GROUPS) group = note_suns(scene, path, ray->d);
     lamp->other += met_light(path, SEEN_SKY, group, sky);
-    path->covered = !path->straight;
   }
   path->radiance += lamp->other;
   return going;
