@@ -62,6 +62,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     start_marching(counts);
     const MASK going = lanes & step_photon(scene, launch, photons, rays, &landings, landed, counts, lanes);
     EACH_LANE(i, lanes & landings.is) {
+      // From memory: made from `first`, the addresses would stay in registers around the loop.
       const int to = MASK_LANE(photons->place, i);
       const float3 flux = get3(&landings.flux, i);
       const float3 p = still_point(scene, (u32)MASK_LANE(landings.instance, i), get3(&landings.p, i),
@@ -81,6 +82,7 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
   EACH_LANE(i, started) {
     __global float4* last = landed + MASK_LANE(ends, i) + 2;
     const float light = REAL_LANE(photons->beam.scattered, i);
+    // So far w says whether there is a beam.
     if (last->w > 0.0f) *last = (float4)(last->xyz * light, light);
   }
 #endif

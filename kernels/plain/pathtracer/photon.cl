@@ -62,7 +62,7 @@ ENTRY static inline Photon begun_photon(UNIFORM const Scene* scene, int place, c
   return photon;
 }
 
-// How often surfaces have done so, but for those that shadow rays pass at no cost.
+// How often surfaces have sent the photon on, without those that shadow rays pass at no cost.
 static inline int times_sent_on(const Photon* photon) {
   if (HAS_SHADOW_FILTERS) return photon->depth - photon->passed - 1;
   return photon->depth - 1;
