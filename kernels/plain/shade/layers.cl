@@ -216,9 +216,11 @@ static inline LayerShare make_shares(UNIFORM const Scene* scene, const Bsdf* bsd
       shares.coat = bsdf->there * (by_fuzz - by_both);
       shares.shine = bsdf->there * (by_both * fma(opaque, 1.0f - by_shine, of_metal));
       shares.matte = bsdf->there * (by_both * by_shine * opaque * greatest(bsdf->base));
-      interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
-      interface->kt =
-          left_where_there(bsdf, interface->kt, left_by_layers(scene, m, bsdf, c, -interface->cos_t));
+      if (greatest(interface->kr) > 0.0f)
+        interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
+      if (interface->transmits)
+        interface->kt =
+            left_where_there(bsdf, interface->kt, left_by_layers(scene, m, bsdf, c, -interface->cos_t));
     }
   return shares;
 }
