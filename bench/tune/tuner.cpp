@@ -151,7 +151,7 @@ class Candidate {
   double start_seconds_ = 0;
 };
 
-/// Runs the two in turn, so that other load on the machine affects both; each goes first equally often.
+/// Runs the two in turn, so that other load on the machine affects both; they alternate in going first.
 TunePairs duel(Candidate& usual, Candidate& best, int count) {
   std::vector<double> of_usual, of_best;
   TunePairs pairs{0, 0, 0, count};
