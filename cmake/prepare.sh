@@ -59,7 +59,7 @@ size_of() {
   local all fetched stored
   all=$(apt-get -s -qq install --no-install-recommends "$@" 2>/dev/null | awk '$1 == "Inst" { print $2 }' | xargs)
   fetched=$(apt-get --print-uris -qq install --no-install-recommends "$@" 2>/dev/null | awk '{ n += $3 } END { print n }')
-  # shellcheck disable=SC2086 # a list of words
+  # shellcheck disable=SC2086  # a list of words
   stored=$(apt-cache show --no-all-versions $all 2>/dev/null | awk '/^Installed-Size:/ { n += $2 } END { print n }')
   echo "$(wc -w <<<"$all") packages, $(((${fetched:-0} + 500000) / 1000000)) MB to fetch, $(((${stored:-0} + 500) / 1000)) MB on disk"
 }

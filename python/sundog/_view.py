@@ -1,4 +1,4 @@
-"""A scene in a notebook: a picture to turn, with sliders. Needs anywidget (`pip install anywidget`)."""
+"""Shows a scene in a notebook: a picture that can be turned, with sliders. Needs anywidget (`pip install anywidget`)."""
 
 import math
 import pathlib
@@ -15,7 +15,7 @@ _steepest = math.radians(89)  # greatest elevation of the camera above the targe
 
 
 def _turned(camera, across, up, nearer):
-    """The position after a turn about the target by these angles; `nearer` divides the distance."""
+    """The camera's position after a turn about its target by these angles; `nearer` divides the distance."""
     target, axis = np.array(camera["target"], float), np.array(camera.get("up", [0, 1, 0]), float)
     axis /= np.linalg.norm(axis)
     way = np.array(camera["position"], float) - target
@@ -81,7 +81,7 @@ class View(anywidget.AnyWidget):
 
     @property
     def pixels(self):
-        """The settled picture: (height, width, 4) linear floats; waits for it."""
+        """Waits for the settled picture: (height, width, 4) linear floats."""
         return self._session.finish().pixels
 
     def set(self, pointer, value):
@@ -89,7 +89,7 @@ class View(anywidget.AnyWidget):
         self.hear({"set": {pointer: value}})
 
     def hear(self, message):
-        """A message of the page: "set": {pointer: value}, "turn": [radians across, up], "nearer": ratio."""
+        """Handles a message from the page: "set": {pointer: value}, "turn": [radians across, up], "nearer": ratio."""
         across, up = message.get("turn", (0, 0))
         with self._lock:
             scene = self._scene.copy()
