@@ -28,8 +28,7 @@ struct KernelFigures {
   std::size_t greatest_group =
       0;                  // that sundog uses: by the kernel's limit, and by the room on a processor's stack
   PtxasFigures compiler;  // from the build log, if the driver gives it
-  std::optional<unsigned>
-      resident_threads;                // on a multiprocessor, by the kernel's registers alone; NVIDIA only
+  std::optional<unsigned> resident_threads;  // per multiprocessor, by registers alone; NVIDIA only
   double cold_seconds = 0;             // to build its program from source and to store it in sundog's cache
   std::optional<double> warm_seconds;  // to load it from there; nothing without a cache
 };
@@ -180,7 +179,7 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
   set_variable("MESA_SHADER_CACHE_DISABLE",
-               "true");  // without its cache, Mesa compiles at each launch; there are none here
+               "true");                      // Mesa would compile at each launch; there are none here
   set_variable("POCL_CACHE_DIR", "", true);  // PoCL's cache of earlier processes
   KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);

@@ -21,7 +21,7 @@ struct ReportFiles {
 
 struct BenchOptions : ReportFiles {
   std::vector<std::string> scenes, devices, overrides;
-  std::string continue_from;  // a report whose runs count; empty: none
+  std::string continue_from;  // a report whose runs count too; empty: none
   std::string size;           // "WxH" of the images; empty: the scenes' own
   int repeat = 6;
   double seconds = 0;          // see MeasureOptions
@@ -74,7 +74,7 @@ std::vector<std::string> command_line_words();
 /// The command line, quoted for a shell.
 std::string command_line_text();
 
-/// "1,2,4": whole numbers within [low, high], ascending and without doubles. Throws UsageError.
+/// "1,2,4": whole numbers within [low, high], sorted and without duplicates. Throws UsageError.
 std::vector<int> parse_list(const char* option, const std::string& text, int low, int high);
 
 /// "a,b" -> a, b.

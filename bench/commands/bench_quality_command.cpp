@@ -25,7 +25,7 @@
 namespace sundog {
 namespace {
 
-/// One way to render the scene: settings, and what the report calls it.
+/// One way to render the scene.
 struct QualityWay {
   std::string integrator, sampler;
 };
@@ -159,7 +159,7 @@ struct QualityOptions : BenchOptions {
                                       goal = "0.02";
 };
 
-/// Every integrator with every sampler; without --integrators the scene's own.
+/// Every integrator with every sampler; without --integrators, the scene's integrator.
 std::vector<QualityWay> quality_ways(const QualityOptions& options, const std::string& file) {
   std::vector<std::string> integrators = split_names(options.integrators);
   if (integrators.empty()) integrators.push_back(bench_description(file, options).render.integrator);

@@ -50,7 +50,7 @@ class WorkGroupTimes {
   void add_to(Report& report) const;
 
   struct Way {
-    WorkGroup group, enqueued;   // as requested; as enqueued, where the default has its own size
+    WorkGroup group, enqueued;   // requested; enqueued (the default: its own size)
     std::string text;            // "8x8", "default (4x4)"
     std::vector<double> beyond;  // of each run, the first included: seconds beyond the device's events
     /// Seconds that the driver spent compiling at the size's first launch: its time beyond the device's

@@ -22,8 +22,8 @@ vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
 
 float greatest_size(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Of the interval of width w around x: the share inside x's own cell (between whole numbers) minus the share
-/// in the cells beside it.
+/// The share of the interval of width w around x that lies in x's own cell (between whole numbers), minus the
+/// share in the cells beside it.
 float own_part(float x, float w) {
   const float f = x - std::floor(x);
   return std::min(2 * std::min(f, 1 - f), std::min(w, std::max(2 - w, 0.0f))) / w;

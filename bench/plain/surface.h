@@ -19,7 +19,7 @@ struct Surface {
 
 glm::vec3 rgb(const float4& v);
 
-/// x^e, by squaring where e is whole.
+/// x^e, by squaring for whole e.
 float power(float x, float e);
 
 const Material& material_of(const CompiledScene& scene, const Hit& hit);
@@ -48,7 +48,7 @@ glm::vec3 local_reflection(const Surface& surface, const glm::vec3& d, const glm
 /// Reflectance of an interface between dielectrics, unpolarised; eta is the far index over the near one.
 float fresnel(float cos_i, float eta);
 
-/// Cosine of the refracted angle; 0 where everything is reflected.
+/// Cosine of the refracted angle; 0 at total reflection.
 float refracted_cosine(float cos_i, float eta);
 
 }  // namespace sundog::plain

@@ -1,4 +1,5 @@
-// Walks the two-level BVH child by child, near ones first; triangles after Moeller and Trumbore (1997).
+// Traverses the two-level BVH child by child, near ones first; intersects triangles by Moeller and Trumbore
+// (1997).
 #include "bench/plain/tracer.h"
 
 #include <algorithm>

@@ -183,8 +183,7 @@ RaySet primary_rays(const Viewpoint& view, unsigned size) {
   RaySet set{.kind = "primary", .coherent = true};
   set.rays.reserve(std::size_t(width) * width);
   const unsigned blocks = tile / block;
-  for (unsigned i = 0; i < width * width;
-       ++i) {  // in order of pixels in a block, blocks in a tile, tiles in the image
+  for (unsigned i = 0; i < width * width; ++i) {  // pixels in a block, in a tile, in the image
     const unsigned pixel = i % (block * block), in_tile = i / (block * block) % (blocks * blocks),
                    of_image = i / (tile * tile);
     const unsigned x = of_image % tiles * tile + in_tile % blocks * block + pixel % block;

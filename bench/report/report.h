@@ -1,5 +1,5 @@
 // A benchmark's results as plain values. A benchmark fills a Report; the writers below turn any Report into
-// text, JSON, CSV or a page, and know no benchmark.
+// text, JSON, CSV or a page, independently of the benchmark.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -44,7 +44,7 @@ struct Table {
 /// "time [ms]" as an identifier: "time_ms".
 std::string plain_name(const Column& column);
 
-/// Whether the column has a word in some row.
+/// Whether the column has a word in any row.
 bool is_word_column(const Table& table, std::size_t column);
 
 /// A cell and its column.
@@ -97,7 +97,7 @@ using Part = std::variant<Table, CurvePlot, BarPlot, HeatMap>;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct Report {
-  std::string name;                // "threads": of `sundog bench threads`
+  std::string name;                // the bench's, such as "threads"
   std::string title;               // the page's headline
   Facts facts;                     // device, driver, scene...: the conditions of the measurements
   std::vector<std::string> notes;  // a sentence each: the method, and failures
@@ -105,7 +105,7 @@ struct Report {
   Table measurements;              // tidy: one row per measurement, for other programs
   std::vector<MeasuredWay> ways;   // with every raw run
   Facts environment;               // variables that drivers and sundog read
-  Table devices, scenes;           // those that were measured, for other programs
+  Table devices, scenes;           // measured ones, for other programs
   bool complete = true;            // false: the bench is running or was interrupted
   bool times_frames = false;       // of the scenes' sizes, which captions then give
 };
@@ -121,7 +121,7 @@ void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way);
 void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
                   const std::vector<Field>& more = {});
 
-/// Facts, the tables among the parts (the measurements when there are none), notes.
+/// Facts, the tables among the parts (the measurements if there are none), notes.
 std::string report_text(const Report& report);
 
 /// docs/reference/bench-reports.md describes it; a Spread is an object of median, low, high, min, max and the

@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// Median and range of measurements; zeros when there are none.
+/// Median and range of measurements; zeros if there are none.
 struct Spread {
   double median = 0, min = 0, max = 0;
   std::vector<double> runs = {};  // in the order they were taken; empty for a derived figure

@@ -49,8 +49,8 @@ bool is_precise(const MeasuredWay& way, double precision);
 bool prepared(std::vector<Subject>& subjects, const MeasureOptions& options,
               const std::function<void()>& work);
 
-/// A result that two runs in a row agree on, so that one spoiled run is no reference. Throws DeviceError if
-/// no two of the first few runs agree.
+/// A result that two successive runs agree on, so that a spoiled run does not become the reference. Throws
+/// DeviceError if no two of the first few runs agree.
 template <class T, class Make, class Same>
 T confirmed(const Make& make, const Same& same) {
   T last = make();

@@ -1,4 +1,4 @@
-// Whether one way of doing work takes less time than another, from the runs of both.
+// Compares the times of two ways of doing work, from the runs of both.
 #pragma once
 #include <vector>
 

@@ -1,6 +1,6 @@
 // tinybvh_rays MODEL... : traces the same rays with sundog's tracer and with the OpenCL kernels of tinybvh
 // (https://github.com/jbikker/tinybvh: two-wide after Aila and Laine, compressed eight-wide) on one device,
-// in turn, and prints millions of rays a second by kernel time (by the host's clock where the driver gives no
+// in turn, and prints millions of rays a second by kernel time (by the host's clock if the driver gives no
 // times) and their ratio by kind of ray. tinybvh's kernels do not bound rays, so both tracers get rays that
 // start at 0 and do not end: a shadow ray continues past its light. Differing hits are counted and printed.
 #include <fmt/format.h>
