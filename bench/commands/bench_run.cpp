@@ -111,7 +111,7 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
     const Table devices = known_devices_, scenes = known_scenes_;
     take_known(kept.string());
     known_devices_ = devices,
-    known_scenes_ = scenes;  // check only those of --continue
+    known_scenes_ = scenes;  // checks only --continue's
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     head_.notes.push_back(why);

@@ -43,7 +43,7 @@ RaySet primary_rays(const Viewpoint& view, unsigned size);
 ///   primary     the camera's
 ///   shadow      from the point towards the light, where the light is in front of the surface
 ///   bounce      cosine-weighted about the normal (towards the camera)
-///   shuffled    the same in random order
+///   shuffled    the bounce rays in random order
 ///   reflection  the mirrored camera rays
 ///   glass       the rays inside and behind a solid of index 1.5: refracted, then refracted and reflected at
 ///               each further surface, up to 5 surfaces along a path

@@ -18,7 +18,7 @@ struct SelfCheck {
   int kernels = 0;  // kernel files built
   double build_seconds = 0, render_seconds = 0;
   std::uint64_t pixels = 0, differing = 0;  // of the picture; those more than 0.02 (linear colour) off
-  double greatest = 0;                      // difference
+  double greatest = 0;                      // greatest difference
   std::string problem;                      // the error, if it failed
   std::string log;                          // the compiler's, if a kernel did not build
 };
