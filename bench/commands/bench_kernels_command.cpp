@@ -178,9 +178,8 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  set_variable("MESA_SHADER_CACHE_DISABLE",
-               "true");                      // Mesa then compiles at launches: none here
-  set_variable("POCL_CACHE_DIR", "", true);  // PoCL's cache of earlier processes
+  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa then compiles at launches: none here
+  set_variable("POCL_CACHE_DIR", "", true);           // PoCL's cache of earlier processes
   KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
   Report& report = run.head();

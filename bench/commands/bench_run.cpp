@@ -110,8 +110,7 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
   if (const fs::path kept = kept_for_next(); fs::exists(kept)) {
     const Table devices = known_devices_, scenes = known_scenes_;
     take_known(kept.string());
-    known_devices_ = devices,
-    known_scenes_ = scenes;  // checks only --continue's
+    known_devices_ = devices, known_scenes_ = scenes;  // checks only --continue's
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     head_.notes.push_back(why);
