@@ -29,8 +29,9 @@ in_root() { chroot "$root" env DEBIAN_FRONTEND=noninteractive HOME=/root "$@"; }
 in_root apt-get update -qq
 in_root sh -c 'apt-get install -y -qq --no-install-recommends /packages/*.deb pocl-opencl-icd >/install.log 2>&1 || { tail /install.log; exit 1; }'
 in_root sundog render /usr/share/sundog/scenes/spheres.json --size 160x120 -o /picture.png
-in_root test -e /usr/share/bash-completion/completions/sundog -a -e /usr/lib/libsundog.so.0.1 -a -e /usr/include/sundog/sundog.hpp
-in_root sh -c 'ldd /usr/lib/libsundog.so.0.1 | grep "not found"' && exit 1
+in_root test -e /usr/share/bash-completion/completions/sundog -a -e /usr/include/sundog/sundog.hpp
+in_root sh -c 'test -e /usr/lib/libsundog.so.0.[0-9]'
+in_root sh -c 'ldd /usr/lib/libsundog.so.0.[0-9] | grep "not found"' && exit 1
 in_root apt-get purge -y -qq sundog libsundog-dev 'libsundog0.*' >/dev/null
 if in_root test -e /usr/bin/sundog; then echo "package: the program is still there after a purge" >&2; exit 1; fi
 echo "package: installed, run and removed on a bare $VERSION_CODENAME; the picture is $root/picture.png"

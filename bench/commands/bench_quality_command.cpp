@@ -175,7 +175,7 @@ int bench_quality(const QualityOptions& options) {
   QualityPlan plan;
   plan.counts = parse_list("--counts", options.counts, 1, 65536);
   plan.goal = parse_real("--goal", options.goal, 1e-9, 1e9);
-  check_output_files({options.json, options.csv, options.html}, {options.reference});
+  check_output_files(options.all(), {options.reference});
   plan.reference = read_image(options.reference);
   if (plan.reference.channels < 3)
     throw UsageError(fmt::format("{}: wanted a picture with colours", options.reference));

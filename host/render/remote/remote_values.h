@@ -18,7 +18,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tile, x, y, width, height)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkGroup, kind, x, y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, readback, cached)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerFigures, kernels, readback_seconds, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerFigures, kernels, readback_seconds, notes, tables_uploaded,
+                                   bytes_uploaded, kernels_built)
 
 /// Calls `read`; throws DeviceError "FROM: ..." if the message lacks a value.
 template <class Read>
