@@ -272,6 +272,24 @@ TEST_CASE(
   });
 }
 
+TEST_CASE(
+    "a ball of frosted wall that transmits all returns no more than it gets, beside what shadow rays pass") {
+  for (const bool beside : {false, true}) {
+    SceneDescription scene = path_scene({0, 0, 5}, {0, 0, 0}, 128);
+    scene.environment.type = EnvironmentType::gradient;
+    scene.environment.bottom = scene.environment.top = dvec3(1);
+    scenes::place(scene, SphereShape{}, add_wall(scene, 1));
+    MaterialDescription& frosted = scene.materials.back();
+    frosted.type = MaterialType::phong;
+    frosted.wall_ior = 0;
+    frosted.reflection = dvec3(0);
+    if (beside) scenes::place(scene, SphereShape{}, add_wall(scene, 0), at_height(50));
+    const Mean found = mean_on(picture_devices().front(), scene);
+    INFO((beside ? "beside another, " : "alone, ") << found.value.x << " +- " << found.error);
+    CHECK(found.value.x == Approx(0.996).margin(0.004));
+  }
+}
+
 TEST_CASE("what fuzz and a coat take from light behind a smooth wall, each way of finding it knows") {
   OpenPbr values{.specular_roughness = 0, .transmission_weight = 1};
   values.geometry_thin_walled = true;
