@@ -355,6 +355,26 @@ TEST_CASE("light of a lamp goes straight through smooth thin walls, and stops at
   });
 }
 
+TEST_CASE("whitted's shadow of a thin wall with a clear coat lacks what the coat reflects, too") {
+  on_picture_devices([](const DeviceInfo& device) {
+    const auto seen = [&](double height) {
+      SceneDescription scene = path_scene({0, 0.5, 0.4}, {0, 0, 0}, 1);
+      scene.render.integrator = "whitted";
+      scene.lights.push_back(lamp(LightType::directional, {0, 0, 0}, 1));
+      scene.lights.back().direction = {0, -1, 0};
+      scenes::place(scene, PlaneShape{}, add_matte(scene, 1));
+      scenes::place(scene, PlaneShape{}, add_wall(scene, 0), at_height(height));
+      OpenPbr values{.specular_roughness = 0, .transmission_weight = 1, .coat_weight = 1};
+      values.geometry_thin_walled = true;
+      MediumDescription inside;
+      set_openpbr(values, scene.materials.back(), inside);
+      return mean_on(device, scene).value.x;
+    };
+    const double by_coat = 1 - std::pow((1.6 - 1) / (1.6 + 1), 2);
+    CHECK(seen(1) == Approx(by_coat * (1 - reflected_by_both(1, 1.5)) * seen(-1)).epsilon(1e-3));
+  });
+}
+
 TEST_CASE(
     "a frosted wall is no way into a medium: in a ball that absorbs, the light of both sides stays "
     "absorbed") {
