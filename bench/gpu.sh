@@ -1,13 +1,17 @@
 #!/bin/bash
-# All that is worth knowing of sundog on one device, most of all a GPU, by one command and within eight minutes:
+# Measures sundog on one device, usually a GPU, with one command in eight minutes:
 #   bench/gpu.sh [--device SPEC] [--seconds N] [--quick] OUT_DIR [MODEL...]
-# From a clone it runs build/release/sundog (or that of the folder SUNDOG_BUILD), from a bundle the bundle's. In this order: the devices;
-# `sundog check`; every scene in 64x64 against the bundle's own pictures (a clone has none); cold and warm starts of six scenes; builds (cold,
-# warm), registers, memory and build logs of each of their kernels; `bench rays` of three models, or of MODEL..., by each way through a node
-# (kernels/lib/trace/single.cl: NODE_LOOP), on NVIDIA's devices with 64 registers too; samples a second of the six scenes; times by
-# work-group size; the roofline; watts and joules where nvidia-smi reads them; Embree and tinybvh where they were built. Each part leaves a table (.txt), figures (.json) and what it said (.log) in
-# OUT_DIR as soon as it is there, and summary.txt names it; one that fails does not keep the others from running, and those that would begin
-# after N seconds (480) are left out. SPEC is `gpu` without the option. --quick: tiny settings, to see whether everything runs.
+# From a clone it runs build/release/sundog (or the folder SUNDOG_BUILD), from a bundle the bundle's program.
+# The parts, in order:
+#   the devices; `sundog check`; every scene in 64x64 against the bundle's pictures (a clone has none)
+#   builds of six scenes (cold, warm); registers, memory and build logs of each of their kernels
+#   `bench rays` of three models, or of MODEL..., with each node loop (kernels/lib/trace/single.cl: NODE_LOOP),
+#   on NVIDIA devices also with 64 registers
+#   samples a second of the six scenes; times by work-group size; the roofline
+#   watts and joules if nvidia-smi reads them; Embree and tinybvh if they were built
+# Each part writes a table (.txt), figures (.json) and messages (.log) to OUT_DIR as soon as it is done, and
+# summary.txt lists it. A part that fails does not stop the others; parts that would begin after N seconds
+# (480) are left out. The default SPEC is `gpu`. --quick: tiny settings, to test that everything runs.
 set -u
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*/*}
@@ -55,7 +59,8 @@ summarize() {
   } >"$out/summary.txt"
 }
 
-# part NAME SECONDS COMMAND...: runs it for so long at most (with --quick while there is time), with its table to NAME.txt and the rest to NAME.log.
+# part NAME SECONDS COMMAND...: runs the command for at most SECONDS (with --quick, for all the time that is
+# left). Its table goes to NAME.txt, the rest to NAME.log.
 part() {
   local name=$1 most=$((seconds - SECONDS)) pid watch status
   [[ $quick ]] || most=$(($2 < most ? $2 : most))
@@ -66,7 +71,7 @@ part() {
     return
   fi
   echo "gpu.sh: $name" >&2
-  set -m  # a process group, so that all of it can be ended
+  set -m  # a process group, so that all its processes can be killed
   "$@" >"$out/$name.txt" 2>"$out/$name.log" &
   pid=$!
   (sleep "$most" && touch "$out/$name.late" && kill -- "-$pid") >/dev/null 2>&1 &
@@ -88,7 +93,7 @@ part() {
   summarize
 }
 
-# Prints the seconds of a step from a file of --stats: FILE STEP.
+# stat_of FILE STEP: prints a step's seconds from a --stats file.
 stat_of() { sed -n "/\"seconds\": {/,/}/s/^ *\"$2\": \([0-9.e+-]*\),*\$/\1/p" "$1" | head -n 1; }
 is_there() { grep -qs "\"platform_name\": *\"$1" "$out/devices.json"; }
 
@@ -125,9 +130,9 @@ builds() {
   done
   rm -rf "$cache"
 }
-frames() {  # of a scene, with as many samples as a device draws in some seconds
+frames() {  # times a scene with as many samples as the device renders in about 8 s, 64 at most
   local name=$1 run samples=1 stats took
-  for run in 1 2 3; do  # the first one builds
+  for run in 1 2 3; do  # the first run builds the kernels
     stats=$out/frame-$name-$run.json
     "$sundog" render "$scenes/$name.json" --device "$device" --size "$frame_size" --samples "$samples" -q --stats "$stats" -o "$out/frame-$name.png" ||
       return 1
@@ -140,7 +145,7 @@ frames() {  # of a scene, with as many samples as a device draws in some seconds
     fi
   done
 }
-watts() {  # of the device beside the frames, and joules
+watts() {  # prints the GPU's power and energy during the frames
   awk -F, '{ sum += $2; if (NR == 1) first = $1; last = $1; if ($2 > most) most = $2 }
     END { if (!NR) exit 1; printf "mean %.1f W, most %.1f W, %d readings, one in 100 ms: %.0f J\n", sum / NR, most, NR, sum / 10 }' "$out/power.csv"
 }

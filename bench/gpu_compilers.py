@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the kernels of scenes with the GPU makers' compilers; no GPU is needed. Usage:
+"""Compiles the kernels of scenes with the GPU makers' compilers, without a GPU. Usage:
 
     bench/gpu_compilers.py [SUNDOG] [--scenes cornell_path,...] [--targets sm_90,gfx1100,...] [--table FILE] [options]
 
@@ -7,11 +7,14 @@ NVIDIA (sm_*)  clang and libclc make PTX; ptxas (PyPI nvidia-cuda-nvcc) assemble
 AMD (gfx*)     clang and libclc
 Intel          ocloc (Debian's intel-opencl-icd), for dg2 and pvc
 
---fetch unpacks what is missing into --tools by apt-get download and pip download: nothing is installed. Errors and warnings of a compiler
-fail. The table has a row for each kernel of each scene: registers; bytes of stack (scratch) and of spills a work-item, for AMD spilled
-registers; waves that registers admit (NVIDIA: warps of a multiprocessor, AMD: waves of a SIMD, Intel: lanes of a kernel's SIMD); bytes of
-code (AMD: the program's); the compilers' seconds of processor time. Rows are compared with those of the last table where the compilers' versions are the same: a kernel that has fewer waves or
-more spills fails, unless --keep writes the new table. Exit status 77: a compiler is missing, and with --some-tools all are.
+--fetch downloads what is missing, except clang (apt-get download, pip download), and unpacks it into --tools
+without installing anything. A compiler's error or warning is a failure. The table has a row for each kernel
+of each scene: registers; bytes of stack (scratch) and of spills per work-item (AMD: spilled registers); waves
+that the registers admit (NVIDIA: warps of a multiprocessor, AMD: waves of a SIMD, Intel: lanes of the
+kernel's SIMD); bytes of code (AMD: the program's); the compilers' seconds of processor time. If a compiler's
+version is the same as in the last table, rows are compared with it: a kernel with fewer waves or more spills
+is a failure, unless --keep writes the new table. Exit status 77: a compiler is missing; with --some-tools,
+all are.
 """
 import argparse
 import concurrent.futures
@@ -29,7 +32,7 @@ import tempfile
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FIGURES = ("registers", "stack", "spills", "waves", "code", "seconds")
 COLUMNS = ("target", "scene", "kernel") + FIGURES
-# The target: its maker, clang's processor, and for NVIDIA the greatest number of a multiprocessor's warps.
+# Target: maker, clang's processor, and for NVIDIA the most warps of a multiprocessor.
 TARGETS = {"sm_75": ("nvidia", "sm_75", 32), "sm_90": ("nvidia", "sm_90", 64), "sm_120": ("nvidia", "sm_90", 48),
            "gfx90a": ("amd", "gfx90a", 0), "gfx1030": ("amd", "gfx1030", 0), "gfx1100": ("amd", "gfx1100", 0),
            "gfx1201": ("amd", "gfx1201", 0), "dg2": ("intel", "dg2-g10", 0), "pvc": ("intel", "pvc", 0)}
@@ -44,7 +47,7 @@ class CompilerError(Exception):
 
 
 class Ended:
-    """A command that has ended: its status, output and seconds of processor time, which other work beside it does not lengthen."""
+    """Runs a command to its end: status, output and processor seconds, which other load does not lengthen."""
 
     def __init__(self, command, **more):
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **more)
@@ -69,13 +72,13 @@ class Tools:
         return [tool for tool in NEEDS[maker] if not getattr(self, tool)]
 
     def version(self, maker):
-        """The version of the compiler that the figures come from, for the table."""
+        """The version of the compiler behind the figures, for the table."""
         if maker == "nvidia":
             return "ptxas " + first_match(r"V([\d.]+)", Ended([self.ptxas, "--version"]).stdout) + ", " + self.version("amd")
         if maker == "amd":
             library = os.path.getsize(os.path.join(self.libclc, "amdgcn--amdhsa.bc"))
             return f"clang {first_match(r'version ([0-9.]+)', Ended([self.clang, '--version']).stdout)}, libclc of {library} bytes"
-        with tempfile.TemporaryDirectory() as here:  # where ocloc leaves its answer
+        with tempfile.TemporaryDirectory() as here:  # ocloc writes its answer there
             Ended([self.ocloc, "query", "OCL_DRIVER_VERSION"], env=self.environment(), cwd=here)
             return "ocloc " + open(os.path.join(here, "OCL_DRIVER_VERSION")).read().strip("\0\n ")
 
@@ -119,7 +122,7 @@ def first_match(pattern, text, group=1, otherwise="?"):
 
 
 def checked(command, **more):
-    """The compiler's output, which must have neither an error nor a warning."""
+    """Runs a compiler and returns its Ended. Raises CompilerError for an error or a warning."""
     result = Ended(command, **more)
     wrong = [line for line in result.stdout.splitlines() if re.search(r"\b(error|warning|fatal)\b", line, re.I) and "spilled around" not in line]
     if result.returncode != 0 or wrong:
@@ -201,7 +204,7 @@ def compiled(tools, target, options, source):
 
 
 def written_programs(sundog, scene, maker, folder):
-    """(text's key, file, options) of each program of the scene."""
+    """Writes the scene's programs to the folder; yields (hash of text and options, file, options) of each."""
     listed = subprocess.run([sundog, "kernels", "--scene", os.path.join(ROOT, "scenes", f"{scene}.json"), "--gpu", maker, "--out", folder],
                             check=True, stdout=subprocess.PIPE, text=True).stdout
     for line in listed.splitlines():
@@ -231,7 +234,7 @@ def write_table(file, versions, rows):
 
 
 def differences(old, new):
-    """Lines on rows that changed in waves or spills, the losses and the gains."""
+    """Lines on rows with a change in waves, spills or stack: the losses, and the gains."""
     losses, gains = [], []
     for key in sorted(old.keys() & new.keys()):
         was, now = dict(zip(FIGURES, old[key])), dict(zip(FIGURES, new[key]))
@@ -296,7 +299,7 @@ def main():
                 except subprocess.CalledProcessError:
                     if args.scenes:
                         raise
-                    print(f"gpu_compilers: {scene} is left out", file=sys.stderr)  # sundog has said why
+                    print(f"gpu_compilers: {scene} is left out", file=sys.stderr)  # sundog printed the reason
                     break
                 for text, file, options in programs:
                     for target in there:

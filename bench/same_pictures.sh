@@ -1,5 +1,5 @@
 #!/bin/bash
-# Compares two builds of sundog: the same pictures and ray counts, to the bit, and then how fast each is. See --help.
+# Compares two builds of sundog: pictures and ray counts to the bit, then speed. See --help.
 set -u
 usage() {
   cat <<'END'
@@ -63,7 +63,7 @@ done
 [[ -z $time_size || $time_size =~ ^[0-9]+x[0-9]+$ ]] || fail "--time-size $time_size: wanted WxH"
 [[ $repeat =~ ^[1-9][0-9]*$ ]] || fail "--repeat $repeat: wanted a number from 1"
 
-# program BUILD: the path of its sundog.
+# program BUILD: prints the path of the build's sundog.
 program() {
   local found=$1
   [[ -d $found ]] && found=$found/sundog
@@ -87,7 +87,7 @@ trap 'rm -rf "$work"' EXIT
 if [[ $keep ]]; then mkdir -p -- "$keep" || exit 2; keep=$(readlink -f -- "$keep"); else keep=$work; fi
 
 aovs_of() { "$1" render --help | tr '\n' ' ' | sed -n 's/.*an extra image in the .exr: \([a-z_, ]*\);.*/\1/p' | tr -d ' ' | tr , '\n' | sort; }
-aovs=() parts=()  # but the variance, which only frames in passes have; parts of light are of paths alone
+aovs=() parts=()  # without the variance, which only frames in passes have; only paths have parts of light
 for aov in $(comm -12 <(aovs_of "$old") <(aovs_of "$new")); do
   case $aov in
     variance) ;;
@@ -103,7 +103,8 @@ name_of() {
   echo "$name"
 }
 
-# render PROGRAM SCENE DEVICE SIZE NAME ARGUMENT...: leaves NAME.exr, NAME.json and NAME.log in the folder that is kept.
+# render PROGRAM SCENE DEVICE SIZE NAME ARGUMENT...: writes NAME.exr, NAME.json and NAME.log to the folder
+# $keep.
 render() {
   local program=$1 scene=$2 device=$3 wanted=$4 name=$keep/$5
   shift 5
@@ -114,14 +115,14 @@ render() {
     "${common[@]}" "$@" --float -o "$name.exr" --stats "$name.json" -q >"$name.log" 2>&1
 }
 
-# section NAME FILE: "key value" lines of an object of the statistics.
+# section NAME FILE: prints an object of the statistics as "key value" lines.
 section() { awk -v name="\"$1\":" '$1 == name { on = 1; next } on && /}/ { exit } on { gsub(/[",:]/, ""); print $1, $2 }' "$2" | sort; }
 counts() { section rays "$1"; section counters "$1"; }
 kernel_ms() { awk '/"device_ms":/ { d = $2 + 0 } /"host_ms":/ { h = $2 + 0; sum += d > 0 ? d : h } END { printf "%.4f", sum }' "$1"; }
 median() { sort -g | awk '{ v[NR] = $1 } END { printf "%.4f", NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2 }'; }
 reason() { grep -v warning "$keep/$1.log" | tail -n 1 | cut -c -200; }
 
-# difference NAME: what differs between NAME_old and NAME_new; nothing where all is the same.
+# difference NAME: prints how NAME_old and NAME_new differ; nothing if they are equal.
 difference() {
   local a=$keep/$1_old b=$keep/$1_new text=() shown
   if ! cmp -s "$a.exr" "$b.exr"; then
@@ -141,7 +142,7 @@ difference() {
 same=0 differ=0 skipped=0 timed=()
 tell() { printf '%-26s %-12s %s\n' "$scene_name" "$label" "$*"; }
 
-# compare_builds SCENE DEVICE SIZE: renders with both builds at once and prints what is found.
+# compare_builds SCENE DEVICE SIZE: renders with both builds at once and prints the result.
 compare_builds() {
   local scene=$1 device=$2 wanted=$3 name of_old of_new found more=()
   if grep -qE '"integrator": *"path"' "$scene"; then more=("${parts[@]}"); fi
@@ -190,7 +191,8 @@ elif [[ $oclgrind ]]; then
 fi
 echo "$same the same, $differ differ, $skipped not compared"
 
-# size_for SCENE DEVICE: --size times a whole number, for a frame of about 100 ms. The first frame only loads the kernels.
+# size_for SCENE DEVICE: prints --size times a whole number (1 to 6), for a frame of about 100 ms. The first
+# frame only loads the kernels.
 size_for() {
   render "$old" "$1" "$2" "$size" pilot && render "$new" "$1" "$2" "$size" pilot && render "$old" "$1" "$2" "$size" pilot || return
   awk -v size="$size" -v ms="$(kernel_ms "$keep/pilot.json")" 'BEGIN {

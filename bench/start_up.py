@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Times from the command to a small picture: with no kernel in any cache, with all of them, and after an edit of a scene's formula. Usage:
+"""Times the start, from the command to a small picture: without cached kernels, with all of them cached, and
+after an edit of a scene's formula. Usage:
 
     bench/start_up.py SUNDOG [--size N] [--repeats N] [--device SPEC] [--json FILE]
 
-The caches are temporary folders. A picture of 64x64 pixels is one tile, so its end is the first that anyone can see of it. Scenes take turns, so that
-a change in the machine's load affects all alike.
+The caches are temporary folders. A picture of 64x64 pixels is one tile, so nothing of it can be seen before
+its end. Scenes take turns, so that a change in the machine's load affects all alike.
 """
 import argparse
 import json
@@ -21,7 +22,7 @@ MAP, OTHER_MAP = '"z = abs(z) - shift"', '"z = abs(z + shift) - 2 * shift"'
 
 
 def time_start(args, scene, caches):
-    """Wall and processor seconds. One sample a pixel: the scenes of paths have many."""
+    """Wall-clock and processor seconds of a render with one sample a pixel (path-traced scenes have many)."""
     command = [args.sundog, "render", scene, "--size", f"{args.size}x{args.size}", "--device", args.device, "--quiet", "--samples", "1",
                "-o", os.path.join(caches, "picture.png")]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()

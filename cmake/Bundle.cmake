@@ -1,4 +1,5 @@
-# `bundle`: sundog-VERSION-linux-x86_64.tar.zst, which runs from any folder of a machine without packages; `bundle-slim`: without PoCL.
+# Target `bundle`: sundog-VERSION-linux-x86_64.tar.zst, which runs from any folder and needs no packages.
+# `bundle-slim`: the bundle without PoCL.
 foreach(kind IN ITEMS "" -slim)
   add_custom_target(bundle${kind} USES_TERMINAL VERBATIM DEPENDS sundog
     COMMAND ${PROJECT_SOURCE_DIR}/cmake/make_bundle.sh $<TARGET_FILE:sundog>

@@ -1,4 +1,4 @@
-# Every third-party library, each with the Debian package that brings it.
+# Finds every third-party library, or names the Debian package that contains it.
 
 function(sundog_require found what package)
   if(NOT ${found})
@@ -6,7 +6,7 @@ function(sundog_require found what package)
   endif()
 endfunction()
 
-# A header-only library without a CMake package: an INTERFACE target over its include directory.
+# A header-only library without a CMake package: an INTERFACE target with its include directory.
 function(sundog_header_library target header package)
   find_path(${target}_dir ${header})
   sundog_require(${target}_dir ${header} ${package})
@@ -28,7 +28,7 @@ find_package(fmt QUIET)
 sundog_require(fmt_FOUND "{fmt}" libfmt-dev)
 find_package(OpenEXR QUIET)
 sundog_require(OpenEXR_FOUND OpenEXR libopenexr-dev)
-# A library with a header and no CMake package on every distribution.
+# A library with a header, which lacks a CMake package on some distributions.
 function(sundog_plain_library target header library package)
   sundog_header_library(${target} ${header} ${package})
   find_library(${target}_file ${library})

@@ -1,6 +1,8 @@
-# Embeds files into the program as arrays of bytes: every file of kernels/, whose includes the host expands, and the viewer's page.
-# As a script with -DHASHED=file|... it writes a source with their hash; else as a script (cmake -DFILES=path=file|... -DSYMBOL=NAME -DTYPE=NAME -DHEADER=file -DOUTPUT=file -P) it writes the generated source,
-# whose function SYMBOL returns a span of TYPE, {path, bytes} each; included, it adds the rules.
+# Embeds files into the program as arrays of bytes: every file of kernels/, whose includes the host expands,
+# and the viewer's page. Included, it defines functions that add the rules. As a script, cmake
+# -DFILES=path=file|... -DSYMBOL=NAME -DTYPE=NAME -DHEADER=file -DOUTPUT=file -P writes a source whose
+# function SYMBOL returns a span of TYPE, {path, bytes} each; with -DHASHED=file|... instead, it writes a
+# source with the files' hash.
 
 function(sundog_write_files)
   set(arrays "")
@@ -12,7 +14,7 @@ function(sundog_write_files)
     set(path ${CMAKE_MATCH_1})
     file(READ ${CMAKE_MATCH_2} hex HEX)
     if(path MATCHES "^/vendor/hooks")
-      # A page has no package names: "preact" becomes the file beside it.
+      # A browser does not resolve package names, so "preact" becomes the file beside it.
       string(HEX "from\"preact\"" name)
       string(HEX "from\"./preact.module.js\"" place)
       string(REPLACE "${name}" "${place}" hex "${hex}")
@@ -40,7 +42,7 @@ std::span<const ${TYPE}> ${SYMBOL}() { return files; }
 ")
 endfunction()
 
-# Adds the source of `symbol` to a target: ARGN are the pairs path=file.
+# Adds the source of `symbol` to a target. ARGN: pairs path=file.
 function(sundog_embed_files target symbol type header)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/${symbol}_embedded.cpp)
   list(TRANSFORM ARGN REPLACE "^[^=]+=" "" OUTPUT_VARIABLE sources)
@@ -55,7 +57,7 @@ function(sundog_embed_files target symbol type header)
   set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# Adds spmd::revision() to a target: a hash of the sources ARGN.
+# Adds spmd::revision(), a hash of the sources ARGN, to a target.
 function(sundog_write_lanes_revision target)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/lanes_revision.cpp)
   set(script ${PROJECT_SOURCE_DIR}/cmake/EmbedFiles.cmake)
@@ -104,7 +106,8 @@ function(sundog_embed_page target)
   sundog_embed_files(${target} page_files PageFile app/serve/page_files.h ${pairs})
 endfunction()
 
-# Adds the source of built_lobe_energy() and built_layer_tables() to a target, which a program of the build's own computes.
+# Adds the source of built_lobe_energy() and built_layer_tables() to a target; a program that runs during the
+# build writes it.
 function(sundog_write_surface_tables target)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/built_surface_tables.cpp)
   set(compile ${CMAKE_CURRENT_SOURCE_DIR}/compile)
@@ -118,7 +121,7 @@ function(sundog_write_surface_tables target)
   set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# Adds halo_lanes.inc to a target: plain kernels in lanes, which one of its sources includes.
+# Adds halo_lanes.inc to a target: plain kernels converted to lanes, which one of its sources includes.
 function(sundog_write_halo_lanes target)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/halo_lanes.inc)
   set(kernels ${PROJECT_SOURCE_DIR}/kernels)

@@ -1,5 +1,6 @@
-# axe-core finds what keeps people with screen readers or keyboards out of a page: a test of the viewer runs it in the browser. It is
-# fetched once into the build folder, by its checksum, and belongs to no product. Without it, as without a network, that test is left out.
+# axe-core finds what excludes users of screen readers or keyboards from a page; a test of the viewer runs it
+# in the browser. It is fetched once into the build folder, checked by its checksum, and is not part of any
+# product. Without it, e.g. without a network, the test is left out.
 set(axe_version 4.10.3)
 set(axe_checksum 0f2b4d7dcdf7d1219df8d1959ad68e565f51d14c3f0d88bb71cd59abeb956292)
 set(axe_folder ${CMAKE_BINARY_DIR}/axe-core)

@@ -1,6 +1,7 @@
-# The git revision that a program is built from, as `const char* build_revision()`: looked up at each build, compiled anew only
-# where it has changed. "unknown" where the sources are not a git checkout of their own.
-# As a script (cmake -DSOURCE=folder -DOUTPUT=file -P) it writes the generated source; included, it adds the rule.
+# Provides the git revision that a program is built from as `const char* build_revision()`. Each build looks
+# it up and recompiles the source only if it has changed. "unknown" if the sources are not the root of a git
+# checkout. As a script (cmake -DSOURCE=folder -DOUTPUT=file -P) it writes the source; included, it defines
+# the function that adds the rule.
 
 function(sundog_write_revision source output)
   set(ENV{GIT_OPTIONAL_LOCKS} 0)

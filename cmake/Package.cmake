@@ -1,5 +1,5 @@
-# Debian packages by `cpack`: sundog (program, manual page, completions, scenes, pages), sundog-mpi, libsundog0.2 and
-# libsundog-dev. tests/package.sh makes them and tries them on a bare system.
+# Debian packages by `cpack`: sundog (program, manual page, completions, scenes, pages), sundog-mpi,
+# libsundog0.2 and libsundog-dev. tests/package.sh builds them and tests them on a bare system.
 install(CODE "
   set(pages \"${CMAKE_CURRENT_BINARY_DIR}/command_pages\")
   execute_process(COMMAND \"${PROJECT_SOURCE_DIR}/cmake/write_command_pages.sh\" \"$<TARGET_FILE:sundog>\" \"\${pages}\"
@@ -12,7 +12,8 @@ install(CODE "
   file(INSTALL \"\${pages}/sundog.fish\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d\")
 " COMPONENT program)
 
-# Debian requires these files of each package: copyright, a changelog in its own form, and overrides for lintian.
+# Files that Debian requires in each package: copyright, a changelog in Debian's format, and overrides for
+# lintian.
 set(runtime lib${PROJECT_NAME}${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog)
 set(maintainer "The sundog authors <sundog@localhost>")

@@ -16,7 +16,7 @@ function(sundog_shared_layout output)
       string(REGEX REPLACE "typedef struct ([A-Za-z0-9_]+).*" "\\1" name "${struct}")
       string(REGEX REPLACE ".*{(.*)}" "\\1" body "${struct}")
       string(APPEND lines "SUNDOG_STRUCT(${name})\n")
-      string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]* *," members "${body}")  # a member is followed by a comma, its type is not
+      string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]* *," members "${body}")  # a comma follows a member but not its type
       foreach(member IN LISTS members)
         string(REGEX REPLACE " *," "" member "${member}")
         string(APPEND lines "SUNDOG_MEMBER(${name}, ${member})\n")

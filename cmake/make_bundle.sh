@@ -1,6 +1,7 @@
 #!/bin/bash
-# Makes a bundle (docs/guide/bundle.md): make_bundle.sh PROGRAM FILE.tar.zst. With "slim" in FILE's name without PoCL, its compiler and its
-# linker. Libraries are this system's; their copyrights go along.
+# Makes a bundle (docs/guide/bundle.md): make_bundle.sh PROGRAM FILE.tar.zst. If FILE's name ends in "-slim",
+# the bundle lacks PoCL, its compiler and its linker. It contains this system's libraries and their
+# copyrights.
 set -eu
 program=$1 archive=$2
 root=$(readlink -f -- "${BASH_SOURCE[0]%/*}/..")
@@ -11,9 +12,10 @@ lib=$folder/lib/x86_64-linux-gnu
 say() { echo "bundle: $*" >&2; }
 for tool in zstd tar dpkg-query patchelf; do command -v "$tool" >/dev/null || { say "no $tool here: apt-get install $tool"; exit 1; }; done
 
-# Libraries that drivers of the machine may bring or need too: its own copies come first (cmake/bundle/sundog).
+# Libraries that the machine's drivers may bring or need too: the machine's own copies take precedence
+# (cmake/bundle/sundog).
 common='^(libstdc\+\+|libgcc_s|libz|libzstd|libffi|libtinfo|libxml2|liblzma|libedit|libbsd|libmd|libudev|libcap|libelf)\.'
-# Libraries of glibc 2.36.
+# Libraries of glibc, which the machine must have (2.36 or newer).
 glibc='^(ld-linux-x86-64|libc|libm|libdl|libpthread|librt)\.so'
 
 libraries_of() { ldd "$@" | sed -n 's/^\t\([^ ]*\) => \(\/[^ ]*\) .*/\1 \2/p' | sort -u; }
@@ -41,7 +43,8 @@ cp "$root/bench/gpu.sh" "$folder/bench/"
 cp "$root"/{LICENSE,NOTICE,README.md,CHANGELOG.md} "$folder/share/doc/"
 cp "$root/docs/guide/bundle.md" "$folder/README.md"
 
-# Every scene in 64x64 as PoCL draws it, for bench/gpu.sh; made once for a program. BUNDLE_PICTURES=none: none.
+# PoCL's picture of every scene in 64x64, for bench/gpu.sh; rendered once per program. BUNDLE_PICTURES=none:
+# none.
 pictures=${archive%/*}/bundle/pictures
 if [[ ${BUNDLE_PICTURES-} != none ]]; then
   mkdir -p "$pictures"
@@ -71,11 +74,12 @@ if [[ $name != *-slim ]]; then
   take_libraries_of "$linker"
   taken+=("$linker")
 fi
-# The copyrights of what was taken, by package.
+# The copyrights of the copied files, by package.
 dpkg-query -S "${taken[@]}" "${taken[@]/#\/lib\///usr/lib/}" 2>/dev/null | sed 's/:.*//' | sort -u | while read -r package; do
   cp "/usr/share/doc/$package/copyright" "$folder/share/doc/$package.txt"
 done
-# The program's libraries, and those of drivers that it loads, are found beside it; each library's own places are forgotten.
+# The program finds its libraries, and those of the drivers that it loads, beside it; the libraries' own
+# search paths are removed.
 find "$folder/bin" "$lib" -type f \( -perm -100 -o -name '*.so*' \) -exec strip --strip-unneeded {} + -exec patchelf --remove-rpath {} +
 patchelf --force-rpath --set-rpath '$ORIGIN/../lib/x86_64-linux-gnu' "$folder/bin/sundog"
 

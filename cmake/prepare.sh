@@ -1,22 +1,24 @@
 #!/bin/bash
-# Makes build/release, or the folder named second, ready: `prepare.sh program` for sundog alone, `prepare.sh tests` for the tests
-# too; `prepare.sh packages` installs what the latter needs, and builds the program meanwhile. Packages come from apt, and only those
-# that are missing. Quiet unless there is something to do; else it says first how much that is.
+# Prepares build/release, or the folder of the second argument. `prepare.sh program`: builds sundog;
+# `prepare.sh tests`: builds the tests too; `prepare.sh packages`: installs the packages for `tests` and
+# builds the program meanwhile. Installs missing packages by apt. Prints nothing if there is nothing to do;
+# otherwise it first says how much there is.
 set -eu
 goal=$1
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 build=${2:-$root/build/release}
 
-# The build cannot do without these. PoCL is among them, so that the first picture needs no GPU.
+# The build needs these. PoCL is among them, so that the first picture needs no GPU.
 needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd libglm-dev libstb-dev
   libopenexr-dev libspng-dev libdeflate-dev libturbojpeg0-dev libwebp-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtbb-dev zlib1g-dev catch2)
-# Debian 12 has Boost 1.81 beside an older one.
+# Debian 12 has Boost 1.81 besides an older version.
 if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
-# The tests compare with these where they are; Open MPI is what `mpirun sundog` needs; a browser opens the viewer's page; pip
-# builds the Python package, pkg-config finds the library, Doxygen reads its headers, and git says what has changed.
+# Optional packages for tests: peers to compare with; Open MPI for `mpirun sundog`; a browser for the viewer's
+# page; pip for the Python package, pkg-config for the library, Doxygen for its headers, and git for the
+# changed files.
 peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
   openssl python3-dev python3-venv pkg-config doxygen git)
-# One version, so that tests/check_format.sh and tests/tidy.sh find the same on every machine.
+# A fixed version, so that tests/check_format.sh and tests/tidy.sh give equal results on every machine.
 checkers=(clang-format-19 clang-tidy-19)
 
 # Seconds of one core that a build takes with an empty compiler cache, in round figures.
@@ -25,7 +27,7 @@ tests_work=600
 
 say() { echo "sundog: $*" >&2; }
 
-# Those of the packages named that are not installed, in one line.
+# Prints the given packages that are not installed, in one line.
 missing_of() {
   local installed package
   installed=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' "$@" 2>/dev/null || true)
@@ -34,7 +36,8 @@ missing_of() {
 
 may_install() { [[ $EUID == 0 ]] || command -v sudo >/dev/null; }
 
-# apt-get, by root or sudo, which waits while another program has apt's locks, as a system's own upgrade has for minutes.
+# Runs apt-get as root or by sudo. Waits up to 30 minutes while another program holds apt's locks, as a system
+# upgrade may for minutes.
 patient_apt() {
   local become=() log=$build/apt.log out=$build/apt.out waited=0
   [[ $EUID == 0 ]] || become=(sudo)
@@ -50,17 +53,18 @@ patient_apt() {
   done
 }
 
-# "75 packages, 210 MB to fetch, 900 MB on disk", of apt's own reckoning: it installs nothing and needs no right.
+# Prints "75 packages, 210 MB to fetch, 900 MB on disk" by apt's estimate; needs no privileges and installs
+# nothing.
 size_of() {
   local all fetched stored
   all=$(apt-get -s -qq install --no-install-recommends "$@" 2>/dev/null | awk '$1 == "Inst" { print $2 }' | xargs)
   fetched=$(apt-get --print-uris -qq install --no-install-recommends "$@" 2>/dev/null | awk '{ n += $3 } END { print n }')
-  # shellcheck disable=SC2086  # a list of names
+  # shellcheck disable=SC2086  # a list of words
   stored=$(apt-cache show --no-all-versions $all 2>/dev/null | awk '/^Installed-Size:/ { n += $2 } END { print n }')
   echo "$(wc -w <<<"$all") packages, $(((${fetched:-0} + 500000) / 1000000)) MB to fetch, $(((${stored:-0} + 500) / 1000)) MB on disk"
 }
 
-# "about 3 minutes on 2 cores" for so many seconds of one core.
+# Prints "about 3 minutes on 2 cores" for a number of seconds on one core.
 duration_of() {
   local cores seconds
   cores=$(nproc)
@@ -68,7 +72,7 @@ duration_of() {
   if ((seconds < 90)); then echo "about $seconds seconds on $cores cores"; else echo "about $(((seconds + 30) / 60)) minutes on $cores cores"; fi
 }
 
-# Installs the packages named that are missing; those this distribution does not have are left out.
+# Installs the given packages that are missing; skips those that this distribution does not have.
 install_missing() {
   local missing package available=()
   missing=$(missing_of "$@")
@@ -98,7 +102,7 @@ install_needed() {
   install_missing "${needed[@]}"
 }
 
-# Installs the packages that tests compare with; tests without theirs are skipped.
+# Installs the optional packages of tests; tests whose packages are missing are skipped.
 install_peers() {
   if may_install; then
     install_missing "${peers[@]}" "${checkers[@]}"
@@ -112,14 +116,14 @@ if ! mkdir -p "$build" 2>/dev/null || [[ ! -w $build ]]; then
   exit 1
 fi
 exec 9>"$build/lock"
-flock 9  # two calls at once take turns
+flock 9  # simultaneous calls take turns
 
 cd "$root"
-# Configures, and builds the program with its library, or with `tests` everything.
+# Configures and builds the program and its library, or everything with `tests`.
 build() {
-  touch "$build/started"  # what changes during the build is built the next time
-  local first=() targets=(sundog sundog_shared sundog_static)  # what `cmake --install` wants
-  if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a folder of a developer keeps its way
+  touch "$build/started"  # sources that change during the build are built next time
+  local first=() targets=(sundog sundog_shared sundog_static)  # the targets that `cmake --install` needs
+  if [[ ! -e $build/CMakeCache.txt ]]; then first=(-DSUNDOG_UNITY=ON -DSUNDOG_UNITY_TESTS=ON); fi  # a developer's folder keeps its settings
   cmake --preset release -B "$build" "${first[@]}" >"$build/configure.log" 2>&1 || { cat "$build/configure.log" >&2; exit 1; }
   if [[ $1 == tests ]]; then targets=(all); fi
   if [[ ! -e $build/built-$1 ]]; then
@@ -129,15 +133,16 @@ build() {
   touch -r "$build/started" "$build/built-program" "$build/built-$1"
 }
 
-# Builds the program while packages come: the download waits for the network, the compiler does not. What fails first ends both.
+# Builds the program while packages download, as the download waits for the network and the compiler does not.
+# The first failure ends both.
 build_beside_packages() {
   install_peers &
   local packages=$! program
-  set -m  # a process group, so that all of it can be ended
+  set -m  # a process group, so that all its processes can be killed
   build program &
   program=$!
   set +m
-  trap "kill -- -$program 2>/dev/null || true" EXIT  # the name is the function's own, the trap is not
+  trap "kill -- -$program 2>/dev/null || true" EXIT  # expanded now: the variable is local, the trap is not
   wait -n || { wait "$packages" || say "the packages could not be installed"; exit 1; }
   wait "$packages" || { say "the packages could not be installed"; exit 1; }
   wait "$program"

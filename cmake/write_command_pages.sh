@@ -1,18 +1,18 @@
 #!/bin/bash
-# The manual page and the shells' completions, from what `sundog --help` says: write_command_pages.sh SUNDOG FOLDER
-# leaves sundog.1, sundog.bash, _sundog (zsh) and sundog.fish in FOLDER.
+# Writes the manual page and the shells' completions from the output of `sundog --help`:
+# write_command_pages.sh SUNDOG FOLDER writes sundog.1, sundog.bash, _sundog (zsh) and sundog.fish to FOLDER.
 set -eu
 sundog=$1 out=$2
 mkdir -p "$out"
 
-# Fields are parted by a character that no text has; tabs in a row would count as one.
+# Separates fields. No text contains this character; successive tabs would count as one.
 part=$'\x1f'
 
-# The names and descriptions below "Subcommands:".
+# Prints the names and descriptions below "Subcommands:".
 commands_of() {
   "$sundog" "$@" --help | awk '/^Subcommands:/ { on = 1; next } on && /^  [a-z]/ { name = $1; $1 = ""; sub(/^ /, ""); print name "\x1f" $0 }'
 }
-# A line an option: "-o,--out", "FILE", description.
+# Prints a line for each option: "-o,--out", "FILE", description.
 options_of() {
   "$sundog" "$@" --help | awk '/^Options:/ { on = 1; next } /^[A-Z]/ { on = 0 }
     on && /^  -/ {
@@ -61,7 +61,7 @@ STATUS
   printf '.SH ENVIRONMENT\n.TP\n.B SUNDOG_DEVICE\nThe devices to use where no \\-\\-device is given.\n.TP\n.B XDG_CACHE_HOME\nWhere compiled kernels and tuning results are kept, in the folder sundog.\n'
 } >"$out/sundog.1"
 
-# A shell's case for each page: its options and inner commands as words.
+# Prints a page's options and inner commands as words, for a shell's case.
 words_of() {
   # shellcheck disable=SC2086
   { options_of $1 | cut -d "$part" -f1 | tr ',' '\n'; commands_of $1 | cut -d "$part" -f1; } | sort -u | xargs

@@ -1,5 +1,5 @@
-// Writes kernels/plain/halo in lanes, which host/compile/halo compiles as C++: from the folder of kernels,
-// its first argument, to the second. Run when sundog is built.
+// Converts kernels/plain/halo to lanes, which host/compile/halo compiles as C++. Arguments: the folder of
+// kernels, the file to write. The build runs it.
 #include <cstdio>
 #include <exception>
 #include <fstream>

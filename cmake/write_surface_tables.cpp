@@ -1,5 +1,5 @@
-// Writes the source of built_lobe_energy() and built_layer_tables(): its first argument. Run when sundog is
-// built, so that no start of it computes the tables of rough surfaces.
+// Writes the source of built_lobe_energy() and built_layer_tables() to the file of its argument. The build
+// runs it, so that sundog does not compute the tables of rough surfaces at each start.
 #include <cstdio>
 #include <vector>
 

@@ -24,24 +24,25 @@ struct HeldArrays {
   const HeldArrays* next;
 };
 
-/// Those that nobody reads any more.
+/// Arrays that nobody reads any more, to be freed.
 std::atomic<const HeldArrays*> let_go_of{nullptr};
 
-/// For a thread that has the interpreter's lock.
+/// Frees them. The caller must hold the interpreter's lock.
 int free_let_go(void*) {
   for (const HeldArrays* held = let_go_of.exchange(nullptr); held;) delete std::exchange(held, held->next);
   return 0;
 }
 
-/// Whether this thread has the interpreter's lock; false where the interpreter does not say.
+/// Whether this thread holds the interpreter's lock; false if the interpreter does not tell.
 bool has_interpreter() {
   static const auto check =  // outside the stable ABI
       reinterpret_cast<int (*)()>(::dlsym(RTLD_DEFAULT, "PyGILState_Check"));
   return check && check() == 1;
 }
 
-/// The last that holds the arrays may be a thread of the library's, which never waits for the interpreter's
-/// lock: a thread that has it may wait for this one. The interpreter frees them soon.
+/// Deletes the arrays. The last owner may be a thread of the library, which must not wait for the
+/// interpreter's lock, because a thread that holds it may wait for this one. Then the interpreter frees them
+/// later.
 void let_go(const HeldArrays* held) {
   if (!Py_IsInitialized()) return;
   auto* mine = const_cast<HeldArrays*>(held);
@@ -51,7 +52,7 @@ void let_go(const HeldArrays* held) {
   if (has_interpreter())
     free_let_go(nullptr);
   else
-    Py_AddPendingCall(free_let_go, nullptr);  // full: a later one frees these too
+    Py_AddPendingCall(free_let_go, nullptr);  // if its queue is full, a later call frees these too
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ void add_mesh(OwnScene& scene, const std::string& name, const Floats3& positions
   if (normals) mesh.normals = groups<3>(*normals);
   if (uvs) mesh.uvs = groups<2>(*uvs);
   if (colors) mesh.colors = groups<3>(*colors);
-  // The scene reads the arrays where they are.
+  // The scene reads the arrays in place.
   mesh.owner = std::shared_ptr<const HeldArrays>(
       new HeldArrays{positions, triangles, normals, uvs, colors, nullptr}, let_go);
   scene.add_mesh(name, mesh);

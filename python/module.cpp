@@ -1,4 +1,4 @@
-// The Python module: the library's classes under the names of its headers.
+// The Python module: the library's classes and functions under the names in its headers.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/function.h>
@@ -20,7 +20,8 @@ constexpr const char* kinds[] = {"usage", "scene", "device", "build", "io", "int
 constexpr const char* states[] = {"idle",    "compiling", "preparing", "drawing",
                                   "settled", "stopped",   "failed"};
 
-/// Python's text, which keeps the bytes of a file's name that are no UTF-8 as its own functions do.
+/// A Python str. Bytes of file names that are not UTF-8 become surrogate escapes, as in Python's own
+/// functions.
 nb::object text_of(const std::string& text) {
   return nb::steal(PyUnicode_DecodeUTF8(text.data(), Py_ssize_t(text.size()), "surrogateescape"));
 }
@@ -31,7 +32,7 @@ nb::typed<nb::list, nb::str> texts_of(const std::vector<std::string>& texts) {
   return result;
 }
 
-/// Error as Python's sundog.Error, with its facts as attributes.
+/// Raises Error as Python's sundog.Error, with its facts as attributes.
 void raise(const Error& error, void* type) {
   const nb::object raised = nb::borrow(static_cast<PyObject*>(type))(text_of(error.what()));
   nb::setattr(raised, "kind", nb::str(kinds[static_cast<int>(error.kind())]));
@@ -61,7 +62,7 @@ void add_error(nb::module_& m) {
       type);
 }
 
-/// None where no PNG holds its channels: a notebook then shows its text.
+/// The image as PNG; None for fewer than three channels, so that a notebook shows its text instead.
 nb::object png_of(const Image& image) {
   if (image.channels() < 3) return nb::none();
   const std::string bytes = [&] {
@@ -126,8 +127,9 @@ Film render_scene(nb::handle scene, nb::handle devices, const std::vector<std::s
   return interruptible([&] { return render(used.scene(), options); }, [&] { stop.request_stop(); });
 }
 
-/// A session that ends without the interpreter's lock: it waits for its threads. The lock is let go of before
-/// the last base goes, and taken again behind it.
+/// A session that is destroyed without the interpreter's lock, because it waits for its threads. The
+/// destructor releases the lock before the base Session is destroyed; ReleasedAtEnd takes it again
+/// afterwards.
 struct ReleasedAtEnd {
   std::optional<Call> call;
   std::optional<nb::gil_scoped_release> released;

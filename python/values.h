@@ -1,4 +1,4 @@
-// Python's values as the library's, and back.
+// Converts Python's values to the library's and back, and runs calls without the interpreter's lock.
 #pragma once
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -21,7 +21,7 @@ using Floats2 = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::dev
 using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using PixelsIn = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 
-/// Python's Scene, whose edits are counted.
+/// Python's Scene, which counts its edits.
 struct OwnScene : sundog::Scene {
   OwnScene() = default;
   OwnScene(sundog::Scene scene) : Scene(std::move(scene)) {}
@@ -35,15 +35,15 @@ void add_mesh(OwnScene& scene, const std::string& name, const Floats3& positions
               const std::optional<Floats3>& normals, const std::optional<Floats2>& uvs,
               const std::optional<Floats3>& colors);
 
-/// json.dumps(), where numpy's values count as lists and numbers.
+/// json.dumps(), which writes numpy's values as lists and numbers.
 std::string json_of(nb::handle value);
 nb::object value_of(const std::string& json);
 
-/// A copy of a Scene, which other threads may change meanwhile, of a file by its path, or of a dict.
+/// A copy of a Scene, which other threads may change meanwhile, or a scene from a file's path or a dict.
 class SceneInUse {
  public:
   explicit SceneInUse(nb::handle value);
-  /// The Scene keeps what was read for its copy, such as models, unless it has changed.
+  /// Moves data that the copy has read, such as models, to the Scene, unless the Scene has been edited.
   ~SceneInUse();
   SceneInUse(const SceneInUse&) = delete;
   SceneInUse& operator=(const SceneInUse&) = delete;
@@ -54,11 +54,11 @@ class SceneInUse {
   nb::object owner_;
   std::uint64_t edits_ = 0;
 };
-/// None, a spec, a Device, or a list of these.
+/// The devices of None (an empty list), a spec, a Device, or a list of these.
 std::vector<sundog::Device> devices_of(nb::handle value);
 
-/// The thread that ends the interpreter. The others leave their calls then, as by sys.exit(): later, a thread
-/// that asks for the interpreter's lock is unwound, and C++ cannot be.
+/// The thread that ends the interpreter. All others then leave their calls as by sys.exit(), because later
+/// the interpreter unwinds a thread that asks for its lock, which C++ does not survive.
 inline std::atomic<std::thread::id> ending;
 inline std::atomic<int> calls = 0;
 struct Call {
@@ -68,7 +68,7 @@ struct Call {
   ~Call() { --calls; }
 };
 
-/// Whether this thread is to leave: Python's error is set.
+/// Whether this thread must leave its call; if so, sets Python's error.
 inline bool is_interrupted() {
   const std::thread::id end = ending;
   if (end == std::thread::id() || end == std::this_thread::get_id()) return PyErr_CheckSignals() != 0;
@@ -86,11 +86,11 @@ class Unlocked {
 
  private:
   Call call_;
-  std::optional<nb::gil_scoped_release> released_;  // ends before the call does
+  std::optional<nb::gil_scoped_release> released_;  // destroyed before call_
 };
 
-/// wait(seconds), for short times and without the interpreter's lock, until it returns true, for at most
-/// `seconds` in all: whether it did. Ctrl-C raises.
+/// Calls wait(slice) repeatedly, without the interpreter's lock, until it returns true or `seconds` have
+/// passed; returns whether it returned true. Ctrl-C raises.
 template <class Wait>
 bool waited(const Wait& wait, double seconds) {
   constexpr double slice = 0.02;
@@ -106,8 +106,8 @@ bool waited(const Wait& wait, double seconds) {
   }
 }
 
-/// f() in a thread of its own without the interpreter's lock, until it returns; Ctrl-C calls stop() and
-/// raises.
+/// Runs f() in a thread of its own, without the interpreter's lock, and returns its result; Ctrl-C calls
+/// stop() and raises.
 template <class F, class Stop>
 auto interruptible(const F& f, const Stop& stop) {
   bool interrupted = false;
@@ -123,8 +123,7 @@ auto interruptible(const F& f, const Stop& stop) {
       }
     }
   }
-  // A signal may have ended f() with an error of its own: LLVM removes a compiler's temporary files on
-  // Ctrl-C.
+  // The signal may also have made f() fail: on Ctrl-C, LLVM removes a compiler's temporary files.
   if (interrupted || is_interrupted()) throw nb::python_error();
   return running.get();
 }

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Makes a wheel that installs without a compiler, for Linux with glibc 2.36 or newer (Debian 12): python/wheel.sh [FOLDER]
+# Builds a wheel that needs no compiler to install, for Linux with glibc 2.36 or newer (Debian 12):
+# python/wheel.sh [FOLDER]
 #
-# PYTHON (default python3) is the Python that it is for; one of 3.12 or later makes a wheel for all later ones. The
-# libraries that sundog uses go into the wheel, but for the OpenCL loader, which finds the system's drivers. Needs
-# what ./run.sh needs, and pip.
+# PYTHON (default python3) is the Python of the wheel; with 3.12 or later, the wheel also works for all later
+# versions. The wheel contains the libraries that sundog uses, except the OpenCL loader, which must be the
+# system's to find its drivers. Needs pip and the packages of ./run.sh.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "${1:-$root/dist}"

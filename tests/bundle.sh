@@ -1,7 +1,9 @@
 #!/bin/bash
-# Tries the bundle on bare systems that debootstrap makes of this machine's mirror: tests/bundle.sh BUILD [FOLDER [RELEASE...]]. As root;
-# takes some minutes and 2 GB in FOLDER (default: a temporary one). Releases: bookworm and trixie. With and without /sys, the same picture
-# as by the build's own program on PoCL; `check` finds no fault.
+# Tests the bundle on bare systems that debootstrap makes from this machine's mirror:
+#   tests/bundle.sh BUILD [FOLDER [RELEASE...]]
+# Run as root; takes some minutes and 2 GB in FOLDER (default: a temporary one). Default releases: bookworm and
+# trixie. With and without /sys, the picture must equal the picture of the build's own program on PoCL, and
+# `check` must find no fault.
 set -eu
 build=$(readlink -f -- "$1")
 folder=${2:-$(mktemp -d)}

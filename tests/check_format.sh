@@ -1,6 +1,6 @@
 #!/bin/bash
-# All C++ and OpenCL C of the project as .clang-format has it. clang-format 19 is the measure: other versions set some lines
-# otherwise, so without it nothing is compared and a message says so.
+# Checks that all C++ and OpenCL C is formatted by .clang-format. Other versions than clang-format 19 format
+# some lines differently, so without version 19 it prints a message and checks nothing.
 set -eu
 cd "$(dirname "$0")/.."
 format=""

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Every kernel file through clang as OpenCL C 1.2, warnings as errors, with all features of a scene and with few; then both
-# integrators with features by chance, as scenes may combine them. Unused parameters are allowed: what a feature needs stays in the
-# signature without it. Entries also keep to tests/kernel_rules.query; with --rules nothing else is asked.
-#   tests/lint_kernels.sh [--rules] [COMBINATIONS [SEED]]   (24 of them, seed 1; SUNDOG: the program, default build/release/sundog)
+# Compiles every kernel file with clang as OpenCL C 1.2, warnings as errors: with all features of a scene and
+# with few, then both integrators with random features, as scenes may combine them. Unused parameters are
+# allowed, because a feature's parameters stay in the signature without it. Entries must also obey
+# tests/kernel_rules.query; --rules checks only that.
+#   tests/lint_kernels.sh [--rules] [COMBINATIONS [SEED]]
+# Defaults: 24 combinations, seed 1. SUNDOG: the program (default build/release/sundog).
 set -eu
 cd "$(dirname "$0")/.."
 clang=$(command -v clang || ls /usr/bin/clang-[0-9]* 2>/dev/null | sort -V | tail -n 1 || true)
@@ -15,7 +17,7 @@ for feature in $features; do all+=" -D$feature=1"; few+=" -D$feature=0"; done
 all+="$shapes -DHAS_MATTES=1 -DHAS_LIGHT_PARTS=1"; few+=$shapes
 rules=""; if [ "${1:-}" = --rules ]; then rules=$1; shift; fi
 failed=0
-# Plain files in lanes stand in for themselves.
+# Plain files are checked as converted to lanes.
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 for file in $(cd kernels && find plain -name '*.cl'); do
@@ -54,17 +56,17 @@ check() {  # FILE OPTION...
 for lanes in "-DTILE_W=4 -DTILE_H=4 $all" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE $all" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DWIDE_VECTORS=0 $all" \
   "-DTILE_W=4 -DTILE_H=4 $few -UHAS_AREA_LIGHTS -DHAS_AREA_LIGHTS=1" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DSUNDOG_PORTABLE $few"; do
   for file in kernels/lib/*/*.cl kernels/entry/*.cl; do
-    unused=""; case "$file" in kernels/lib/*) unused=-Wno-unused-function ;; esac  # a library file alone uses nothing
+    unused=""; case "$file" in kernels/lib/*) unused=-Wno-unused-function ;; esac  # a library file does not use all its functions
     # shellcheck disable=SC2086
     check "$file" $unused $lanes
   done
 done
 
-# Features that others bring with them, in an order in which one pass over the list is enough.
+# Pairs FEATURE:IMPLIED, ordered so that one pass over the list is enough.
 brings="PARALLAX:RELIEF RELIEF:MAPS RELIEF:UV METAL_ROUGH:MAPS METAL_ROUGH:HIGHLIGHTS COAT_MAPS:LAYER_MAPS FUZZ_MAPS:LAYER_MAPS LAYER_MAPS:MAPS LAYER_MAPS:LAYERS TEXEL_PAGES:MAPS TURNS:OBJECT_MOTION ENVIRONMENT:AREA_LIGHTS
   LIGHT_TREE:AREA_LIGHTS ROUGH_GLASS:ROUGH ROUGH:SECONDARY SHADOW_FILTERS:SECONDARY ABSORPTION:MEDIA SCATTERING:MEDIA TOUCHING:MEDIA
   DISPERSION:MEDIA GLOW:SDF SIDES:SDF OCCLUSION:SDF SOFT_SHADOWS:SDF MESH:BVH"
-of_paths="DISPERSION SCATTERING GUIDES CAUSTICS"  # no frame of Whitted's integrator has them
+of_paths="DISPERSION SCATTERING GUIDES CAUSTICS"  # Whitted's integrator does not have them
 lanes=("-DTILE_W=4 -DTILE_H=4" "-DTILE_W=4 -DTILE_H=4 -DSUNDOG_PORTABLE" "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DSUNDOG_PORTABLE"
   "-DTILE_W=1 -DTILE_H=1 -DLANES=1 -DWIDE_VECTORS=0")
 RANDOM=${2:-1}

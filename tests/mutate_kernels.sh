@@ -1,5 +1,5 @@
 #!/bin/bash
-# Changes kernels on purpose and reports the changes that no test notices. See --help.
+# Mutation test: changes kernels and reports the changes that no test notices. See --help.
 set -u
 usage() {
   cat <<'END'
@@ -44,7 +44,8 @@ trap 'rm -rf "$folder"' EXIT
 export SUNDOG_KERNEL_DIR=$folder/kernels XDG_CACHE_HOME=$folder/cache SUNDOG_TEST_DEVICES=$devices
 cp -r kernels "$SUNDOG_KERNEL_DIR"
 
-# Whether the tests of $1 pass; 2: a kernel does not build; 3: there are no such tests. Their output stays in $folder/out.
+# passes TESTS: runs them, with their output in $folder/out. Status 0: they pass; 1: they fail; 2: a kernel
+# does not build; 3: there are no such tests.
 passes() {
   timeout "$limit" "$tests" -\# --abort "$1" > "$folder/out" 2>&1
   local status=$?
@@ -56,7 +57,7 @@ passes() {
 
 done_count=0 noticed=0 bad=0 number=0
 
-# Makes the change and reports what the tests say.
+# Makes the change, runs the tests and reports the result.
 try_change() {
   local text rest result
   text=$(cat "$root/kernels/$file"; echo .)
@@ -84,7 +85,7 @@ try_change() {
   printf '%-14s %s: %s\n' "$result" "$file" "$what"
 }
 
-# The change that has been read, if it is one of those wanted.
+# Tries the change that has been read, if the options select it.
 finish_change() {
   [ -n "$file" ] || return
   number=$((number + 1))
@@ -95,7 +96,7 @@ finish_change() {
   file=""
 }
 
-# Unchanged kernels must pass, or nothing that follows says anything.
+# Unchanged kernels must pass; otherwise the results mean nothing.
 check_unchanged() {
   passes "$(sed -n 's/^tests: //p' "$root/tests/kernel_changes.txt" | sort -u | paste -sd,)" && return
   echo "mutate_kernels: tests fail without a change:" >&2

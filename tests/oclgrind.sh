@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Runs a command under Oclgrind and fails where Oclgrind found anything: an access out of bounds, a data race, a use of
-# uninitialised memory, a wrong API call. Oclgrind's own exit status is the command's, so its log decides.
+# Runs a command under Oclgrind and fails if Oclgrind reports anything: an access out of bounds, a data race, a
+# use of uninitialised memory, a wrong API call. Oclgrind's own exit status is the command's, so its log decides.
 #   tests/oclgrind.sh build/release/sundog render scenes/spheres.json --size 16x16 -o out.png
-# With --defined-or-not first, uninitialised memory is not looked for: that check crashes in some kernels.
+# --defined-or-not as the first argument turns off the check of uninitialised memory, which crashes in some
+# kernels.
 set -u
 uninitialized=--uninitialized
 if [ "${1-}" = --defined-or-not ]; then uninitialized=; shift; fi
@@ -10,7 +11,8 @@ if [ "${1-}" = --defined-or-not ]; then uninitialized=; shift; fi
 command -v oclgrind >/dev/null || { echo "oclgrind.sh: no oclgrind. On Debian or Ubuntu: apt-get install oclgrind" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# -cl-opt-disable: its optimiser makes calls that its interpreter lacks. Without the kernel cache messages have source lines.
+# -cl-opt-disable: Oclgrind's optimiser emits calls that its interpreter lacks. Without the kernel cache,
+# messages have source lines.
 SUNDOG_KERNEL_CACHE=off oclgrind --build-options -cl-opt-disable --check-api --data-races $uninitialized \
   --max-errors 20 --log "$work/log" "$@" 2> >(tee "$work/stderr" >&2)
 status=$?

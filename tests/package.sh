@@ -1,7 +1,9 @@
 #!/bin/bash
-# Makes the Debian packages of a build folder, has lintian read them, and installs and runs them on a bare system that debootstrap
-# makes of this one's release and mirrors: tests/package.sh BUILD [FOLDER]. As root; takes some minutes and 1 GB in FOLDER (default:
-# a temporary one). The build folder has everything built.
+# Makes the Debian packages of a build folder, checks them with lintian, and installs and runs them on a bare
+# system that debootstrap makes from this machine's release and mirrors:
+#   tests/package.sh BUILD [FOLDER]
+# Run as root; takes some minutes and 1 GB in FOLDER (default: a temporary one). Everything must be built in
+# BUILD.
 set -eu
 build=$(readlink -f -- "$1")
 folder=${2:-$(mktemp -d)}

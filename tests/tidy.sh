@@ -1,9 +1,11 @@
 #!/bin/bash
-# clang-tidy and clang-query over the C++ sources of host and bench: those that changed since BASE, or all of them. .clang-tidy has the
-# checks and why they are there, tests/code_rules.query the project's own. Tests are left out: each of Catch2's CHECKs looks like a chained comparison.
+# Runs clang-tidy and clang-query on the C++ sources of host and bench: those that changed since BASE, or all.
+# .clang-tidy has the checks and their reasons, tests/code_rules.query the project's own. Tests are left out,
+# because each CHECK of Catch2 looks like a chained comparison.
 #   tests/tidy.sh [--all | BASE]
-# BASE is a commit; without it, where this branch left main, and on main itself the commit before. Changes that are not committed
-# count too. Without --all no source is begun after 45 seconds, and a message says how many were left out.
+# BASE is a commit; by default the one where this branch left main, or on main itself the previous commit.
+# Uncommitted changes count too. Without --all, no source is begun after 45 seconds, and a message gives the
+# number of omitted ones.
 set -eu
 cd "$(dirname "$0")/.."
 tidy=""
@@ -15,7 +17,7 @@ if [[ -z $tidy ]]; then
   exit 0
 fi
 
-# The changed sources; for a header, the source of the same name.
+# Prints the changed sources; for a header, the source of the same name.
 changed_sources() {
   local base=$1 file
   if [[ -z $base ]]; then
@@ -43,12 +45,12 @@ else
 fi
 if [[ ${#sources[@]} == 0 ]]; then exit 0; fi
 
-# A build folder of its own, never built: how each source is compiled by itself.
+# A build folder that is configured but never built, for the compile command of each source on its own.
 cmake --preset release -B build/tidy -DSUNDOG_UNITY=OFF -DSUNDOG_UNITY_TESTS=OFF >build/tidy.log 2>&1 || { cat build/tidy.log >&2; exit 1; }
 sources_known=$(grep -o '"file": "[^"]*"' build/tidy/compile_commands.json | sed "s|.*\"$PWD/||; s|\"||")
 checked=()
 for source in "${sources[@]}"; do
-  if grep -qxF "$source" <<<"$sources_known"; then checked+=("$source"); fi  # others are for libraries that are not here
+  if grep -qxF "$source" <<<"$sources_known"; then checked+=("$source"); fi  # others need libraries that are missing here
 done
 if [[ ${#checked[@]} == 0 ]]; then exit 0; fi
 left=$(mktemp)

@@ -1,4 +1,4 @@
-// `sundog bench compare`: reports of other benches against the first one, row by row.
+// `sundog bench compare`: compares reports of a bench, or a report's devices, with the first one, row by row.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,18 +28,18 @@ struct CompareOptions : ReportFiles {
   std::vector<std::string> reports;
 };
 
-/// One of the things that are compared: the calls that measured it.
+/// One side of the comparison: a report, several calls' reports, or a device.
 struct Side {
   std::string name;
   std::vector<KnownReport> calls;
   std::vector<std::string> order;                             // names of its rows
-  std::map<std::string, std::vector<std::vector<Run>>> runs;  // of each row, by call
-  bool in_turn = false;                                       // with those of the other sides
+  std::map<std::string, std::vector<std::vector<Run>>> runs;  // by row, then call
+  bool in_turn = false;                                       // runs took turns with the other sides'
 };
 
 constexpr std::size_t title_at = 2;  // in device_names()
 
-/// "0:0 platform / name", "0:0 name", its title and "0:0": what a row may call a device, the longest first.
+/// "0:0 platform / name", "0:0 name", its title and "0:0": the names of a device in rows, the longest first.
 std::vector<std::string> device_names(const KnownReport& report, std::size_t row) {
   const auto& cells = report.devices.rows[row];
   const std::string label = known_cell(report.devices, cells, "label");
@@ -54,7 +54,7 @@ std::set<std::string> device_labels(const KnownReport& report) {
   return labels;
 }
 
-/// Replaces a device's names; whether there was one.
+/// Replaces the first of a device's names in the text; returns whether there was one.
 bool replace_device(std::string& text, const std::vector<std::string>& names, const std::string& by) {
   for (const std::string& name : names)
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
@@ -75,7 +75,7 @@ void add_way(Side& side, const std::string& name, const MeasuredWay& way) {
   side.runs[name].push_back(way.runs);
 }
 
-/// A report, or the reports in a folder, which several calls of one bench wrote.
+/// Reads a report, or the reports in a folder, which several calls of one bench wrote.
 Side read_side(const std::string& name) {
   Side side{fs::path(name).stem().string(), {}, {}, {}, false};
   std::vector<std::string> files{name};
@@ -91,7 +91,8 @@ Side read_side(const std::string& name) {
   return side;
 }
 
-/// The devices of one report; those of bench devices took turns, others were measured one after the other.
+/// The devices of one report. In `bench devices` they took turns; otherwise they were measured one after the
+/// other.
 std::vector<Side> sides_of(const KnownReport& report, const std::string& file) {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < report.devices.rows.size(); ++i) {
@@ -114,7 +115,7 @@ std::vector<Side> sides_of(const KnownReport& report, const std::string& file) {
   return sides;
 }
 
-/// Throws UsageError where a scene of both was measured in another size or with other settings.
+/// Throws UsageError if a scene of both reports was measured in another size or with other settings.
 void check_scenes(const KnownReport& base, const KnownReport& other, const std::string& file) {
   const auto settings = [](const Table& scenes, const std::vector<Cell>& row) {
     std::map<std::string, std::string> all;
@@ -190,10 +191,10 @@ Spread milliseconds(const std::vector<std::vector<Run>>& calls) {
 /// Facts that all rows of a comparison share.
 struct Tally {
   bool in_turn = false;                                // runs in pairs
-  std::size_t fewest_calls = SIZE_MAX, unmatched = 0;  // of a row; rows that the base has not
+  std::size_t fewest_calls = SIZE_MAX, unmatched = 0;  // of a row; rows missing in the base
 };
 
-/// Adds the rows of `side` that the base has, and a note on them. Throws UsageError where there is none.
+/// Adds the rows that `side` and the base share, and a note on them. Throws UsageError if there are none.
 void add_side(Report& report, const Side& base, const Side& side, Tally& tally) {
   Table table{side.name + " against " + base.name, {}, {}};
   BarPlot plot{table.title, "ratio of times", {}, true};
@@ -237,7 +238,7 @@ void add_side(Report& report, const Side& base, const Side& side, Tally& tally) 
   report.parts.emplace_back(std::move(plot));
 }
 
-/// How the intervals came about.
+/// The report's note on how the intervals were computed.
 const char* interval_note(const Tally& tally) {
   if (tally.in_turn)
     return "The devices took turns, so runs are compared pair by pair: the median of their ratios. Fewer "

@@ -1,4 +1,4 @@
-// `sundog bench devices`: which device, or which devices together, draw a scene fastest.
+// `sundog bench devices`: ranks devices and combinations of devices by the time of a scene's frame.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,12 +31,12 @@ std::string joined(const std::vector<DeviceInfo>& devices, std::string (*name_of
   return fmt::format("{}", fmt::join(all, " + "));
 }
 std::string names(const std::vector<DeviceInfo>& devices) { return joined(devices, device_title); }
-/// For a bar, which has room for one name.
+/// The label of a bar, which has room for one name.
 std::string short_names(const std::vector<DeviceInfo>& devices) {
   return devices.size() == 1 ? names(devices) : joined(devices, device_place);
 }
 
-/// Whether two choices have a compute unit in common.
+/// Whether two devices, or parts of them, share a compute unit.
 bool overlap(const DeviceInfo& a, const DeviceInfo& b) {
   if (a.platform != b.platform || a.device != b.device) return false;
   const auto end = [](const DeviceInfo& device) {
@@ -52,14 +52,14 @@ bool is_possible(const std::vector<DeviceInfo>& devices) {
   return true;
 }
 
-/// Open devices, and reference pictures, for all combinations.
+/// Open devices and reference pictures, shared by all combinations.
 struct Common {
   std::map<std::string, std::shared_ptr<LocalWorker>> open;
   std::map<std::string, Image> alone;  // each device's own picture
   Image expected;                      // the first device's
 };
 
-/// Each device alone, each pair, and all together; no device with a part of itself. Pure.
+/// Each device alone, each pair, and all together, but no device with a part of itself. Pure.
 std::vector<std::vector<DeviceInfo>> device_combinations(const std::vector<DeviceInfo>& devices) {
   std::vector<std::vector<DeviceInfo>> sets;
   for (const DeviceInfo& device : devices) sets.push_back({device});
@@ -70,8 +70,8 @@ std::vector<std::vector<DeviceInfo>> device_combinations(const std::vector<Devic
   return sets;
 }
 
-/// The rate of a combination over the sum of its devices' rates alone: all take part or count as idle. Pure;
-/// nothing where a time is not known.
+/// A combination's rate divided by the sum of its devices' rates alone; idle devices count too. Nothing if a
+/// time is unknown. Pure.
 std::optional<double> combined_efficiency(double seconds, const std::vector<double>& alone) {
   double rate = 0;
   for (const double own : alone) {
@@ -88,7 +88,7 @@ bool is_part(const std::string& spec) {
          spec.find_first_not_of("0123456789", slash + 1) == std::string::npos;
 }
 
-/// A whole device and parts of it may be measured, one after the other.
+/// The devices to measure, which may include a device and parts of it.
 std::vector<DeviceInfo> wholes_and_parts(BenchOptions options) {
   std::vector<std::string> wholes = options.devices;
   std::vector<std::string> parts, exclusions;
@@ -102,7 +102,7 @@ std::vector<DeviceInfo> wholes_and_parts(BenchOptions options) {
   options.devices = parts;
   options.devices.insert(options.devices.end(), exclusions.begin(), exclusions.end());
   for (const DeviceInfo& part : bench_devices(options)) {
-    // A part that is the whole device stands once.
+    // A part that is the whole device counts once.
     const auto same = [&](const DeviceInfo& whole) { return whole.label() == part.label(); };
     if (std::ranges::none_of(all, same)) all.push_back(part);
   }
@@ -129,9 +129,9 @@ class DeviceRanking {
     }
   }
 
-  /// Frames of all combinations in turn, on devices that are opened once. A picture that is not the first
-  /// device's but for rounding is a problem, or not its to the bit where all devices of a combination draw
-  /// the same bits.
+  /// Times frames of all combinations in turn, on devices that are opened once. A combination has a problem
+  /// if its picture differs from the first device's by more than rounding, or in any bit if its devices alone
+  /// all draw the same bits.
   void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
   /// Adds the ranking, bars and measurements.
   void add_to(Report& report) const {
@@ -177,8 +177,8 @@ class DeviceRanking {
   struct Combination {
     std::vector<DeviceInfo> devices;
     std::shared_ptr<FrameRunner> frames;
-    std::vector<std::vector<double>> shares;  // of each run, the first one too
-    std::uint64_t differing = 0;              // pixels visibly unlike those of the first device, at most
+    std::vector<std::vector<double>> shares;  // of each run, the first included
+    std::uint64_t differing = 0;              // most pixels that visibly differ from the first device's
 
     void open(const std::shared_ptr<const CompiledScene>& scene, Common& common) {
       std::vector<std::shared_ptr<LocalWorker>> workers;
@@ -197,12 +197,12 @@ class DeviceRanking {
       std::vector<double>& run = shares.emplace_back();
       for (const DeviceReport& report : frames->last().devices) run.push_back(report.share);
       const Image image = frames->image();
-      if (common.expected.data.empty()) common.expected = image;  // no device has drawn one alone
+      if (common.expected.data.empty()) common.expected = image;  // no device has drawn alone
       const auto differs = compare_images(image, common.expected, visible).over_tolerance;
       differing = std::max(differing, differs);
       if (!plain_difference(image, common.expected).empty())
         return fmt::format("{} pixels are not those of the first device", differs);
-      // Devices that draw the same bits alone draw them together.
+      // Devices that draw the same bits alone must draw them together.
       const Image& own = common.alone[devices[0].label()];
       const bool same_bits = std::ranges::all_of(devices, [&](const DeviceInfo& device) {
         const auto found = common.alone.find(device.label());
@@ -211,7 +211,7 @@ class DeviceRanking {
       return same_bits && !same_bits_of(image, own) ? "its image is not that of its first run" : "";
     }
 
-    /// The median over the runs that count.
+    /// Each device's median share over the runs that count.
     std::vector<double> median_shares(const MeasuredWay& way) const {
       std::vector<double> medians;
       for (std::size_t i = 0; i < devices.size(); ++i) {

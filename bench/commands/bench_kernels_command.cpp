@@ -1,4 +1,5 @@
-// `sundog bench kernels`: what each device's compiler made of the kernels that a scene needs.
+// `sundog bench kernels`: registers, memory and build times of the kernels that a scene needs, on each
+// device.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,14 +26,14 @@ struct KernelFigures {
   std::string kernel;
   KernelLimits limits;
   std::size_t greatest_group =
-      0;                  // that sundog gives it: the kernel's limit, and room on a processor's stack
-  PtxasFigures compiler;  // by the build log, where the driver tells
-  std::optional<unsigned> resident_threads;  // on a multiprocessor, by its registers alone; NVIDIA's devices
-  double cold_seconds = 0;             // to build its program from source and to keep it in sundog's cache
-  std::optional<double> warm_seconds;  // to load that; nothing without a cache
+      0;                  // that sundog uses: by the kernel's limit, and by the room on a processor's stack
+  PtxasFigures compiler;  // from the build log, if the driver gives it
+  std::optional<unsigned> resident_threads;  // per multiprocessor, by registers alone; NVIDIA only
+  double cold_seconds = 0;             // to build its program from source and to store it in sundog's cache
+  std::optional<double> warm_seconds;  // to load it from there; nothing without a cache
 };
 
-/// The device with sundog's cache, which it does not read while logs are kept (SUNDOG_BUILD_LOG).
+/// The device without SUNDOG_BUILD_LOG, which keeps it from reading sundog's cache.
 DeviceInfo with_cache(DeviceInfo info) {
   HostEnvironment environment = value_of(info.environment);
   environment.build_log.clear();
@@ -40,7 +41,7 @@ DeviceInfo with_cache(DeviceInfo info) {
   return info;
 }
 
-/// Builds a program from its source, then loads it on the device opened anew. On NVIDIA's devices with
+/// Builds a program from source, then loads it from the cache on the reopened device; on NVIDIA devices with
 /// -cl-nv-verbose. Throws DeviceError, BuildError.
 std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source) {
   Device device(info), again(with_cache(info));
@@ -69,15 +70,15 @@ std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const ScenePro
   return result;
 }
 
-/// Figures of each device's programs: a second build of one would find it in the driver.
+/// Figures of each device's programs, because a second build would find the program in the driver's cache.
 using KnownFigures = std::map<std::pair<std::string, SceneProgram>, std::vector<KernelFigures>>;
 
-/// Nothing where it is not known: 0 would be a figure.
+/// An empty cell if the value is unknown, as 0 would be a figure.
 template <class T>
 Cell told(const std::optional<T>& value) {
   return value ? Cell(static_cast<double>(*value)) : Cell();
 }
-/// Nothing for 0, which stands for an unknown value.
+/// An empty cell for 0, which means unknown.
 template <class T>
 Cell told(T value) {
   return value > 0 ? Cell(static_cast<double>(value)) : Cell();
@@ -118,7 +119,7 @@ std::vector<Cell> problem_row(const std::string& program, const std::string& why
   return cells;
 }
 
-/// `work()`, at a row of the bench. Returns why it failed; "": it did not.
+/// Runs `work` in a row of the bench. Returns the error; "" if there was none.
 std::string failure(const std::string& row, const std::function<void()>& work) {
   std::string why = enter_row(row);
   try {
@@ -132,7 +133,7 @@ std::string failure(const std::string& row, const std::function<void()>& work) {
   return why;
 }
 
-/// Adds frames' kernels, with and without AOVs, and those of `bench rays` where something is traced.
+/// Adds the kernels of frames, with and without AOVs, and of `bench rays` if the scene has anything to trace.
 void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info,
                 KnownFigures& known) {
   const std::string place = fmt::format("{} on {}", name, device_title(info));
@@ -177,8 +178,8 @@ void add_device(Report& report, const std::string& name, const CompiledScene& sc
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
-  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // without it, Mesa compiles at each launch: none here
-  set_variable("POCL_CACHE_DIR", "", true);           // where PoCL finds what earlier processes built
+  set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa then compiles at launches: none here
+  set_variable("POCL_CACHE_DIR", "", true);           // PoCL's cache of earlier processes
   KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
   Report& report = run.head();

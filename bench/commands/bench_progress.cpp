@@ -16,7 +16,7 @@ constexpr double seconds_between_lines = 10, seconds_between_drawings = 0.1;
 
 }  // namespace
 
-/// By the estimate at first, then more and more by what the work has really taken.
+/// Blends from the estimate towards the measured rate as the work proceeds.
 double BenchProgress::seconds_left(double done) const {
   const double by_clock = done > 0 ? clock_.seconds() / done * (1 - done) : 0;
   return done * by_clock + (1 - done) * (expected_ > 0 ? expected_ * (1 - done) : by_clock);

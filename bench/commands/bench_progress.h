@@ -1,4 +1,5 @@
-// How far a benchmark is: a bar with the time left on a terminal, else a line now and then.
+// Shows a benchmark's progress on stderr: a bar with the time left on a terminal, otherwise a line every ten
+// seconds.
 #pragma once
 #include <string>
 
@@ -8,15 +9,15 @@ namespace sundog {
 
 class BenchProgress {
  public:
-  /// `expected`: seconds in all; 0: not known.
+  /// `expected`: estimated total seconds; 0: unknown.
   BenchProgress(bool wanted, double expected) : wanted_(wanted), expected_(expected) {}
   ~BenchProgress() { erase(); }
   BenchProgress(const BenchProgress&) = delete;
   BenchProgress& operator=(const BenchProgress&) = delete;
 
-  /// `done`: the part of the work that is over, from 0 to 1.
+  /// `done`: the fraction of the work that is completed, from 0 to 1.
   void update(const std::string& step, double done);
-  /// Takes the bar off the terminal.
+  /// Removes the bar from the terminal.
   void erase();
 
  private:

@@ -1,4 +1,4 @@
-// `sundog bench quality`: error by time of samplers and integrators, against a reference.
+// `sundog bench quality`: error against a reference, by time, of samplers and integrators.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@
 namespace sundog {
 namespace {
 
-/// One way to render the scene: settings, and what the report calls it.
+/// One way to render the scene.
 struct QualityWay {
   std::string integrator, sampler;
 };
@@ -37,10 +37,10 @@ struct QualityPlan {
   std::vector<QualityWay> ways;
   std::vector<int> counts;  // samples a pixel, ascending
   Image reference;
-  double goal = 0.02;  // root mean square error to whose time ways are compared
+  double goal = 0.02;  // root mean square error; ways are compared by the time to reach it
 };
 
-/// One way with one number of samples.
+/// A way's figures with one number of samples.
 struct QualityTime {
   QualityWay way;
   int samples = 0;
@@ -50,7 +50,7 @@ struct QualityTime {
 
 std::string name_of(const QualityWay& way) { return way.integrator + ", " + way.sampler; }
 
-/// By the first picture of a way.
+/// Sets the errors of a way's first picture. Throws UsageError if its size is not the reference's.
 void compare(QualityTime& time, const QualityPlan& plan, const Image& image) {
   if (image.width != plan.reference.width || image.height != plan.reference.height)
     throw UsageError(fmt::format("{}: its picture has {}x{} pixels, the reference {}x{}", plan.scene,
@@ -79,8 +79,8 @@ class QualityTimes {
       }
   }
 
-  /// Times frames of all ways and counts in turn. Throws UsageError where the scene's picture has another
-  /// size than the reference.
+  /// Times frames of all ways and counts in turn. Throws UsageError if the scene's picture and the reference
+  /// differ in size.
   void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
   /// Adds tables, curves and measurements.
   void add_to(Report& report) const {
@@ -150,7 +150,7 @@ class QualityTimes {
   }
 
   QualityPlan plan_;
-  std::vector<std::shared_ptr<QualityTime>> times_;  // of each way, its counts
+  std::vector<std::shared_ptr<QualityTime>> times_;  // for each way, all counts
   std::vector<Subject> subjects_;
 };
 
@@ -159,7 +159,7 @@ struct QualityOptions : BenchOptions {
                                       goal = "0.02";
 };
 
-/// Every integrator with every sampler; without --integrators the scene's own.
+/// Every integrator with every sampler; without --integrators, the scene's integrator.
 std::vector<QualityWay> quality_ways(const QualityOptions& options, const std::string& file) {
   std::vector<std::string> integrators = split_names(options.integrators);
   if (integrators.empty()) integrators.push_back(bench_description(file, options).render.integrator);

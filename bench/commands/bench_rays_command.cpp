@@ -1,4 +1,4 @@
-// `sundog bench rays`: the tracer alone, on the rays of a frame by kind.
+// `sundog bench rays`: times the tracer alone on the rays of a frame, by kind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct RaysOptions : BenchOptions {
   bool no_times = false;
 };
 
-/// "primary,shadow": of which kinds; empty: of all. Throws UsageError.
+/// Parses "primary,shadow"; empty: all kinds. Throws UsageError for an unknown kind.
 std::vector<std::string> parse_kinds(const std::string& text) {
   std::vector<std::string> kinds;
   std::istringstream in(text);

@@ -1,4 +1,4 @@
-// `sundog bench roofline`: what a device can do at most, and where the tracer's kernels lie below that.
+// `sundog bench roofline`: a device's peaks, and how close the tracer's kernels come to them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Roof {
   Spread bandwidth;
 };
 
-/// Up along the bandwidth to the peak, then level, from `low` to `high` operations a byte.
+/// Rises with the bandwidth to the peak, then is level, from `low` to `high` operations a byte.
 Curve roof_curve(const Roof& roof, const Spread& peak, double low, double high) {
   const double ridge = peak.median / roof.bandwidth.median;
   Curve curve{roof.name, {}};
@@ -37,7 +37,7 @@ Curve roof_curve(const Roof& roof, const Spread& peak, double low, double high) 
   return curve;
 }
 
-/// Roofs about the points, which are curves of one point.
+/// Plots the roofs above the points, which are curves of one point each.
 CurvePlot plot_of(const std::string& title, const std::vector<Roof>& roofs, const Spread& peak,
                   const std::vector<Curve>& points) {
   CurvePlot plot{title, "operations a byte", "Gop/s", {}, false, true};
@@ -106,7 +106,7 @@ class Roofline {
                                {"rate", "Gop/s", operations},
                                {"traffic", "GB/s", scaled(timed.rate, 1e-3 * work.bytes)}};
       if (cache && memory && peak) {
-        // Bytes that must come from memory come at its speed, those asked for at that of the cache.
+        // Bytes that must come from memory come at memory speed, requested bytes at cache speed.
         const double bound = std::min({peak->median, cache->median * work.intensity(),
                                        memory->median * work.operations / work.least_bytes});
         shown.push_back({"of the roof", "%", 100 * operations.median / bound});

@@ -30,9 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double between_keeps = 1;    // seconds
-constexpr double most_of_time = 0.05;  // that keeping may take
+constexpr double most_of_time = 0.05;  // that keep() may take
 
-/// Files of a bench that holds `time`: what a person must know of its intervals and of the load.
+/// The report's notes on its intervals and on disturbed runs.
 std::vector<std::string> notes_on_runs(const Report& report, double limit, double precision) {
   std::size_t timed = 0, wide = 0, left_out = 0, slow = 0, least = 0, most = 0;
   std::vector<std::string> noisy;
@@ -110,7 +110,7 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
   if (const fs::path kept = kept_for_next(); fs::exists(kept)) {
     const Table devices = known_devices_, scenes = known_scenes_;
     take_known(kept.string());
-    known_devices_ = devices, known_scenes_ = scenes;  // the same command has the same ones
+    known_devices_ = devices, known_scenes_ = scenes;  // checks only --continue's
   }
   if (const std::string why = cache_refusal(program_environment()->cache); !why.empty())
     head_.notes.push_back(why);
@@ -211,7 +211,7 @@ void BenchRun::keep() {
   files.json = kept_for_next().string();
   try {
     if (!files.json.empty()) write_report(so_far(), files);
-  } catch (const IoError&) {  // no room: the next process measures them again
+  } catch (const IoError&) {  // disk full: the next child measures again
   }
   keeping_ = clock.seconds();
   since_kept_ = {};

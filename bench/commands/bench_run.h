@@ -1,4 +1,5 @@
-// One run of a bench: what was measured is on disk at once and shown at the end, however it ends.
+// One run of a bench. It saves measurements as they are made and reports them at the end, even after an
+// interruption.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -16,24 +17,24 @@ namespace sundog {
 
 class BenchRun {
  public:
-  /// `name` is the benchmark's. Throws IoError when a file of the options cannot be written, UsageError when
-  /// the report to continue is another bench's.
+  /// `name` is the benchmark's. Throws IoError if an output file cannot be written, UsageError if the report
+  /// to continue is from another bench or revision.
   BenchRun(const std::string& name, const std::string& title, const BenchOptions& options);
 
-  /// The report without measurements: facts, and notes that follow those of the measurements.
+  /// The report without measurements: its facts, and the notes that follow the measurements' notes.
   Report& head() { return head_; }
   void add_devices(const std::vector<DeviceInfo>& devices);
-  /// Those that the options mean, added.
+  /// Adds and returns the devices that the options select.
   std::vector<DeviceInfo> devices();
-  /// `more`: the bench's own settings of the scene. Throws UsageError where the report to continue has
-  /// measured another scene of that name with the same ones.
+  /// `more`: the bench's own overrides of the scene. Throws UsageError if the report to continue measured a
+  /// different scene with this name and these overrides.
   void add_scene(const std::string& file, const CompiledScene& scene,
                  const std::vector<std::string>& more = {});
   std::shared_ptr<const CompiledScene> compiled(const std::string& file,
                                                 const std::vector<std::string>& more = {});
 
-  /// Measures what has measure(MeasureOptions) and add_to(Report); nothing once it is interrupted. `budget`
-  /// in seconds; 0: none. `repeat` of the options' where it is below 0.
+  /// Measures `part`, which has measure(MeasureOptions) and add_to(Report&); does nothing after an
+  /// interruption. `budget` in seconds; 0: no limit. `repeat` below 0: the options' value.
   template <class Part>
   void measure(const std::shared_ptr<Part>& part, double budget = 0, int repeat = -1) {
     if (is_stopped()) return;
@@ -41,8 +42,8 @@ class BenchRun {
     part->measure(measuring(budget, repeat));
   }
   bool is_stopped() const { return stop_.flag(); }
-  /// Writes the files and prints the report. Returns the exit status; throws what the first way failed with
-  /// where none has a time, and with `all_right` for a wrong result.
+  /// Writes the files and prints the report. Returns the exit status. If all ways have a problem, throws the
+  /// first one's; with `all_right`, throws DeviceError for any wrong result.
   int publish(bool all_right = false);
 
  private:
@@ -55,7 +56,7 @@ class BenchRun {
   StopOnSignal stop_;
   Report head_;
   Table known_devices_, known_scenes_;        // of the report to continue
-  std::map<std::string, MeasuredWay> known_;  // its runs
+  std::map<std::string, MeasuredWay> known_;  // its runs by way
   std::vector<std::function<void(Report&)>> parts_;
   std::shared_ptr<LoadMeter> load_;
   std::unique_ptr<BenchProgress> progress_;
@@ -63,7 +64,7 @@ class BenchRun {
   double keeping_ = 0;  // seconds that the last keep() took
 };
 
-/// Declares `sundog bench NAME`: `run` is called with the options, which have those of all benches.
+/// Declares `sundog bench NAME` with the options of all benches; the command calls `run` with them.
 template <class Options>
 Arguments* add_bench_command(Arguments& bench, Command& chosen, const std::string& name,
                              const std::string& description, const std::shared_ptr<Options>& options,

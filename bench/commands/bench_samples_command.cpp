@@ -23,10 +23,10 @@
 namespace sundog {
 namespace {
 
-/// In linear colour: a pixel that is off by more looks wrong.
+/// In linear colour; a pixel with a greater error looks wrong.
 constexpr double visible_error = 0.02;
 
-/// One way to share samples out.
+/// One way to distribute samples.
 struct SampleWay {
   std::string family;                  // "even", "adaptive", "subsampled": a curve of the report
   std::string setting;                 // the samples, or the threshold
@@ -38,13 +38,13 @@ struct SampleScaling {
   std::function<std::shared_ptr<const CompiledScene>(const std::vector<std::string>& overrides)> compile_with;
   DeviceInfo device;
   std::vector<SampleWay> ways;  // the even ones first, by ascending samples
-  int reference = 128;          // samples of the picture that counts as right
+  int reference = 128;          // samples of the reference picture
 };
 
 /// Figures of one way, from its first frame.
 struct SampleFigures {
-  double samples = 0;     // a pixel, in the mean
-  double rays = 0;        // of a frame, of all kinds, those that only look too
+  double samples = 0;     // mean number per pixel
+  double rays = 0;        // of a frame, of all kinds (FrameRunner::rays())
   ImageDifference error;  // from the reference, in linear color; tolerance visible_error
 };
 
@@ -131,7 +131,7 @@ class SampleTimes {
   }
 
  private:
-  /// Its rays in per cent of those that even samples need for the same error; nothing: unknown.
+  /// The way's rays in per cent of the rays that even samples need for the same error; empty if unknown.
   Cell of_even(std::size_t way) const {
     if (plan_.ways[way].family == even_family) return 100.0;
     std::vector<ErrorCost> even;
@@ -191,7 +191,7 @@ class SampleTimes {
         fmt::format("{}: {} by samples a pixel", plan_.scene, what), "samples a pixel", unit, {curve}, false};
   }
 
-  /// Error over what it costs: a curve for each family of ways.
+  /// Error over cost: a curve for each family of ways.
   CurvePlot error_curves(const std::string& what, const std::string& unit,
                          const std::function<double(std::size_t way)>& cost) const {
     std::vector<Curve> curves;
@@ -232,13 +232,13 @@ class SampleTimes {
 
 struct SamplesOptions : BenchOptions {
   std::string counts = "1,5,17,26";
-  int reference = 0;                        // 0: four times the most
+  int reference = 0;                        // 0: four times the largest count
   std::string adaptive = "0.01,0.02,0.05";  // thresholds
   double budget = 0;                        // seconds; 0: no limit
 };
 
-/// Even frames of each count; adaptive frames, with up to four times the greatest count a pixel; subsampled
-/// frames of each count.
+/// Even frames of each count; adaptive frames of each threshold, with up to four times the largest count per
+/// pixel; subsampled frames of each count.
 std::vector<SampleWay> sample_ways(const SamplesOptions& options, const std::vector<int>& counts) {
   std::vector<SampleWay> ways;
   for (const int samples : counts)

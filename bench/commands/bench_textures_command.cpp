@@ -1,4 +1,4 @@
-// `sundog bench textures`: a frame with textures and without.
+// `sundog bench textures`: times a frame with and without textures.
 #include <fmt/format.h>
 
 #include <memory>
@@ -17,7 +17,7 @@
 namespace sundog {
 namespace {
 
-/// The scene with the numbers and colours of its materials alone.
+/// The scene with only its materials' plain colours and numbers.
 SceneDescription without_textures(SceneDescription scene) {
   for (MaterialDescription& material : scene.materials) {
     material.textures = {};
@@ -30,7 +30,7 @@ SceneDescription without_textures(SceneDescription scene) {
   return scene;
 }
 
-/// Frames with a scene's textures and without them, in turn, by the time of their kernels.
+/// Times frames with and without a scene's textures, in turn, by their kernels' time.
 class TextureCost {
  public:
   TextureCost(std::string scene_name, const SceneDescription& scene, const DeviceInfo& device)
@@ -67,8 +67,8 @@ class TextureCost {
 
  private:
   std::string scene_, device_;
-  std::vector<Subject> subjects_;              // without textures, with them
-  std::vector<std::shared_ptr<double>> rays_;  // of a frame of each
+  std::vector<Subject> subjects_;              // without textures, with textures
+  std::vector<std::shared_ptr<double>> rays_;  // of a frame of each subject
 };
 
 int bench_textures(const BenchOptions& options) {

@@ -1,4 +1,4 @@
-// `sundog bench threads`: times against image size and number of threads.
+// `sundog bench threads`: times frames by image size and number of threads.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -35,11 +35,11 @@ std::string threads_text(unsigned threads) {
   return threads ? fmt::format("{} thread{}", threads, threads == 1 ? "" : "s") : "plain C++";
 }
 
-/// A size's scene and the image that all counts must show.
+/// A size's scene, and the image that every number of threads must produce.
 struct OneSize {
   CompiledScene scene;
   Image expected;
-  unsigned first = 0;  // the count that drew it
+  unsigned first = 0;  // the number of threads that drew it; 0: none yet
 };
 
 Subject thread_subject(const ThreadScaling& plan, unsigned threads, const std::shared_ptr<OneSize>& size) {
@@ -65,7 +65,7 @@ Subject thread_subject(const ThreadScaling& plan, unsigned threads, const std::s
   return subject;
 }
 
-/// Compiles nothing and may take minutes: its first frame is the one that counts.
+/// The plain program needs no warm-up and may take minutes, so its first frame counts.
 Subject plain_subject(const std::shared_ptr<OneSize>& size) {
   const auto last = std::make_shared<Image>();
   Subject subject;
@@ -85,8 +85,8 @@ Subject plain_subject(const std::shared_ptr<OneSize>& size) {
   return subject;
 }
 
-/// Times a small frame of the scene, which also compiles its kernels into the cache. Zeros where it cannot be
-/// drawn.
+/// Times a small frame of the scene, which also compiles its kernels into the cache. Zeros if the frame
+/// cannot be drawn.
 PixelCost pixel_cost(const ThreadScaling& plan) {
   constexpr int greatest_side = 64;
   const int side = std::min(greatest_side, plan.sizes.front());
@@ -113,8 +113,8 @@ PixelCost pixel_cost(const ThreadScaling& plan) {
   return cost;
 }
 
-/// The sizes and counts of a plan, all in turn. An image that is not that of the size's first count to the
-/// bit is a problem, and so is the plain program's when it is another but for rounding.
+/// Times a plan's sizes and counts in turn. Every image of a size must have the bits of its first; the plain
+/// program's may differ by rounding only.
 class ThreadTimes {
  public:
   explicit ThreadTimes(ThreadScaling plan) : plan_(std::move(plan)) {
@@ -186,8 +186,8 @@ class ThreadTimes {
     return nullptr;
   }
 
-  /// How many times as fast as one thread, with the interval of pairs of runs in turn; where the least count
-  /// is greater, that one counts as ideal.
+  /// Speed relative to one thread, with the interval of paired runs. If the least count is greater than one,
+  /// its speed-up is assumed to be ideal.
   std::optional<Spread> speed_up(int size, unsigned count) const {
     const Subject *one = find(size, plan_.counts.front()), *many = find(size, count);
     if (!one || !many) return {};
@@ -197,7 +197,7 @@ class ThreadTimes {
     return Spread{value, std::min(value, base / pairs.high), std::max(value, base / pairs.low)};
   }
 
-  /// Sizes whose frames are so short that starting and ending them counts.
+  /// Sizes whose frames are so short that their overhead matters.
   std::string tiny_sizes() const {
     constexpr double tiny = 0.01;  // seconds
     std::string sizes;
@@ -212,7 +212,7 @@ class ThreadTimes {
     return sizes;
   }
 
-  /// A row a size and a column a count, of what `cell` makes of them.
+  /// A table with a row for each size and a column for each count, filled by `cell`.
   Table pivot(const std::string& title, const std::string& unit,
               const std::function<Cell(int, unsigned)>& cell) const {
     Table table{fmt::format("{}: {} on {}", plan_.scene, title, device_title(plan_.device)),
@@ -233,19 +233,19 @@ class ThreadTimes {
 };
 
 struct ThreadsOptions : BenchOptions {
-  std::string sizes, counts;  // empty: the usual ones
-  double budget = -1;         // seconds; 0: no limit; below: not given
+  std::string sizes, counts;  // empty: the defaults
+  double budget = -1;         // seconds; 0: no limit; below 0: not given
   bool no_plain = false;
 };
 
-/// PoCL has as many compute units as the machine has cores, unless told otherwise before the first OpenCL
-/// call.
+/// Gives PoCL `most` compute units if the machine has fewer cores. Must run before the first OpenCL call.
 void allow_threads(int most) {
   if (most > static_cast<int>(std::thread::hardware_concurrency()))
     setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(most).c_str(), 0);
 }
 
-/// The device that was asked for, or the fastest of those that split.
+/// The device that the options select, or the fastest that supports sub-devices. Throws UsageError,
+/// DeviceError.
 DeviceInfo device_to_split(const BenchOptions& options) {
   const bool asked = !options.devices.empty() || !devices_of_environment().empty();
   std::vector<DeviceInfo> devices;
@@ -268,7 +268,7 @@ DeviceInfo device_to_split(const BenchOptions& options) {
   return devices[0];
 }
 
-/// Powers of two up to the machine's cores, one and two at least.
+/// Powers of two up to the number of cores, at least one and two.
 std::vector<unsigned> usual_counts() {
   std::vector<unsigned> counts{1, 2};
   while (2 * counts.back() <= std::thread::hardware_concurrency()) counts.push_back(2 * counts.back());
@@ -281,7 +281,7 @@ std::vector<unsigned> counts_of(const ThreadsOptions& options) {
   return {counts.begin(), counts.end()};
 }
 
-/// One plan for each scene, cut down to the budget. What was left out goes to the report's notes.
+/// One plan for each scene, cut down to the budget. Notes in the report list the omissions.
 std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const ThreadScaling& usual,
                                       BenchRun& run) {
   std::vector<ThreadScaling> plans;
@@ -297,7 +297,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
     };
     show_step(options, plan.scene + ", a small frame for the estimate");
     plan.cost = pixel_cost(plan);
-    // Sizes that the user names are all measured.
+    // Without --budget, all sizes that the user names are measured.
     const double budget = options.budget >= 0 ? options.budget : options.sizes.empty() ? 100.0 : 0.0;
     if (budget > 0) {
       const auto left_out = fit_into(plan, budget / static_cast<double>(options.scenes.size()));
@@ -311,7 +311,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
   return plans;
 }
 
-/// Before the first measurement: how long it will take, and what was left out for that.
+/// Prints the estimated time and the omissions.
 void announce(const ThreadsOptions& options, const std::vector<ThreadScaling>& plans, const Report& report) {
   double seconds = 0, plain = 0;
   for (const ThreadScaling& plan : plans) {

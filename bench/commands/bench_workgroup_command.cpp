@@ -1,4 +1,4 @@
-// `sundog bench workgroup`: each kernel and device with every sensible local size.
+// `sundog bench workgroup`: times each kernel on each device with every sensible work-group size.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::array kernel_names{"render_whitted", "render_path", "trace_rays", "occluded_rays"};
 
-/// Frames are made by the scene's integrator, whichever name they were asked for by.
+/// Whether the name means a frame, which the scene's own integrator renders.
 bool is_frame(const std::string& kernel) { return kernel.starts_with("render_"); }
 const char* integrator_kernel(const CompiledScene& scene) {
   return find_integrator(scene.integrator)->kernel;
@@ -40,7 +40,7 @@ struct WorkgroupOptions : BenchOptions {
 
 using Times = std::map<std::string, KernelTimes>;
 
-/// The group of the kernel's last launch.
+/// The work-group of the kernel's last launch.
 std::pair<std::size_t, std::size_t> local_of(const Times& kernels, const std::string& name) {
   const auto found = kernels.find(name);
   if (found == kernels.end()) return {};
@@ -57,7 +57,7 @@ std::optional<double> beyond_events(const Times& kernels) {
   return seconds;
 }
 
-/// Whole frames, as `sundog render` would make them.
+/// Prepares timing of whole frames, as `sundog render` makes them.
 void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledScene& scene) {
   kernel.two_dimensions = true;
   const auto frames = std::make_shared<FrameRunner>(device, scene);
@@ -75,7 +75,7 @@ void time_frames(TimedKernel& kernel, const DeviceInfo& device, const CompiledSc
   kernel.result = [frames] { return hash_of(frames->image().data); };
 }
 
-/// The camera's rays through the tracer alone.
+/// Prepares timing of the tracer alone, on the camera's rays.
 void time_rays(TimedKernel& kernel, const DeviceInfo& info, const CompiledScene& scene, bool any,
                unsigned size) {
   const Stopwatch clock;
@@ -96,7 +96,7 @@ void time_rays(TimedKernel& kernel, const DeviceInfo& info, const CompiledScene&
   };
 }
 
-/// "4,8x8,driver".
+/// Parses "4,8x8,driver".
 std::vector<WorkGroup> parse_sizes(const std::string& text) {
   std::vector<WorkGroup> sizes;
   for (const std::string& name : split_names(text)) sizes.push_back(parse_work_group(name, "--sizes"));
@@ -104,7 +104,7 @@ std::vector<WorkGroup> parse_sizes(const std::string& text) {
   return sizes;
 }
 
-/// The kernels to time. Both names of the frame stand for one.
+/// The kernels to time; both names of the frame count as one.
 std::vector<std::string> timed_kernels(const std::vector<std::string>& wanted) {
   if (wanted.empty()) return {"render_whitted", "trace_rays", "occluded_rays"};
   std::vector<std::string> kernels;

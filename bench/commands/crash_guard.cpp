@@ -1,5 +1,5 @@
-// Two processes share a folder: the second writes the row that it enters to a file, the first what ended it
-// there.
+// Parent and child share a folder: the child writes each row that it enters to a file, the parent how the
+// child crashed there.
 #include "bench/commands/crash_guard.h"
 
 #include <fmt/format.h>
@@ -33,11 +33,11 @@ namespace fs = std::filesystem;
 constexpr const char* folder_variable = "SUNDOG_BENCH_FOLDER";
 constexpr int poll_ms = 20;
 
-/// What the second process knows of the first.
+/// The child's state: the shared folder, and the rows in which earlier children crashed.
 struct Guarded {
   fs::path folder;
   std::ofstream entered;                       // a line for each row
-  std::map<std::string, std::string> crashed;  // why, by row
+  std::map<std::string, std::string> crashed;  // how, by row
 };
 Guarded& guarded_state() {
   static Guarded state;
@@ -51,13 +51,14 @@ std::string last_line(const fs::path& file) {
   return last;
 }
 
-/// How the process ended, by waitpid's status.
+/// How the child ended: waitpid()'s status.
 struct End {
   int status = 0;
-  bool interrupted = false;  // a signal came that asks for an end
+  bool interrupted = false;  // a signal asked it to end
 };
 
-/// Passes on signals that were sent to this process alone: a terminal's reach both.
+/// Waits for the child and passes on signals that were sent to this process alone; a terminal's signals reach
+/// both.
 End wait_and_pass_signals(pid_t process) {
   sigset_t set;
   ::sigemptyset(&set);
@@ -78,7 +79,7 @@ std::string end_text(int signal) {
 }
 
 int measure_in_others(const fs::path& folder, bool reads_input) {
-  ::signal(SIGCHLD, SIG_DFL);  // where it is ignored, no process can be waited for
+  ::signal(SIGCHLD, SIG_DFL);  // if SIGCHLD is ignored, waitpid() gives no status
   const int input = reads_input ? memory_file(standard_input()) : STDIN_FILENO;
   std::set<std::string> crashed;
   for (;;) {
@@ -91,8 +92,8 @@ int measure_in_others(const fs::path& folder, bool reads_input) {
     if (WIFEXITED(end.status)) return WEXITSTATUS(end.status);
     const int signal = WTERMSIG(end.status);
     if (const std::string status = last_line(folder / "status"); !status.empty())
-      return std::atoi(status.c_str());  // only its end went wrong
-    // One that comes before the process waits for signals ends it.
+      return std::atoi(status.c_str());  // it crashed only at exit
+    // A signal that arrives before the child handles signals kills it.
     if (end.interrupted || signal == SIGINT || signal == SIGTERM || signal == SIGHUP) return exit_interrupted;
     const std::string row = last_line(folder / "entered"), why = end_text(signal);
     if (row.empty() || !crashed.insert(row).second)
@@ -137,9 +138,9 @@ int guarded(const std::function<int()>& measure, bool reads_input) {
 
 std::string enter_row(std::string name) {
   Guarded& state = guarded_state();
-  std::ranges::replace(name, '\n', ' ');  // of a file's name
+  std::ranges::replace(name, '\n', ' ');  // a file's name may contain one
   if (state.folder.empty()) return "";
-  state.entered << name << std::endl;  // flushed: the process may end at once
+  state.entered << name << std::endl;  // flushed: the process may crash at once
   const auto crashed = state.crashed.find(name);
   return crashed == state.crashed.end() ? "" : crashed->second;
 }

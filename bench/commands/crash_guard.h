@@ -1,5 +1,4 @@
-// Measures in a process of its own, so that a driver that ends it costs one row: another process measures the
-// rest.
+// Measures in a child process, so that a driver's crash costs one row: another child measures the rest.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -7,17 +6,17 @@
 
 namespace sundog {
 
-/// Runs `measure` in another process of this program with the same command line, again for as long as rows of
-/// the bench end it; with `reads_input` each has the standard input. Returns its exit status. Throws
-/// DeviceError when it ends outside of all rows. Measures in this process where no temporary folder can be
-/// made.
+/// Runs `measure` in a child process of this program with the same command line, and in another one after
+/// each row that crashes it; with `reads_input`, each child gets the whole standard input. Returns the last
+/// child's exit status. Throws DeviceError if a child crashes outside of all rows or twice in one. Measures
+/// in this process if no temporary folder can be made.
 int guarded(const std::function<int()>& measure, bool reads_input);
 
-/// For the process that measures. From here on it is at the row; "": at none. Returns why an earlier process
-/// ended there, "" if none did.
+/// Tells the parent that the child enters the row; "": leaves it. Returns how an earlier child crashed in the
+/// row, "" if none did.
 std::string enter_row(std::string name);
 
-/// Where the rows measured so far are kept for the next process; empty: nobody is there to start one.
+/// The file that keeps the measured rows for the next child; empty if this process is not a child.
 std::filesystem::path kept_for_next();
 
 }  // namespace sundog

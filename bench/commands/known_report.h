@@ -1,4 +1,4 @@
-// Reports that an earlier run of a bench wrote, read again.
+// Reads the JSON report that an earlier run of a bench wrote.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,14 +13,14 @@ struct KnownReport {
   std::vector<MeasuredWay> ways;
 };
 
-/// Throws SceneError where the file is no report of a bench.
+/// Throws SceneError if the file is not a bench's report, or one of another schema.
 KnownReport read_report(const std::string& file);
 
-/// A cell of a row, by the name that the JSON has for the column; empty: there is none.
+/// The row's cell in the column with this name in the JSON; empty if there is no such column.
 std::string known_cell(const Table& table, const std::vector<Cell>& row, const std::string& column);
 
-/// Throws UsageError where `known` has rows that are as the last one of `rows` in the columns `keys`, the
-/// first of which names it, but none equal to it.
+/// Throws UsageError if `known` has rows that match the last of `rows` in the columns `keys`, but none that
+/// equals it in all columns except the file. The message names the row by the first key.
 void check_known(const Table& known, const Table& rows, const std::vector<std::string>& keys,
                  const std::string& file);
 

@@ -1,7 +1,6 @@
-// `sundog tune`: finds and keeps what is fastest on a device; --show, --forget, --export and --import what is
-// kept.
-// Each device is tuned by a process of its own, which is ended when its budget is over: no driver can be
-// asked to stop compiling.
+// `sundog tune`: finds and keeps the fastest settings of a device; --show, --forget, --export and --import
+// handle the kept results. A child process tunes each device and is killed when its budget is over, because
+// drivers cannot be asked to stop compiling.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <signal.h>
@@ -45,16 +44,16 @@ struct TuneOptions {
   double budget = 60;  // seconds for a device
   bool show = false, forget = false;
   std::string export_to, import_from;
-  std::string worker;                // "P:D" or "P:D/N": this is the process that tunes one device
-  std::vector<std::string> crashed;  // steps at which earlier ones ended
+  std::string worker;                // "P:D" or "P:D/N": this is the child that tunes this device
+  std::vector<std::string> crashed;  // steps at which earlier children crashed
 };
 
-constexpr const char* step_mark = "> ";    // before a step of the worker's
-constexpr const char* end_mark = "> end";  // before what is to be said of the whole
+constexpr const char* step_mark = "> ";    // before a step of the child
+constexpr const char* end_mark = "> end";  // before a final remark
 
 const std::string crash_text = "the driver crashed";
 
-/// When a device is ended: the worker measures a little past its budget, if the machine has become slower.
+/// Seconds after which a child is killed: it may exceed its budget a little if the machine has become slower.
 double patience(double budget) { return budget + std::max(1.0, 0.1 * budget); }
 
 struct NamedScene {
@@ -62,7 +61,7 @@ struct NamedScene {
   CompiledScene scene;
 };
 
-/// Scenes of the command line, or two that are built in: solids alone, and with a mesh among them.
+/// The scenes of the command line, or two built-in ones: with a mesh, and with solids only.
 std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
   std::vector<NamedScene> scenes;
   for (const std::string& file : options.bench.scenes)
@@ -79,7 +78,7 @@ std::vector<NamedScene> scenes_to_tune(const TuneOptions& options) {
   return scenes;
 }
 
-/// At once: what follows may be ended.
+/// Prints and flushes a line, as the process may be killed next.
 void say(const std::string& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);
@@ -101,8 +100,8 @@ std::string outcome_text(const DeviceInfo& device, const TuneOutcome& outcome) {
   return text;
 }
 
-/// The scenes in turn; each may take its share of the remaining budget. Returns what there was no time
-/// to begin.
+/// Tunes the scenes in turn; each may take its share of the remaining budget. Returns the names of those for
+/// which no time was left.
 std::vector<std::string> tune_scenes(const DeviceInfo& device, const std::vector<NamedScene>& scenes,
                                      const TuneOptions& options, const Stopwatch& clock, TuneCosts& costs) {
   const double budget = options.budget;
@@ -165,7 +164,7 @@ std::vector<std::string> worker_arguments(const TuneOptions& options, const Devi
   return arguments;
 }
 
-/// The standard input again for each worker, where a scene comes from there.
+/// The streams of a worker: stderr, and a copy of standard input if a scene comes from there.
 std::vector<HandedDown> worker_streams(const TuneOptions& options) {
   std::vector<HandedDown> streams{{STDERR_FILENO, STDERR_FILENO}};
   if (std::ranges::any_of(options.bench.scenes, [](const auto& file) { return is_standard_input(file); }))
@@ -173,7 +172,7 @@ std::vector<HandedDown> worker_streams(const TuneOptions& options) {
   return streams;
 }
 
-/// How it went, in a line; empty: there is no result.
+/// A line on the tuning of a device; empty if there is no result.
 std::string end_text(const DeviceInfo& device, const Heard& heard, int signal, double seconds,
                      double budget) {
   const std::string took =
@@ -184,13 +183,13 @@ std::string end_text(const DeviceInfo& device, const Heard& heard, int signal, d
   return fmt::format("{}; ended during a compilation or a launch ({}; a longer --budget)", took, heard.step);
 }
 
-/// The report of a device that had no result in its time.
+/// A line on a device without a result in its time.
 std::string nothing_text(const DeviceInfo& device, const Heard& heard, double seconds) {
   return fmt::format("{} was ended after {} with no result, during a compilation or a launch ({})",
                      device.label(), duration_text(seconds), heard.step);
 }
 
-/// Tunes a device by a worker, and by another one without the settings at which the driver crashed.
+/// Tunes a device by a worker; after a crash, starts another worker that skips the settings that crashed.
 ChildResult tune_by_workers(TuneOptions options, const DeviceInfo& device, Heard& heard) {
   const std::vector<HandedDown> streams = worker_streams(options);
   const double budget = options.budget;
@@ -207,8 +206,8 @@ ChildResult tune_by_workers(TuneOptions options, const DeviceInfo& device, Heard
   }
 }
 
-/// Tunes the devices in turn and prints what was found, until one fails; the exit status. Throws DeviceError
-/// where the budget was too short for a result of any.
+/// Tunes the devices in turn and prints their results, until one fails. Returns the exit status. Throws
+/// DeviceError if a driver crashed without a result, or if the budget was too short for any result.
 int tune_devices(const TuneOptions& options) {
   const std::vector<DeviceInfo> devices = bench_devices(options.bench);
   std::vector<std::string> without;
@@ -235,8 +234,8 @@ int tune_devices(const TuneOptions& options) {
   return exit_done;
 }
 
-/// The other side: tunes the device `worker`, keeps what it finds and prints it to stdout, with lines about
-/// its steps between.
+/// The worker: tunes its device, keeps the results and prints them to stdout, with lines about its steps in
+/// between.
 int tune_one_device(const TuneOptions& options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const Stopwatch clock;
@@ -325,8 +324,8 @@ int export_all(const std::string& path) {
   return exit_done;
 }
 
-/// Only what is for a device of this machine, with the same driver, is of use: the others are skipped, with
-/// the reason.
+/// Imports results for devices of this machine with the same driver and kernels; skips the others, with the
+/// reason.
 int import_all(const std::string& path) {
   const JsonContext context{.file = path};
   const json list = read_json_file(path);

@@ -14,7 +14,7 @@ namespace {
 using Scene = std::shared_ptr<const CompiledScene>;
 using LocalWorkers = std::vector<std::shared_ptr<LocalWorker>>;
 
-/// Opened here, so that what keeps it from working is known before any frame.
+/// Opens the devices at once, so that errors appear before any frame.
 RenderTimes open_all(const LocalWorkers& workers, const Scene& scene, const RenderOptions& options) {
   RenderTimes sum;
   sum.cached = true;
@@ -28,7 +28,7 @@ RenderTimes open_all(const LocalWorkers& workers, const Scene& scene, const Rend
   return sum;
 }
 
-/// A bench develops the film where it wants a picture: that is no part of a frame's time.
+/// Benches develop the film themselves when they want an image, outside of a frame's time.
 RenderOptions without_pictures(RenderOptions options) {
   options.channels = 0;
   return options;
@@ -60,7 +60,7 @@ double FrameRunner::run() {
   for (const DeviceReport& report : last_.devices)
     if (!report.messages.empty()) throw DeviceError(report.messages.front());
   kernel_times_ = last_.devices.front().kernels;
-  // A group that the driver refused was made smaller: the time is not that of what was asked for.
+  // A group that the driver refused was made smaller, so the time would belong to another group.
   const WorkGroup& group = options_.work_group;
   const std::size_t most = greatest_group();
   if (group.kind == WorkGroup::Kind::fixed && most > 0 && group.x * group.y > most)

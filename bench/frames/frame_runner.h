@@ -1,4 +1,4 @@
-// Devices that render one scene again and again, for timing whole frames: a session of those devices.
+// Renders one scene repeatedly on given devices, in one session, to time whole frames.
 #pragma once
 #include <memory>
 #include <vector>
@@ -10,11 +10,11 @@ namespace sundog {
 
 class LocalWorker;
 
-/// An open device, or one that a FrameRunner opens. Runners may share it, one at a time.
+/// A device for FrameRunners, which open it. Runners may share it, one at a time.
 std::shared_ptr<LocalWorker> frame_worker(const DeviceInfo& device,
                                           const std::shared_ptr<const CompiledScene>& scene);
 
-/// Kernels are built and tables uploaded once. The scene must outlive it.
+/// Builds kernels and uploads tables once. A scene passed by reference must outlive the runner.
 class FrameRunner {
  public:
   /// Throws DeviceError, BuildError, UsageError as render() does.
@@ -24,32 +24,33 @@ class FrameRunner {
   FrameRunner(const FrameRunner&) = delete;
   FrameRunner& operator=(const FrameRunner&) = delete;
 
-  /// Renders the frame as `sundog render` does, and returns the wall seconds from when the devices have
-  /// kernels and tables until the film is on the host. Throws DeviceError for a launch that failed, even if
-  /// the frame was finished without it: the time would not be that of what was asked for. 0 where
-  /// options.stop ended it.
+  /// Renders the frame as `sundog render` does. Returns the wall-clock seconds from when the devices have
+  /// kernels and tables until the film is on the host; 0 if options.stop ended the frame. Throws DeviceError
+  /// for a failed launch or a work-group that the driver refuses, even if the frame was finished: its time
+  /// would belong to other settings.
   double run();
 
-  /// For the runs from now on. The size must be one that render() would take.
+  /// Sets the work-group of later runs. render() must accept its size.
   void use(const WorkGroup& group) { options_.work_group = group; }
 
   /// The largest work-group that the first device's kernels allow; 0: unknown.
   std::size_t greatest_group() const;
 
-  /// Seconds of a kernel's launches on the first device in the last run; by the host's clock where the driver
-  /// gives no times.
+  /// Seconds of a kernel's launches on the first device in the last run; by device events, or by the host's
+  /// clock if the driver gives no times.
   double kernel_seconds(const std::string& kernel) const;
   double kernel_seconds() const;  // of all kernels
-  /// Times of each kernel of the first device in the last run.
+  /// Each kernel's times on the first device in the last run.
   const std::map<std::string, KernelTimes>& kernel_times() const { return kernel_times_; }
   const Film& film() const { return last_.film; }
   Image image() const { return last_.film.develop(); }
   const RenderResult& last() const { return last_; }
-  /// Rays of the last run: primary, reflected, refracted, shadow rays and those that only looked.
+  /// Number of rays of the last run: primary, reflected, refracted and shadow rays, and rays that only find a
+  /// pixel's surface.
   double rays() const;
   const RayCounts& counts() const { return last_.counts; }
 
-  /// Kernels and tables; not part of any run.
+  /// Times of building kernels and uploading tables, which no run includes.
   const RenderTimes& times() const { return times_; }
 
  private:
@@ -62,8 +63,8 @@ class FrameRunner {
   std::map<std::string, KernelTimes> kernel_times_;
 };
 
-/// A way of a bench that renders frames: `open` makes the runner before the first run,
-/// `first` hears of the first frame. A later frame that is not the first one to the bit does not count.
+/// A way of a bench that renders frames: `open` makes the runner before the first run, `first` is called
+/// after the first frame. A later frame counts only if it has the same bits as the first.
 struct FrameSubject {
   std::function<std::shared_ptr<FrameRunner>()> open;
   std::function<void(FrameRunner&)> first;
@@ -71,10 +72,10 @@ struct FrameSubject {
 };
 Subject frame_subject(const std::string& name, FrameSubject of);
 
-/// Whether both have the same bits.
+/// Whether both images have the same bits.
 bool same_bits_of(const Image& a, const Image& b);
 
-/// A reference picture: one that two frames in a row agree on (confirmed()).
+/// A reference image that two successive frames agree on (confirmed()).
 Image confirmed_image(FrameRunner& frames);
 
 }  // namespace sundog

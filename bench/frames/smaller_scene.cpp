@@ -1,4 +1,4 @@
-// Grows a tiny frame until its time tells how large a picture fits the seconds.
+// Grows a tiny frame until its time predicts how large a frame fits into the given seconds.
 #include "bench/frames/smaller_scene.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace sundog {
 namespace {
 
 constexpr double least_seconds = 0.05;    // of the frames that are returned
-constexpr double telling_seconds = 0.01;  // of a frame whose time is not mostly that of its launches
+constexpr double telling_seconds = 0.01;  // of a frame whose time is not mostly launch overhead
 constexpr double first_pixels = 512, growth = 16;
 
 double pixels_of(const SceneInfo& info) { return static_cast<double>(info.width) * info.height; }
@@ -17,7 +17,7 @@ u32 scaled(u32 value, double by) {
   return std::max(1u, static_cast<u32>(std::lround(static_cast<double>(value) * by)));
 }
 
-/// The step to the next pixel when `before` pixels have become `after`.
+/// The camera's step to the next pixel after `before` pixels have become `after`.
 float4 stretched(const float4& step, u32 before, u32 after) {
   const float by = static_cast<float>(before) / static_cast<float>(after);
   return {step.x * by, step.y * by, step.z * by, step.w * by};

@@ -6,12 +6,12 @@
 
 namespace sundog {
 
-/// The picture in about `pixels` pixels, at least one, with `samples` a pixel; never more than the scene's.
+/// The scene with about `pixels` pixels, at least one, and `samples` per pixel; never more than its own.
 CompiledScene smaller_scene(const CompiledScene& scene, double pixels, double samples);
 
-/// The scene with so few samples, then pixels, that a frame takes about `seconds` (a lower bound keeps it
-/// from being too short to be measured). `measure` gives the seconds of a frame: it gets tiny ones at first,
-/// then larger ones until they take long enough.
+/// Reduces samples, then pixels, so that a frame takes about `seconds`, but at least 0.05 s, to be
+/// measurable. `measure` returns the seconds of a frame; it gets tiny frames first, then larger ones until
+/// one takes long enough.
 CompiledScene scene_in_time(const CompiledScene& scene, double seconds,
                             const std::function<double(const CompiledScene&)>& measure);
 

@@ -18,7 +18,7 @@ using enum WorkGroup::Kind;
 // way.
 constexpr std::size_t most_in_two_dimensions = 256;
 
-/// Primes below the powers of two: no range of pixels is a multiple of one.
+/// Primes just below powers of two: image sizes are rarely their multiples, so ranges are padded.
 constexpr std::size_t primes[] = {61, 31, 13, 7, 3};
 
 bool is_padded_prime(const WorkGroup& group) {
@@ -48,7 +48,7 @@ std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensi
 
 std::optional<double> WorkGroupTimes::Way::compile_seconds() const {
   if (beyond.size() < 2) return {};
-  // The rest of a later launch is no compiling: queueing, and the host's own work.
+  // A later launch spends this time on queueing and the host's own work, not on compiling.
   return std::max(0.0, beyond.front() - spread({beyond.begin() + 1, beyond.end()}).median);
 }
 
@@ -163,7 +163,8 @@ HeatMap WorkGroupTimes::heat_map() const {
   return map;
 }
 
-/// The sizes that people ask about: the default, the driver's, a prime one, and the one of the least median.
+/// The sizes that people ask about: the default, the driver's choice, the prime, and the size with the least
+/// median.
 BarPlot WorkGroupTimes::bars() const {
   BarPlot plot{name_ + ": selected sizes", "ms", {}};
   const Subject* best = least();

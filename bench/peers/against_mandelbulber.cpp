@@ -1,7 +1,7 @@
-// Whole runs of sundog and of Mandelbulber 2 on the processor, in turn, each on one thread: from the command
-// to the PNG, the same surfaces, cameras and thresholds (one pixel). Both show one light with its shadow;
-// they shade differently, so outlines are what can be compared. Mandelbulber's Mandelbulb counts its angle
-// from the equator, which makes it another set of the same kind: there outlines differ.
+// Times whole runs of sundog and Mandelbulber 2 on the processor, from command to PNG, in turn and each on
+// one thread, with the same surfaces, cameras and thresholds (one pixel). Both render one light with its
+// shadow but shade differently, so only outlines are compared. Mandelbulber's Mandelbulb measures its angle
+// from the equator, which gives a different set of the same kind, whose outlines differ.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -25,9 +25,9 @@ struct Options {
 };
 
 struct Surface {
-  const char *name, *camera;    // the camera's place, on which it looks at the origin
-  const char *fields, *theirs;  // keys of the object in our scene; lines of their settings
-  const char* main = "";        // more of their main parameters
+  const char *name, *camera;    // the camera's position; it looks at the origin
+  const char *fields, *theirs;  // keys of the object in our scene; lines of Mandelbulber's settings
+  const char* main = "";        // more of Mandelbulber's main parameters
 };
 
 const Surface surfaces[] = {
@@ -68,7 +68,7 @@ struct Times {
   std::vector<double> wall, processor;  // seconds
 };
 
-/// Runs a program on one processor with its output in `log`. Throws when it fails.
+/// Runs a program on one processor with its output in `log` and appends its times. Throws if it fails.
 void run(const std::string& command, const std::string& log, Times& times) {
   const auto processor = [] {
     rusage used{};
@@ -84,7 +84,7 @@ void run(const std::string& command, const std::string& log, Times& times) {
   times.processor.push_back(processor() - before);
 }
 
-/// Share of the pixels that show the background, which is magenta, in one picture alone.
+/// The share of pixels that show the magenta background in only one of the pictures.
 double outline_difference(const std::string& a, const std::string& b) {
   const Image ours = read_image(a), theirs = read_image(b);
   const auto is_empty = [](const float* c) { return c[0] > 0.95f && c[1] < 0.01f && c[2] > 0.95f; };
@@ -105,7 +105,7 @@ nlohmann::json measure(const Surface& s, const Options& options) {
   const std::string theirs = fmt::format("mandelbulber2 -n -C -f png -r {0}x{0} -o '{1}' '{2}'", options.size,
                                          file("_mandelbulber.png"), file(".fract"));
   Times warm_up, our_times, their_times;
-  run(ours, file("_sundog.log"), warm_up);  // kernels are built and kept
+  run(ours, file("_sundog.log"), warm_up);  // builds the kernels into the cache
   for (int i = 0; i < options.repeats; i++) {
     run(ours, file("_sundog.log"), our_times);
     run(theirs, file("_mandelbulber.log"), their_times);

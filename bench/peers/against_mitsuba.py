@@ -1,23 +1,30 @@
 #!/usr/bin/env python3
-"""Path tracing against Mitsuba 3 (PyPI mitsuba): the scenes of bench/peers/mitsuba/peer_scenes.py in both programs. Usage:
+"""Compares path tracing with Mitsuba 3 (PyPI mitsuba) on the scenes of bench/peers/mitsuba/peer_scenes.py.
+Usage:
 
     bench/peers/against_mitsuba.py SUNDOG [--scenes cornell,glass] [--parts means,errors,times] [--json FILE] [options]
 
-Dr.Jit looks for LLVM by itself, or where DRJIT_LIBLLVM_PATH says. `textured` needs the model of the barrel in $SUNDOG_ASSETS or ../shared/assets;
-`textured_flat` is the same without the normals at its vertices, which the programs treat differently at silhouettes.
+Dr.Jit finds LLVM by itself, or by DRJIT_LIBLLVM_PATH. `textured` needs the barrel's model in $SUNDOG_ASSETS
+or ../shared/assets; `textured_flat` lacks its vertex normals, which the programs treat differently at
+silhouettes.
 
-means   the whole and 4x4 regions of both converged pictures, three channels each, in standard errors of both together: how many of these 51 are
-        beyond three, the greatest, and the chances of both, were they 51 independent normal numbers (they are fewer: channels are alike)
-errors  the root mean square error, of linear colour within 0..1, at each of --counts samples, against both programs' pictures together, whose noise
-        is taken off (Mitsuba under a sky against its own: its rows of texels lie elsewhere); and the samples that reach 0.02, by a line through two
-        points in logarithms
-times   samples a second at --samples, and the seconds of pictures of as many samples as reach 0.02, the fastest way of each program against the
-        other's. All ways take turns, one thread each: medians, and the range of the ratios of single rounds. Only an idle machine's count
+means   compares the whole and 4x4 regions of both converged pictures, three channels each, in standard errors
+        of the difference: how many of these 51 exceed three, the greatest, and the chance of each if they
+        were 51 independent normal numbers (they are fewer: channels are correlated)
+errors  the root mean square error, of linear colour in 0..1, at each of --counts samples, against the mean of
+        both programs' converged pictures, whose noise is subtracted (Mitsuba under a sky: against its own
+        picture, as its rows of texels lie elsewhere); and the samples that reach 0.02, from a line through
+        two points in logarithms
+times   samples a second at --samples, and the seconds of pictures with the samples that reach 0.02, comparing
+        the fastest way of each program. All ways take turns, one thread each: medians, and the range of the
+        ratios of single rounds. Valid only on an idle machine
 
-Where a lamp shines through glass, `sundog caustics` has photons too: its error holds what their radius blurs.
+If a lamp shines through glass, `sundog caustics` renders with photons too; its error includes the blur of
+their radius.
 
-A FILE of --json that is there already is kept but for the parts that are made; `times` needs `errors`, there or made. --pictures DIR keeps the
-converged pictures for the next run. Within a minute: --scenes cornell --samples 16 --converged 64 --counts 4,16 --rounds 1.
+An existing --json FILE keeps the parts that are not measured again; `times` needs `errors` from the FILE or
+this run. --pictures DIR keeps the converged pictures for the next run. A run of a minute: --scenes cornell
+--samples 16 --converged 64 --counts 4,16 --rounds 1.
 """
 import argparse
 import datetime
@@ -33,12 +40,12 @@ import figures
 import peer_scenes
 import programs
 
-# The program, its sampler, and whether with photons.
+# Way: program, sampler, whether with photons.
 WAYS = {"sundog sobol": ("sundog", "sobol", False), "sundog independent": ("sundog", "independent", False),
         "sundog caustics": ("sundog", "sobol", True), "Mitsuba independent": ("mitsuba", "independent", False),
         "Mitsuba multijitter": ("mitsuba", "multijitter", False)}
 WITH_CAUSTICS = ("glass",)  # scenes whose lamp shines through glass
-PASS = 256  # samples of Mitsuba's passes, for its memory
+PASS = 256  # samples of each Mitsuba pass, to bound its memory
 PARTS = ("means", "errors", "times")
 
 
@@ -53,14 +60,14 @@ class Bench:
         self.same = programs.Mitsuba(name, folder, mi, same_model=True)
 
     def render(self, way, samples, seed=0):
-        """The picture, its seconds, and the samples that it has."""
+        """Returns the picture, its seconds and its number of samples."""
         program, sampler, caustics = WAYS[way]
         if program == "sundog":
             return *self.sundog.render(sampler, samples, caustics), samples
         return *self.mitsuba.render(sampler, samples, seed), self.mitsuba.samples_made(sampler)
 
     def stored(self, key, samples, make):
-        """A converged picture, from --pictures where it is."""
+        """A converged picture, from --pictures if it is there."""
         return figures.stored_picture(self.args.pictures, f"{self.name}-{key}", samples, make)
 
     @staticmethod
@@ -69,7 +76,8 @@ class Bench:
         return [program.render("independent", each, seed=1000 + i)[0] for i in range(total // each)]
 
     def converge(self):
-        """Pictures of `independent` samples: sundog's, Mitsuba's of the same model, and, under a sky, of Mitsuba's own."""
+        """Converged pictures: sundog's, Mitsuba's with sundog's model, and Mitsuba's with its own sky where
+        there is one."""
         total = self.args.converged
         ours = self.stored("sundog", total, lambda: self.sundog.halves(total))
         theirs = self.stored("mitsuba", total, lambda: self.passes(self.same, total))
@@ -79,7 +87,8 @@ class Bench:
 
 
 def measure_errors(bench, ours, theirs, of_file):
-    """Under a sky each program by its own limit. sundog's `independent` makes the first samples of its converged picture again."""
+    """Measures errors, under a sky against each program's own picture. `independent` of sundog repeats its
+    converged picture's first samples, so they are removed from the reference."""
     both = figures.Reference(ours, theirs)
     own = both if of_file is theirs else figures.Reference(of_file)
     found = {}
@@ -95,7 +104,7 @@ def measure_errors(bench, ours, theirs, of_file):
 
 
 def take_turns(bench, counts):
-    """Seconds of pictures and their samples, by way; a first round, which compiles, does not count."""
+    """Times pictures in turn: seconds and samples by way. The first round compiles and does not count."""
     seconds, made = {way: [] for way in counts}, {}
     for turn in range(bench.args.rounds + 1):
         for way, count in counts.items():
@@ -106,7 +115,7 @@ def take_turns(bench, counts):
 
 
 def ratios(base, other):
-    """How much longer `other` took: of the medians, and the range of single rounds."""
+    """The time of `other` divided by that of `base`: ratio of the medians, and range over single rounds."""
     each = [b / a for a, b in zip(base, other)]
     return {"median": statistics.median(other) / statistics.median(base), "least": min(each), "greatest": max(each)}
 

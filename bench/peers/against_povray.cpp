@@ -1,7 +1,7 @@
-// Whole frames against POV-Ray: the same scene, size, depth, cut-off, one sample a pixel and number of
-// threads, in turn, medians by processor time. Transmissive things cast opaque shadows, since the programs
-// filter light by different models. A time counts only if the two pictures are alike. Without
-// POV-Ray it says so and measures sundog alone.
+// Times whole frames of sundog and POV-Ray in turn, with the same scene, size, depth, cut-off and number of
+// threads, at one sample a pixel; prints medians of processor time. Transmissive objects cast opaque shadows,
+// because the programs filter light by different models. A time counts only if the two pictures are alike.
+// Without POV-Ray, measures sundog alone and says so.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,8 +35,8 @@ struct Options {
   std::string json, folder = "against_povray";
 };
 
-// Seconds of a thread. `frame` is ray tracing until the picture is there; `whole` adds reading the scene and
-// building its trees, without the start of the program, opening devices and building kernels.
+// Seconds per thread. `frame`: ray tracing until the picture is complete. `whole`: also reading the scene and
+// building its trees, but not starting the program, opening devices or building kernels.
 struct Times {
   std::vector<double> frame, whole;
 };
@@ -52,7 +52,7 @@ struct Measured {
 SceneDescription load(const Options& options, const std::string& name) {
   std::vector<std::string> overrides{fmt::format("/image/width={}", options.size),
                                      fmt::format("/image/height={}", options.size), "/render/samples=1"};
-  // POV-Ray has no priorities, so there the liquid must end close to the cavity's wall.
+  // POV-Ray has no medium priorities, so the liquid must end close to the cavity's wall.
   if (std::filesystem::path(name).stem() == "hollow_ice")
     overrides.emplace_back("/meshes/liquid/generate/wall=0.02");
   SceneDescription scene = load_scene(name, overrides);
@@ -77,7 +77,7 @@ povray::Run time_theirs(const Options& options, const std::string& scene, const 
   return run;
 }
 
-// How the pictures differ. Both pictures are kept side by side.
+// Saves sundog's picture beside POV-Ray's and returns their difference. Throws if they are not alike.
 ImageDifference compare(const Options& options, const std::string& name, Image ours, const Image& theirs) {
   for (float& value : ours.data) value = std::clamp(value, 0.0f, 1.0f);  // POV-Ray's picture ends at 1
   write_image(ours, std::filesystem::path(options.folder) / (name + "_sundog.png"));
@@ -129,7 +129,7 @@ nlohmann::json to_json(const Measured& m, bool with_povray) {
   return out;
 }
 
-// POV-Ray counts a shadow ray anew behind each transmissive surface.
+// POV-Ray counts a shadow ray again after each transmissive surface.
 void print_line(const std::string& what, const std::string& who, const Times& t, std::uint64_t rays,
                 std::uint64_t shadow) {
   const Spread frame = spread(t.frame);
@@ -153,7 +153,7 @@ void print(const Measured& m, bool with_povray) {
   std::fflush(stdout);
 }
 
-// The default device, or a part of it that has as many compute units as POV-Ray gets threads.
+// The default device, or a part of it with as many compute units as POV-Ray gets threads.
 DeviceInfo choose_device(unsigned threads) {
   DeviceInfo device = select_devices(enumerate_devices(plain_environment()), {}).at(0);
   if (threads < device.compute_units) device.sub_units = threads;

@@ -1,8 +1,7 @@
 // embree_rays MODEL... : traces the same rays with sundog's tracer and with Embree, in turn, on the same
-// number of threads, and prints millions of rays a second and their ratio by kind of ray. Embree is given
-// what it takes to answer in its own form (a filled RTCRayHit a ray); sundog is charged for launch and wait.
-// Hits are compared: where the two disagree by more than rounding explains, and sundog's answer is the wrong
-// one (bench/rays/check_hits.h tells), the program fails.
+// number of threads, and prints millions of rays a second and their ratio by kind of ray. Embree gets its own
+// input format (one filled RTCRayHit per ray); sundog's time includes launch and wait. Compares the hits: if
+// sundog's answer is wrong by more than rounding (bench/rays/check_hits.h), the program fails.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -24,12 +23,12 @@ struct Options : RayOptions {
 /// Rays for which the two disagree: one hits and the other does not, or the distances differ.
 struct Mismatches {
   std::size_t count = 0;  // all of them
-  std::size_t wrong = 0;  // of which sundog's answer is not right within rounding
+  std::size_t wrong = 0;  // rays for which sundog's answer is not right within rounding
 
   template <class Answer>
   void add(const CompiledScene& scene, const Ray& ray, const Answer& answer) {
     ++count;
-    wrong += wrong >= 1000 || !is_right(scene, ray, answer);  // so many need no judge
+    wrong += wrong >= 1000 || !is_right(scene, ray, answer);  // enough to fail: further ones are not checked
   }
 };
 

@@ -1,5 +1,5 @@
-// The contact sheet of docs: every surface of `sundog formulas` with its default parameters in one picture,
-// each with its name under it. docs/render_pictures.sh runs it.
+// Renders the contact sheet of docs: every surface of `sundog formulas` with its default parameters in one
+// picture, each above its name. docs/render_pictures.sh runs it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Sheet {
 };
 
 constexpr int label_height = 22;
-constexpr double label_scale = 1.5;  // pixels for one of the font's
+constexpr double label_scale = 1.5;  // image pixels for one of the font's
 const float dark = linear_from_srgb(0.11f), light = linear_from_srgb(0.88f);
 
 /// The camera's target and angle; its position is fixed.
@@ -42,7 +42,7 @@ struct View {
   double tangent = 0.43;  // of half the angle
 };
 
-/// A surface and where it is looked at from: above, one corner of its interval.
+/// A surface and the camera's position: above, at one corner of its bounds.
 struct Subject {
   const FormulaDefinition& formula;
   std::array<double, 3> center{}, camera{};
@@ -50,7 +50,7 @@ struct Subject {
 };
 
 constexpr double right[] = {0.834, 0, -0.551},
-                 up[] = {-0.232, 0.907, -0.351};  // of the camera, whose way is (-0.5, -0.42, -0.757)
+                 up[] = {-0.232, 0.907, -0.351};  // of the camera, which looks along (-0.5, -0.42, -0.757)
 
 Subject subject_of(const FormulaDefinition& d) {
   const auto& b = d.bounds;
@@ -93,7 +93,7 @@ Image render(const json& scene, const DeviceInfo& device) {
   return frames.image();
 }
 
-/// A view in which the surface nearly fills the picture: `probe` is a picture of the whole interval.
+/// A view in which the surface nearly fills the picture. `probe`: a picture of the whole bounds.
 View fitted(const Subject& subject, const View& wide, const Image& probe) {
   int low[] = {probe.width, probe.height}, high[] = {0, 0};
   for (int y = 0; y < probe.height; ++y)
@@ -125,7 +125,7 @@ void copy_into(Image& sheet, const Image& tile, int left, int top) {
       for (int c = 0; c < 3; ++c) sheet.pixel(left + x, top + y)[c] = tile.pixel(x, y)[c];
 }
 
-/// One of the font's rectangles, a corner's 16 bytes after the other.
+/// A corner of one of the font's rectangles, in stb_easy_font's 16 bytes.
 struct Corner {
   float x, y, z;
   unsigned char color[4];
@@ -136,7 +136,7 @@ float overlap(int at, double low, double high) {
   return static_cast<float>(std::max(0.0, std::min(high, at + 1.0) - std::max(low, static_cast<double>(at))));
 }
 
-/// Writes `text` in the middle of `width` pixels from `left` on.
+/// Writes `text` centred in `width` pixels from `left` on.
 void write_label(Image& sheet, std::string text, int left, int top, int width) {
   std::vector<Corner> corners(std::size_t{4} * 32 * text.size());
   const int quads = stb_easy_font_print(0, 0, text.data(), nullptr, corners.data(),

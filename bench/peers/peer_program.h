@@ -1,6 +1,5 @@
-// The common frame of the programs that measure in turn with a peer: their command lines, clocks and figures.
-// Those of models have MODEL... and the same options on the command line, a result for each model, all of
-// them as JSON.
+// Command line, clocks and ratios of the programs that time sundog and a peer in turn. Programs that take
+// MODEL... share their options and write one JSON result for each model.
 #pragma once
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -17,25 +16,25 @@ struct PeerOptions {
   std::vector<std::string> models;
   std::string json;
   unsigned repeats = 7;  // pairs of measurements
-  bool wall = false;     // the wall clock where else the processor's is taken
+  bool wall = false;     // wall-clock time instead of processor time
 };
 
-/// MODEL... --repeats --json --wall.
+/// Adds MODEL... --repeats --json --wall.
 void add_peer_options(Arguments& app, PeerOptions& options);
 
-/// Reads the command line, or prints help or an error; then calls `run`, whose errors are one line on stderr.
-/// Returns main()'s status.
+/// Parses the command line and calls `run`; prints help, or an error of either as one line on stderr. Returns
+/// main()'s status.
 int run_program(Arguments& app, int argc, char** argv, const std::function<void()>& run);
 
-/// run_program() that runs `measure` for each model and writes what it returned.
+/// run_program() that calls `measure` for each model and writes the results to options.json.
 int run_peer_program(Arguments& app, int argc, char** argv, const PeerOptions& options,
                      const std::function<nlohmann::json(const std::string& model)>& measure);
 
-/// Seconds by the wall clock, and by the processor's of all threads together.
+/// Wall-clock seconds, and processor seconds of all threads together.
 struct Elapsed {
   double wall = 0, processor = 0;
 
-  /// Seconds per thread. The processor's clock is steadier on a machine that others use too.
+  /// Seconds per thread. Processor time varies less on a machine that other programs use too.
   double of_thread(unsigned threads, bool by_wall) const { return by_wall ? wall : processor / threads; }
 };
 
@@ -47,7 +46,7 @@ Elapsed elapsed(const Work& work) {
   return {clock.seconds(), processor_seconds() - start};
 }
 
-/// How many times as long as we the peer took, run by run.
+/// The peer's time divided by ours, run by run.
 Spread ratio(const std::vector<double>& theirs, const std::vector<double>& ours);
 
 /// {"median", "min", "max"}.

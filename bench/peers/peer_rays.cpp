@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-/// One model's meshes where they lie, without lights; or a .json scene as it is.
+/// A model's objects without lights, or a .json scene unchanged.
 SceneDescription scene_of_model(const std::string& path) {
   if (lower_extension(path) == ".json") return load_scene(path, {}, {.outside_files = true});
   Model model = load_model(path, {.for_paths = false});
@@ -31,7 +31,7 @@ CompiledScene compiled(const SceneDescription& description, const std::string& t
   return scene;
 }
 
-/// A GPU is compared as a whole.
+/// A CPU is cut to options.threads compute units; a GPU is used as a whole.
 DeviceInfo chosen_device(const RayOptions& options) {
   DeviceInfo info = select_devices(enumerate_devices(plain_environment()), {options.device}).at(0);
   info.sub_units = info.type == "cpu" && options.threads < info.compute_units ? options.threads : 0;

@@ -1,4 +1,4 @@
-// A model on a device, and its rays by kind, for programs that trace them with sundog and a peer.
+// A model on a device, and its rays by kind, for programs that trace them with both sundog and a peer.
 #pragma once
 
 #include "base/arguments.h"
@@ -10,16 +10,16 @@ namespace sundog {
 
 struct RayOptions : PeerOptions {
   std::string device = "cpu";   // SPEC
-  unsigned threads = 0;         // compute units of a CPU that are used; 0: all
+  unsigned threads = 0;         // compute units of a CPU to use; 0: all
   std::string tracer = "auto";  // or wide, compact
   unsigned size = 1024;
   std::vector<std::string> kinds;
 };
 
-/// add_peer_options() and --device --size --kinds.
+/// Adds add_peer_options() and --device --size --kinds.
 void add_ray_options(Arguments& app, RayOptions& options);
 
-/// A model, compiled, and sundog's tracer of it on the device that the options name.
+/// A compiled model, and sundog's tracer for it on the device that the options name.
 struct PeerModel {
   PeerModel(const std::string& model, const RayOptions& options);
 
@@ -31,7 +31,7 @@ struct PeerModel {
 
   /// The class of sundog's tracer: "wide" or "compact".
   const char* tracer_name() const;
-  /// The rays of a frame in which 65 % of them meet the model.
+  /// The rays of a frame in which 65 % of the camera rays hit the model.
   std::vector<RaySet> rays(const RayOptions& options);
   /// The model, the device and the tracer, for JSON.
   nlohmann::json facts() const;

@@ -1,5 +1,5 @@
-// Steps along the line by the distance, as no crossing is nearer, and bisects where the sign changes; normals
-// are central differences.
+// Steps along the line by the distance to the surface, within which no crossing can lie, and bisects where
+// the sign changes; normals are central differences.
 #include "bench/plain/any_solid.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ using glm::dvec3;
 
 constexpr double least_step = 1e-6;
 
-/// The ball about the origin that holds the solid.
+/// The radius of a ball around the origin that contains the solid.
 double radius_of(const UnitShape& unit) {
   dvec3 corner(0);
   for (int axis = 0; axis < 3; ++axis)

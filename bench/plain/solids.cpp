@@ -41,7 +41,7 @@ struct Search {
   Vec3<T> at(T t) const { return o + t * d; }
 };
 
-/// Where the line is within `radius` of the origin, in the space of the given vectors.
+/// The interval of t in which the line is within `radius` of the origin.
 template <class T>
 std::optional<Interval<T>> round_interval(const Vec3<T>& o, const Vec3<T>& d, T radius) {
   const T a = glm::dot(d, d);
@@ -99,7 +99,7 @@ void box(Search<T>& search) {
   if (!search.offer(crossing->t.in, in)) search.offer(crossing->t.out, out);
 }
 
-/// inner <= radius <= outer in the plane y = height, normal towards `side` of y.
+/// inner <= radius <= outer in the plane y = height; the normal is (0, side, 0).
 template <class T>
 void ring(Search<T>& search, T height, T inner, T outer, T side) {
   if (search.d.y == 0) return;
@@ -222,7 +222,7 @@ Polynomial<T, 7> product(const Polynomial<T, 4>& a, const Polynomial<T, 4>& b) {
   return sum;
 }
 
-/// Moves t along the line and u along the arc to where both meet, by Newton's method.
+/// Refines t on the line and u on the arc to their common point, by Newton's method.
 template <class T>
 void meet_arc(const Search<T>& search, const Polynomial<T, 4>& r, const Polynomial<T, 4>& y, T& t, T& u) {
   for (int i = 0; i < 4; ++i) {
@@ -238,8 +238,8 @@ void meet_arc(const Search<T>& search, const Polynomial<T, 4>& r, const Polynomi
   }
 }
 
-/// Where the line has the heights of an arc, its distance from the axis is the arc's radius: times d.y^2, a
-/// polynomial of degree 6.
+/// At the height of the arc's point u, the line's distance from the axis must equal the arc's radius:
+/// multiplied by d.y^2, a polynomial of degree 6 in u.
 template <class T>
 void profile_arc(Search<T>& search, const ProfileArc& arc) {
   const Polynomial<T, 4> r{arc.r.x, arc.r.y, arc.r.z, arc.r.w}, y{arc.y.x, arc.y.y, arc.y.z, arc.y.w};
@@ -356,7 +356,7 @@ void cross(const Solid& solid, Search<T>& search) {
       return round_box(search, parameters);
     case SHAPE_LATHE:
       return lathe(search, solid);
-    default:  // slow: for solids that have no function here
+    default:  // solids without a function here; slow
       for (const SolidCrossing& crossing : crossings_by_distance(
                {static_cast<ShapeKind>(solid.shape), glm::dvec3(1), parameters}, search.o, search.d))
         search.offer(static_cast<T>(crossing.t), crossing.ng);

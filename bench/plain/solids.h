@@ -1,5 +1,5 @@
-// The exact solids of kernels/shared/shapes.h as a plain C++ program would have them: one ray, in scalar
-// floats, or in double precision to check others against.
+// Intersects the exact solids of kernels/shared/shapes.h in plain C++, one ray at a time, in floats, or in
+// double precision as a reference.
 #pragma once
 #include <glm/glm.hpp>
 #include <span>
@@ -20,7 +20,7 @@ struct SolidHit {
   glm::vec3 ng{0};  // outward, not normalised
 };
 
-/// A unit solid; `profiles`: the scene's table, of which a lathe has rows.
+/// A unit solid; `profiles`: the scene's table, which holds a lathe's rows.
 struct Solid {
   u32 shape;
   const float4& parameters;

@@ -22,14 +22,14 @@ vec3 color_of(const Vertex& v) { return {v.r, v.g, v.b}; }
 
 float greatest_size(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// How much more of the width w around x lies in the cell that holds x, between whole numbers, than in those
-/// beside it, as a part of w.
+/// The share of the interval of width w around x that lies in x's own cell (between whole numbers), minus the
+/// share in the cells beside it.
 float own_part(float x, float w) {
   const float f = x - std::floor(x);
   return std::min(2 * std::min(f, 1 - f), std::min(w, std::max(2 - w, 0.0f))) / w;
 }
 
-/// How much a checker shows of its odd cells where a ray has met it after the way t.
+/// The share of a checker's odd cells in the footprint of a ray that has travelled the distance t.
 float odd_part(const CompiledScene& scene, const Ray& ray, float t, const Instance& instance,
                const Surface& s) {
   const SceneInfo& info = scene.info;
@@ -53,8 +53,8 @@ vec3 corner_of(const CompiledScene& scene, u32 place, std::size_t corner) {
   return {at[0], at[8], at[16]};
 }
 
-/// How far the surface that is smooth by its corners' normals is before a triangle, in object space; none if
-/// a normal turns by more than 60 degrees. The planes through the corners give it, by Hanika (2021).
+/// How far the smooth surface of the corners' normals lies in front of a triangle, in object space, from the
+/// tangent planes at the corners (Hanika 2021); nothing if a normal turns by more than 60 degrees.
 std::optional<float> smooth_lift(const CompiledScene& scene, const Hit& hit, bool entering,
                                  const std::array<vec3, 3>& normals) {
   std::array<vec3, 3> corner;
@@ -70,7 +70,7 @@ std::optional<float> smooth_lift(const CompiledScene& scene, const Hit& hit, boo
   return lift;
 }
 
-/// A mesh's smooth normal, bent no further than the silhouette.
+/// Sets a mesh's smooth normal, bent no further than the silhouette, its lift and its vertex colour.
 void shade_mesh(const CompiledScene& scene, const Ray& ray, const Hit& hit, bool entering, Surface& s,
                 vec3& color) {
   const TriangleShading& triangle = scene.triangles[hit.prim];

@@ -1,4 +1,5 @@
-// Walks the two-level BVH child by child, near ones first; triangles after Moeller and Trumbore (1997).
+// Traverses the two-level BVH child by child, near ones first; intersects triangles by Moeller and Trumbore
+// (1997).
 #include "bench/plain/tracer.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ struct Walk {
   bool done() const { return any && found; }
 };
 
-/// Distance at which the ray enters a child's box; infinite: it does not in [t_min, t_max].
+/// Distance at which the ray enters a child's box; infinite if it misses the box in [t_min, t_max].
 float enter_box(const Bvh8Node& node, u32 slot, const Ray& ray, const vec3& reciprocal) {
   const vec3 lower(node.lower_x[slot], node.lower_y[slot], node.lower_z[slot]),
       upper(node.upper_x[slot], node.upper_y[slot], node.upper_z[slot]);
@@ -34,7 +35,7 @@ float enter_box(const Bvh8Node& node, u32 slot, const Ray& ray, const vec3& reci
   return from <= to ? from : std::numeric_limits<float>::infinity();
 }
 
-/// 1 / d without infinities, which would make NaN of boxes that the ray's origin touches.
+/// 1 / d without infinities, which would give NaN for boxes that the ray's origin touches.
 vec3 safe_reciprocal(const vec3& d) {
   vec3 result;
   for (int i = 0; i < 3; ++i) result[i] = 1 / (std::abs(d[i]) < 1e-18f ? std::copysign(1e-18f, d[i]) : d[i]);
@@ -49,7 +50,7 @@ void walk_tree(Walk& walk, u32 root, Ray& ray, const Leaf& leaf) {
     float t;
   };
   const vec3 reciprocal = safe_reciprocal(ray.d);
-  std::array<Waiting, 512> stack;  // seven wait a level at most, and trees are not that deep
+  std::array<Waiting, 512> stack;  // at most seven wait at each level, and trees are not that deep
   std::size_t top = 0;
   stack[top++] = {root, 0};
   while (top > 0 && !walk.done()) {

@@ -1,4 +1,4 @@
-// Rays through a compiled scene in plain scalar C++.
+// Traces rays through a compiled scene in plain scalar C++.
 #pragma once
 #include <vector>
 
@@ -13,16 +13,16 @@ struct Hit {
   glm::vec3 ng{0};  // object space, outward, not normalised
 };
 
-/// How often rays came to each node, block of triangles and instance of a scene.
+/// How often rays visited each node, triangle block and instance of a scene.
 struct Visits {
   std::vector<u32> nodes, blocks, instances;
   explicit Visits(const CompiledScene& scene);
 };
 
-/// The nearest hit in (t_min, t_max]; false: none. Counts in `visits` where it is given.
+/// Finds the nearest hit in (t_min, t_max]; false: none. Counts in `visits` unless null.
 bool closest_hit(const CompiledScene& scene, const Ray& ray, Hit& hit, Visits* visits = nullptr);
 
-/// Whether there is any.
+/// Whether there is any hit in (t_min, t_max].
 bool any_hit(const CompiledScene& scene, const Ray& ray, Visits* visits = nullptr);
 
 glm::vec3 object_point(const Instance& instance, const glm::vec3& p);

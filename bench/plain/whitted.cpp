@@ -20,7 +20,7 @@ namespace {
 
 using glm::vec3;
 
-constexpr int most_crossings = 64;  // vanished interfaces, or filters, along one ray
+constexpr int most_crossings = 64;  // invisible interfaces, or filters, along one ray
 
 float greatest(const vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
@@ -28,7 +28,7 @@ float greatest(const vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 struct Encounter {
   bool found = false;
   Hit hit;
-  u32 before = 0, after = 0;  // media on the two sides
+  u32 before = 0, after = 0;  // media in front of and behind the surface
   bool entering = false;
   vec3 absorbed{1};
 };
@@ -42,8 +42,8 @@ bool is_invisible(const CompiledScene& scene, const Encounter& e, const Material
                                  scene.media[e.after].absorption.w == scene.media[e.before].absorption.w);
 }
 
-/// Follows the ray to the next surface that can be seen; `media` are those at its start, then those before
-/// the surface.
+/// Follows the ray to the next visible surface. `media`: in, the media at the ray's start; out, those in
+/// front of the surface.
 Encounter next_surface(const CompiledScene& scene, Ray ray, MediaStack& media) {
   Encounter e;
   float from = 0;
@@ -75,7 +75,7 @@ Encounter next_surface(const CompiledScene& scene, Ray ray, MediaStack& media) {
   }
 }
 
-/// The share of light that passes one transmissive interface straight on.
+/// The share of light that passes straight through one transmissive interface.
 vec3 filter(const CompiledScene& scene, const Material& material, const Hit& hit, const vec3& wi, u32 here,
             u32 there) {
   vec3 through = rgb(material.transmission);
@@ -87,7 +87,7 @@ vec3 filter(const CompiledScene& scene, const Material& material, const Hit& hit
   return through;
 }
 
-/// The share of a light that arrives from `distance` along the ray.
+/// The share of a light that arrives along the ray from t_max.
 vec3 visibility(const CompiledScene& scene, Ray ray, MediaStack media) {
   if (!scene.features.shadow_filters)
     return any_hit(scene, ray) ? vec3(0) : absorb(scene, media.current(scene), ray.t_max);
@@ -205,7 +205,7 @@ vec3 trace(const CompiledScene& scene, const Path& start, float* coverage) {
   return e.absorbed * (direct_light(scene, path, s) + secondary_light(scene, path, e, s));
 }
 
-/// Follows a line from the camera to the outside: what it leaves without having entered holds the camera.
+/// The media that contain the camera: those that a line from it leaves without having entered them.
 MediaStack camera_media(const CompiledScene& scene) {
   MediaStack entered, holding;
   if (!scene.features.camera_inside) return holding;

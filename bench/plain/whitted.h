@@ -1,5 +1,5 @@
 // Whitted's integrator (1980) as a plain C++ program: one thread, recursion, scalar floats, no OpenCL and
-// none of the kernels' code. What devices are timed against; it draws the same picture but for rounding.
+// none of the kernels' code. Devices are timed against it; it renders the same picture up to rounding.
 #pragma once
 #include <string>
 
@@ -8,15 +8,14 @@
 
 namespace sundog {
 
-/// Why it cannot draw the scene; empty: it can.
+/// Why it cannot render the scene; empty if it can.
 std::string plain_refusal(const CompiledScene& scene);
 
-/// Why a picture of it is not the device's but for rounding (rays at silhouettes and checkers fall to either
-/// side); empty: it is.
+/// How its picture differs from the device's by more than rounding (rays at silhouettes and checkers may fall
+/// to either side); empty if it does not.
 std::string plain_difference(const Image& plain, const Image& device);
 
-/// The whole frame. Linear RGBA, alpha is coverage. The scene is one that plain_refusal() has nothing
-/// against.
+/// Renders the whole frame: linear RGBA, alpha is coverage. plain_refusal() must be empty for the scene.
 Image render_plain(const CompiledScene& scene);
 
 }  // namespace sundog

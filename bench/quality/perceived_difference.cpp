@@ -13,7 +13,7 @@
 namespace sundog {
 namespace {
 
-/// A viewer's: a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m.
+/// For a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m.
 constexpr double pixels_per_degree = 67;
 
 using glm::dvec3;
@@ -23,7 +23,7 @@ constexpr double least_color_part = 0.4, least_color_value = 0.95;  // the paper
 constexpr double color_power = 0.7, feature_power = 0.5;
 constexpr double feature_width = 0.082;  // degrees
 
-/// A picture of `T`, row by row.
+/// An image of `T`, row by row.
 template <class T>
 struct Plane {
   int width = 0, height = 0;
@@ -36,7 +36,7 @@ struct Plane {
   }
 };
 
-/// Each value by `made` of its place.
+/// A plane with the value made(x, y) at each place.
 template <class T, class Make>
 Plane<T> plane(int width, int height, const Make& made) {
   Plane<T> out{width, height, {}};
@@ -62,7 +62,7 @@ dvec3 rgb_of(const dvec3& opponents) {
   return rgb_from_whitened_xyz * dvec3(y + opponents.y / 500, y, y - opponents.z / 200);
 }
 
-/// CIELab, whose colours fade with the lightness as Hunt saw it.
+/// CIELab with Hunt's adjustment: chroma scales with lightness.
 dvec3 seen_color(const dvec3& rgb) {
   const dvec3 xyz = whitened_xyz_from_rgb * glm::clamp(rgb, dvec3(0), dvec3(1));
   const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : t * 841 / 108 + 4.0 / 29; };
@@ -116,7 +116,7 @@ Plane<dvec3> blurred(const Plane<dvec3>& opponents) {
   };
   Plane<dvec3> out = filtered(opponents, gaussian(narrow), gaussian(narrow));
   const Plane<dvec3> more = filtered(opponents, gaussian(dvec3(wide)), gaussian(dvec3(wide)));
-  // The heights are factors of sqrt(pi / b), the volumes beneath those of sqrt(b / pi).
+  // The peaks scale with sqrt(pi / b), the integrals with sqrt(b / pi).
   const double of_first = first * std::sqrt(narrow.z),
                share = of_first / (of_first + second * std::sqrt(wide));
   for (std::size_t i = 0; i < out.values.size(); ++i)
@@ -124,7 +124,7 @@ Plane<dvec3> blurred(const Plane<dvec3>& opponents) {
   return out;
 }
 
-/// How strong edges and points are, of lightness in [0, 1].
+/// Strength of edges and points in lightness from 0 to 1.
 struct Features {
   Plane<double> edges, points;
 };
@@ -133,7 +133,7 @@ Features features_of(const Plane<double>& lightness) {
   const double deviation = 0.5 * feature_width * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));
   const auto bell = [&](double i) { return std::exp(-i * i / (2 * deviation * deviation)); };
-  /// Parts above and below zero each have the sum 1.
+  /// Scales positive and negative weights to a sum of 1 each.
   const auto balanced = [](Weights w) {
     dvec3 above(0), below(0);
     for (const dvec3& weight : w) above += glm::max(weight, dvec3(0)), below -= glm::min(weight, dvec3(0));
@@ -183,7 +183,7 @@ Looks looks_of(const Image& image) {
   return looks;
 }
 
-/// The distance of colours in [0, 1]: most of the range for distances that are common.
+/// The distance of colours, mapped to [0, 1], with most of the range for common distances.
 double color_difference(const dvec3& a, const dvec3& b) {
   static const double most =
       std::pow(color_distance(seen_color({0, 1, 0}), seen_color({0, 0, 1})), color_power);

@@ -7,11 +7,11 @@
 
 namespace sundog {
 
-/// For each pixel 0 (looks the same) to 1. Values above 1 count as 1, below 0 and not finite as 0. Both
+/// For each pixel, 0 (looks the same) to 1. Colours above 1 count as 1, below 0 or not finite as 0. Both
 /// images have the same size and at least 3 channels of linear colour (std::invalid_argument otherwise).
 std::vector<float> perceived_differences(const Image& a, const Image& b);
 
-/// Their mean.
+/// The mean of perceived_differences(); 0 for empty images.
 double perceived_difference(const Image& a, const Image& b);
 
 }  // namespace sundog

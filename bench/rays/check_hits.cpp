@@ -21,8 +21,8 @@ namespace {
 using glm::dvec3;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr double relative = 1e-4;     // of the distance: what solids of high degree lose
-constexpr double rounding = 0x1p-20;  // of the greatest coordinate: a few operations on floats
+constexpr double relative = 1e-4;     // of the distance: the precision that solids of high degree lose
+constexpr double rounding = 0x1p-20;  // of the greatest coordinate: the error of a few float operations
 constexpr std::size_t enough = 1000;  // wrong answers
 
 HostRay host_ray(const Ray& ray) {
@@ -31,14 +31,14 @@ HostRay host_ray(const Ray& ray) {
 
 double greatest(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// How large what is met is in the instance's space: a solid's unit, or the triangle.
+/// The size of the hit primitive in the instance's space: 1 for a solid, or the triangle's extent.
 double size_met(const CompiledScene& scene, u32 instance, u32 prim) {
   if (scene.instances[instance].shape != SHAPE_MESH) return 1;
   return prim < scene.triangles.size() ? double(scene.triangles[prim].extent) : 0;
 }
 
-/// How far rounding may move the ray about `t`, in units of the world: by the coordinates there, in the
-/// world's space and in that of the instance that is met.
+/// How far rounding may move the ray near `t`, in world units, from the size of the coordinates there in
+/// world space and in the space of the hit instance.
 double reach(const CompiledScene& scene, const HostRay& ray, double t, u32 instance, u32 prim) {
   const auto greater = [&](const HostRay& r) {
     return std::max(greatest(r.origin), greatest(r.origin + t * r.direction));
@@ -60,10 +60,10 @@ double reach_of_none(const CompiledScene& scene, const HostRay& ray) {
   return reach(scene, ray, std::min(ray.t_max, beyond / length), NO_INSTANCE, 0);
 }
 
-/// A ray as rounding may have it.
+/// A ray moved by rounding.
 struct Copy {
   HostRay ray;
-  double ahead;  // of the ray, in its own unit: what the copy's distances lack
+  double ahead;  // how far its origin is ahead, in the ray's unit of t
 };
 
 std::vector<Copy> moved_copies(const HostRay& ray, double distance) {
@@ -83,12 +83,12 @@ std::vector<Copy> moved_copies(const HostRay& ray, double distance) {
   return copies;
 }
 
-/// Hits of a ray and its moved copies in double precision. `found`: the distance by the checked tracer;
-/// infinite for none.
+/// Hits of a ray and its moved copies in double precision. `found`: the checked tracer's distance; infinite
+/// for none.
 struct Findings {
   std::vector<Copy> copies;
   double nearest = unlimited, farthest = 0;
-  double last = 0;   // the farthest of those that meet something
+  double last = 0;   // the farthest hit
   double slack = 0;  // along the ray
 
   Findings(const CompiledScene& scene, const HostRay& ray, double found, u32 instance, u32 prim) {
@@ -109,7 +109,7 @@ struct Findings {
   double room(double t) const { return slack + (std::isfinite(t) ? relative * t : 0); }
   bool hold(double t) const { return t >= nearest - room(nearest) && t <= farthest + room(farthest); }
 
-  /// Whether one of them meets the instance about `t`.
+  /// Whether one of the copies meets the instance near `t`.
   bool meet(const CompiledScene& scene, u32 instance, double t) const {
     const double about = 2 * room(t) + std::max(0.0, last - nearest);
     return std::any_of(copies.begin(), copies.end(), [&](const Copy& copy) {
@@ -136,7 +136,7 @@ bool agrees(const CompiledScene& scene, const Ray& ray, bool occluded) {
   return occluded == plain::any_hit(scene, plain_ray(ray));
 }
 
-/// Counts one answer; `judge` it in double precision where it is not the plain tracer's.
+/// Counts one answer. `judge`: check it in double precision if it is not the plain tracer's.
 template <class Answer>
 void count(const CompiledScene& scene, const Ray& ray, const Answer& answer, bool judge, HitCheck& sum) {
   ++sum.checked;

@@ -1,4 +1,4 @@
-// Crosses triangles (Moeller and Trumbore 1997) and the solids of bench/plain in double precision.
+// Intersects triangles (Moeller and Trumbore 1997) and the solids of bench/plain in double precision.
 #include "bench/rays/exact_tracer.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void cross_block(const TriangleBlock& block, const HostRay& ray, std::vector<Hos
   }
 }
 
-/// A box test that never misses a touch: NaN (0 times infinity) counts as inside.
+/// A box test that never misses a touched box: NaN (0 / 0) counts as inside.
 bool crosses(const Bvh8Node& node, u32 slot, const HostRay& ray) {
   const double lower[3] = {node.lower_x[slot], node.lower_y[slot], node.lower_z[slot]};
   const double upper[3] = {node.upper_x[slot], node.upper_y[slot], node.upper_z[slot]};
@@ -71,7 +71,7 @@ std::vector<HostHit> cross_instance(const CompiledScene& scene, u32 index, const
     const Enter enter = [&](const Bvh8Node& node, u32 slot) { return all || crosses(node, slot, ray); };
     visit_leaves(scene, instance.root, enter,
                  [&](u32 block) { cross_block(scene.blocks.at(block), ray, hits); });
-    std::erase_if(hits, [&](const HostHit& hit) {  // those of others in the BVH
+    std::erase_if(hits, [&](const HostHit& hit) {  // of other instances that share the BVH
       return hit.prim < instance.first_prim || instance_of_triangle(scene, index, hit.prim) != index;
     });
   } else {

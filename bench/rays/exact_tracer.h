@@ -1,4 +1,4 @@
-// A slow tracer of the compiled tables in double precision: what kernels and the BVH are held against.
+// A slow tracer of the compiled tables in double precision, the reference for the kernels and the BVH.
 #pragma once
 #include <glm/glm.hpp>
 #include <limits>

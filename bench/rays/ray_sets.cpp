@@ -1,4 +1,4 @@
-// Orders primary rays by tiles, and starts the other kinds where these hit; glass rays cross 5 surfaces.
+// Orders primary rays by tiles, and starts the other kinds at their hits; glass rays cross up to 5 surfaces.
 #include "bench/rays/ray_sets.h"
 
 #include <algorithm>
@@ -28,10 +28,10 @@ vec3 origin(const Ray& ray) { return {ray.ox, ray.oy, ray.oz}; }
 vec3 direction(const Ray& ray) { return {ray.dx, ray.dy, ray.dz}; }
 vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
 
-/// A point of a surface that a ray met, with what is needed to leave it again.
+/// The point where a ray hit a surface, and the data needed to start a ray there.
 struct Surface {
   vec3 p, n;      // n: unit, against the ray
-  float offset;   // off the surface, where a further ray starts
+  float offset;   // of the start of new rays from the surface
   bool entering;  // the ray comes from outside
 };
 
@@ -60,8 +60,8 @@ vec3 cosine_direction(const vec3& n, u32 seed) {
   return glm::normalize(r * std::cos(angle) * t + r * std::sin(angle) * b + std::sqrt(1 - u) * n);
 }
 
-/// Both children of rays at a glass surface, by the 16 rays that belong together: reflected ones, then
-/// refracted.
+/// Appends the reflected and the refracted rays of rays that hit a glass surface. `reflect_outside`: also
+/// reflect rays that come from outside.
 void glass_children(const CompiledScene& scene, const std::vector<Ray>& rays, const std::vector<Hit>& hits,
                     bool reflect_outside, std::vector<Ray>& reflected, std::vector<Ray>& refracted) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -162,8 +162,8 @@ Viewpoint framing_viewpoint(const CompiledScene& scene, const vec3& from, const 
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.instance != NO_INSTANCE; });
     return static_cast<float>(met) / static_cast<float>(hits.size());
   };
-  // From the widest view on, as there may be nothing in the middle: the first that is filled enough, or the
-  // fullest.
+  // Starts with the widest view, as the middle may be empty, and takes the first view that is filled enough,
+  // or the fullest.
   constexpr float widest = 0.6f, narrowest = 0.01f, step = 0.9f;
   float best = 0, narrow = widest, wide = widest;
   for (float tangent = widest; tangent > narrowest && best < wanted; tangent *= step) {
@@ -183,7 +183,7 @@ RaySet primary_rays(const Viewpoint& view, unsigned size) {
   RaySet set{.kind = "primary", .coherent = true};
   set.rays.reserve(std::size_t(width) * width);
   const unsigned blocks = tile / block;
-  for (unsigned i = 0; i < width * width; ++i) {  // i counts pixels, in a block, in a tile, in the image
+  for (unsigned i = 0; i < width * width; ++i) {  // pixels in a block, in a tile, in the image
     const unsigned pixel = i % (block * block), in_tile = i / (block * block) % (blocks * blocks),
                    of_image = i / (tile * tile);
     const unsigned x = of_image % tiles * tile + in_tile % blocks * block + pixel % block;

@@ -1,6 +1,5 @@
-// The rays of a frame by kind, for timing a tracer apart from shading: what the camera, a point light, a
-// diffuse bounce and a glass surface would send. The same rays on every machine: randomness is a hash of the
-// pixel.
+// The rays of a frame by kind, to time a tracer without shading: from the camera, to a point light, from a
+// diffuse bounce and through glass. Every machine gets the same rays: random numbers are a hash of the pixel.
 #pragma once
 #include <functional>
 #include <span>
@@ -11,16 +10,16 @@
 
 namespace sundog {
 
-/// Rays in the order in which a renderer meets them: 4x4 pixels after 4x4 pixels, so 16 in a row belong
+/// Rays in a renderer's order, one block of 4x4 pixels after the other, so 16 successive rays belong
 /// together.
 struct RaySet {
   std::string kind;
   bool any = false;       // only whether there is a hit matters
-  bool coherent = false;  // 16 in a row run close together
+  bool coherent = false;  // 16 successive rays run close together
   std::vector<Ray> rays = {};
 };
 
-/// Finds the nearest hits of rays: the tracer that makes the secondary rays' origins.
+/// Finds the nearest hits of rays, from which secondary rays start.
 using TraceFunction = std::function<std::vector<Hit>(std::span<const Ray>)>;
 
 /// A pinhole camera and a point light.
@@ -33,8 +32,8 @@ struct Viewpoint {
 /// The scene's own camera, and its first point or spot light (else one beside the camera).
 Viewpoint scene_viewpoint(const CompiledScene& scene);
 
-/// A view along -`from` in which 65 % of the rays meet the scene, or as many as there can be, with a light on
-/// the upper right.
+/// A view along -`from` in which 65 % of the rays hit the scene, or as many as possible, with a light at the
+/// upper right.
 Viewpoint framing_viewpoint(const CompiledScene& scene, const glm::vec3& from, const TraceFunction& trace);
 
 /// size x size pixels (rounded up to a multiple of 16), through their centres.
@@ -44,15 +43,15 @@ RaySet primary_rays(const Viewpoint& view, unsigned size);
 ///   primary     the camera's
 ///   shadow      from the point towards the light, where the light is in front of the surface
 ///   bounce      cosine-weighted about the normal (towards the camera)
-///   shuffled    the same in random order
+///   shuffled    the bounce rays in random order
 ///   reflection  the mirrored camera rays
 ///   glass       the rays inside and behind a solid of index 1.5: refracted, then refracted and reflected at
 ///               each further surface, up to 5 surfaces along a path
 inline const std::vector<std::string> ray_kinds = {"primary",  "shadow",     "bounce",
                                                    "shuffled", "reflection", "glass"};
 
-/// The rays of a frame of size x size pixels (as primary_rays() has them) and what follows from their hits,
-/// a set a kind: of `kinds`, or of all when it is empty. Kinds without any ray have no set.
+/// The camera rays of size x size pixels (see primary_rays()) and the rays that follow from their hits: a set
+/// for each of `kinds`, or for all kinds if empty. Kinds without rays have no set.
 std::vector<RaySet> frame_rays(const CompiledScene& scene, const Viewpoint& view, unsigned size,
                                const TraceFunction& trace, const std::vector<std::string>& kinds);
 

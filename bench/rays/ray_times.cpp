@@ -15,7 +15,7 @@ namespace {
 
 double number(std::size_t n) { return static_cast<double>(n); }
 
-/// Millions a second, for each of the times.
+/// Millions of rays a second, for each of the times.
 Spread rates(std::size_t rays, const std::vector<double>& seconds) {
   std::vector<double> all;
   for (const double time : seconds) all.push_back(1e-6 * number(rays) / time);

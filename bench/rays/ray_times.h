@@ -1,4 +1,4 @@
-// Rays a second by kind: one scene's rays through one device's tracer.
+// Times one scene's rays on one device's tracer, by kind.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,11 +18,11 @@ class RayTimes {
   RayTimes(std::string scene_name, std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device,
            unsigned size, std::vector<std::string> kinds);
 
-  /// Every answer of the first run of a kind is checked; later runs must have the same answers to the bit.
+  /// Checks every answer of a kind's first run; later runs must give the same bits.
   void measure(const MeasureOptions& options);
   void add_to(Report& report) const;
 
-  /// A kind of rays that has times: millions of rays a second by the device's events, else by the wall clock.
+  /// A timed kind of rays: millions of rays a second by the device's events, otherwise by the wall clock.
   struct Timed {
     const RaySet* set;
     Spread rate;
@@ -34,7 +34,7 @@ class RayTimes {
     RaySet set;
     HitCheck check;
     std::uint64_t expected = 0;          // hash of the answers
-    std::vector<double> kernel_seconds;  // of each run, the first one too, by the device's events
+    std::vector<double> kernel_seconds;  // of each run, the first included, by the device's events
   };
   std::string check(Kind& kind);
   std::optional<Spread> rate(std::size_t kind) const;

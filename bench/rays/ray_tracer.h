@@ -1,5 +1,4 @@
-// A compiled scene on a device, with the kernels that trace given rays: for benchmarks and tests of the
-// tracer alone.
+// Traces given rays through a compiled scene on a device, for benchmarks and tests of the tracer alone.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,7 +8,7 @@
 
 namespace sundog {
 
-/// The kind of answer, and how rays are traced. `coherent`: 16 rays in a row, of one work-item, run close
+/// The answer wanted, and how rays are traced. `coherent`: the 16 successive rays of a work-item run close
 /// together.
 struct RayQuery {
   bool any = false;  // only whether there is a hit
@@ -18,18 +17,18 @@ struct RayQuery {
 
 class RayTracer {
  public:
-  /// Builds the kernels for the scene and the device's class, and uploads the scene. `extra` definitions
-  /// overrule those of the scene. Throws DeviceError, BuildError.
+  /// Builds the kernels for the scene and the device's class, and uploads the scene. `extra` overrides the
+  /// scene's definitions. Throws DeviceError, BuildError.
   RayTracer(Device& device, const CompiledScene& scene, const KernelDefines& extra = {});
 
   /// The rays that run() traces from now on.
   void upload(std::span<const Ray> rays);
 
-  /// Traces all rays and waits for the end. Work-groups have one dimension here: `group.x`. Returns the
-  /// kernel's seconds by the device's events; 0 where the driver gives no times.
+  /// Traces all rays and waits for them. Work-groups have one dimension, `group.x`. Returns the kernel's
+  /// seconds by the device's events; 0 if the driver gives no times.
   double run(const RayQuery& query, const WorkGroup& group = {});
 
-  /// Most work-items that a group of the kernel of such rays may have.
+  /// The largest work-group of the kernel for such rays.
   std::size_t greatest_group(bool any) const;
 
   /// Results of the last run() with any = false.
@@ -46,7 +45,7 @@ class RayTracer {
 
   Device& device_;
   unsigned batch_ = 1;           // rays a work-item traces
-  std::size_t stack_limit_ = 0;  // work-items of a group, as the device's class has room for; 0: any number
+  std::size_t stack_limit_ = 0;  // greatest_work_group() of the configuration; 0: unknown
   DeviceScene tables_;
   RayKernel<Hit> trace_rays_;
   RayKernel<u32> occluded_rays_;
@@ -55,7 +54,7 @@ class RayTracer {
   Buffer<u32> occluded_;
 };
 
-/// A device that is opened for the rays of a scene.
+/// An open device with a scene's tracer.
 struct OpenedTracer {
   Device device;
   RayTracer tracer;

@@ -18,8 +18,8 @@
 namespace sundog {
 namespace {
 
-// A visible difference, and how many pixels may have one: rays on silhouettes and on the borders of checkers
-// fall to either side by rounding.
+// A visible difference, and one in how many pixels may have one: rounding moves rays on silhouettes and on
+// borders of checkers to either side.
 constexpr double visible_difference = 0.02;
 constexpr std::uint64_t pixels_per_flip = 200;
 
@@ -56,7 +56,7 @@ Mesh pyramid() {
   return mesh;
 }
 
-/// Builds every kernel file that there is, as a render would.
+/// Builds every kernel file in entry/ as a render would.
 void build_kernels(Device& device, const CompiledScene& scene, SelfCheck& check,
                    const std::function<void(const std::string&)>& on_stage) {
   const Stopwatch clock;
@@ -139,7 +139,7 @@ std::string advice(const std::string& problem, Others others) {
 }
 
 std::string driver_advice(const std::string& problem, Others others) {
-  // Every driver is loaded to list the devices: --device comes too late for one that ends the process.
+  // Listing devices loads every driver, so --device cannot exclude one that ends the process.
   if (problem.find("crashed") == std::string::npos && problem.find("did not come back") == std::string::npos)
     return advice(problem, others);
   return others == Others::none

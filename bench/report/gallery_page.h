@@ -1,4 +1,4 @@
-// A gallery as one page: pictures with how they were made. Plain values in, text out.
+// Writes a gallery as one page: pictures with the commands that made them. Plain values in, HTML out.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@ namespace sundog {
 
 struct GalleryPicture {
   std::string name;     // the scene's, without folder and extension
-  std::string file;     // of the picture, relative to the page
+  std::string file;     // of the picture; relative to the page
   std::string command;  // that makes it
   int width = 0, height = 0, samples = 0;
   double seconds = 0;  // of the frame, without loading and building kernels
@@ -22,7 +22,7 @@ struct Gallery {
   std::vector<GalleryPicture> pictures;
 };
 
-/// A page of HTML without scripts, which needs the pictures beside it and nothing else.
+/// An HTML page without scripts; it needs no files other than the pictures.
 std::string gallery_html(const Gallery& gallery);
 
 }  // namespace sundog

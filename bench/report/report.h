@@ -1,5 +1,5 @@
 // A benchmark's results as plain values. A benchmark fills a Report; the writers below turn any Report into
-// text, JSON, CSV or a page, and know no benchmark.
+// text, JSON, CSV or a page, independently of the benchmark.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -41,10 +41,10 @@ struct Table {
   std::vector<std::vector<Cell>> rows;
 };
 
-/// "time [ms]" as a name that programs like: "time_ms".
+/// "time [ms]" as an identifier: "time_ms".
 std::string plain_name(const Column& column);
 
-/// Whether the column has a word in some row.
+/// Whether the column has a word in any row.
 bool is_word_column(const Table& table, std::size_t column);
 
 /// A cell and its column.
@@ -53,7 +53,7 @@ struct Field {
   Cell cell;
 };
 
-/// Appends a row; a name that the table has no column for gets one.
+/// Appends a row, and a column for each new name.
 void add_row(Table& table, const std::vector<Field>& fields);
 
 struct CurvePoint {
@@ -64,8 +64,8 @@ struct Curve {
   std::string name;
   std::vector<CurvePoint> points;  // ascending x
 };
-/// Curves over an axis that counts in powers of two; with `ideal` the line y = x is drawn too. With
-/// `logarithmic` both axes have powers of ten, and all values are above 0.
+/// Curves over an x axis in powers of two. `ideal`: draws the line y = x too. `logarithmic`: both axes are in
+/// powers of ten, and all values are above 0.
 struct CurvePlot {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
@@ -75,16 +75,16 @@ struct CurvePlot {
 struct Bar {
   std::string label;
   Spread value;
-  std::string note;  // drawn behind the bar
+  std::string note;  // drawn after the bar
 };
-/// Lying bars with their spread; as `ratios` points about 1 on a logarithmic axis, in a terminal too.
+/// Horizontal bars with their spread. `ratios`: points around 1 on a logarithmic axis, in a terminal too.
 struct BarPlot {
   std::string title, unit;
   std::vector<Bar> bars;
   bool ratios = false;
 };
 
-/// Times in two dimensions. values[row][column]; empty: not measured. With `has_best` the least is outlined.
+/// Times in two dimensions. values[row][column]; empty: not measured. `has_best`: outlines the least.
 struct HeatMap {
   std::string title, unit, x_label, y_label;
   std::vector<std::string> columns, rows;
@@ -97,58 +97,58 @@ using Part = std::variant<Table, CurvePlot, BarPlot, HeatMap>;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct Report {
-  std::string name;                // "threads": of `sundog bench threads`
+  std::string name;                // the bench's, such as "threads"
   std::string title;               // the page's headline
-  Facts facts;                     // device, driver, scene...: what the figures hold for
-  std::vector<std::string> notes;  // a sentence each: how it was measured, what failed
-  std::vector<Part> parts;         // what a person reads, in this order
-  Table measurements;              // tidy: a row a measurement, for other programs
+  Facts facts;                     // device, driver, scene...: the conditions of the measurements
+  std::vector<std::string> notes;  // a sentence each: the method, and failures
+  std::vector<Part> parts;         // for people, in this order
+  Table measurements;              // tidy: one row per measurement, for other programs
   std::vector<MeasuredWay> ways;   // with every raw run
   Facts environment;               // variables that drivers and sundog read
-  Table devices, scenes;           // what was measured, for other programs
-  bool complete = true;            // false: the bench still runs, or was interrupted
-  bool times_frames = false;       // of the scenes' sizes
+  Table devices, scenes;           // measured ones, for other programs
+  bool complete = true;            // false: the bench is running or was interrupted
+  bool times_frames = false;       // of the scenes' sizes, which captions then give
 };
 
-/// Its time; nothing where it has none.
+/// The way's time; nothing if it has none.
 Cell milliseconds(const MeasuredWay& way);
 
-/// Appends a row for people, with the way's problem where it has one.
+/// Appends a row for people, with the way's problem if it has one.
 void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way);
 
-/// Adds a way and its row of measurements: `key`, then what every bench has (time, runs, cores, load,
-/// problem), then `more`.
+/// Adds a way and its row of measurements: `key`, then the columns of every bench (time, runs, cores, load,
+/// energy, problem), then `more`.
 void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
                   const std::vector<Field>& more = {});
 
-/// Facts, the tables among the parts (the measurements when there are none), notes.
+/// Facts, the tables among the parts (the measurements if there are none), notes.
 std::string report_text(const Report& report);
 
 /// docs/reference/bench-reports.md describes it; a Spread is an object of median, low, high, min, max and the
 /// runs.
 nlohmann::json report_json(const Report& report);
 
-/// The measurements alone, as RFC 4180 has it, with one line of names.
+/// The measurements alone, by RFC 4180, with a header line.
 std::string report_csv(const Report& report);
 
-/// One page that needs nothing else: tables and SVG plots, in the reader's light or dark colours, and fit for
-/// print.
+/// One self-contained page: tables and SVG plots, in light or dark colours as the reader prefers, and
+/// printable.
 std::string report_html(const Report& report);
 
-/// The tables, with booktabs.
+/// The tables for LaTeX, with booktabs.
 std::string report_latex(const Report& report);
 
-/// Plots as files, for a column of 88 mm with letters of 8 points.
+/// Each plot as an SVG file for a column of 88 mm, with letters of 8 points.
 std::vector<std::string> report_svgs(const Report& report);
 
-/// The measurements in the T4 format of Kernel Tuner and others (results-schema.json, 1.0.0): what stands
-/// before the time in a row is the configuration.
+/// The measurements in the T4 format of Kernel Tuner and others (results-schema.json, 1.0.0): the columns
+/// before the time are the configuration.
 nlohmann::json report_t4(const Report& report);
 
-/// A number with about three digits that count: "0.0123", "4.57", "12.3", "1234".
+/// A number with about three significant digits: "0.0123", "4.57", "12.3", "1234".
 std::string number_text(double value);
 
-/// "12.3 [11.9, 12.8]": the median and, if it has one, its interval. Empty for nothing.
+/// "12.3 [11.9, 12.8]": the median and, if it has one, its interval. Empty for an empty cell.
 std::string cell_text(const Cell& cell);
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
-// A report as one page: no script, no other file, colours of the reader's choice (light or dark), and on
-// paper always dark on white.
+// Writes a report as one page without scripts or other files, in light or dark colours as the reader prefers,
+// and on paper always dark on white.
 #include <fmt/format.h>
 
 #include "bench/report/svg.h"
@@ -28,7 +28,7 @@ ul { padding-left: 20px; color: var(--soft); } details { margin-top: 36px; } sum
   details:not([open]) { display: none; } }
 )";
 
-/// `raw`: with every run below the median.
+/// `raw`: lists every run below the median.
 std::string cell_html(const Cell& cell, bool raw) {
   std::string text = escape_html(cell_text(cell));
   if (!raw || cell.kind != Cell::Kind::spread || cell.spread.runs.empty()) return text;

@@ -1,4 +1,4 @@
-// Reports for papers and for other tuners: LaTeX with booktabs, and the T4 format.
+// Writes reports for papers (LaTeX with booktabs) and for other tuners (the T4 format).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::string cell_latex(const Cell& cell) {
                      number_text(interval.low), number_text(interval.high));
 }
 
-/// In lines about as wide as a figure: a table of eight columns is to fit an article.
+/// Breaks the head into lines about as wide as a figure, so that a table of eight columns fits an article.
 std::string head_latex(const Column& column, char side) {
   constexpr std::size_t most_letters = 9;
   static const std::map<std::string, const char*> symbols{{"x", "$\\times$"},
@@ -66,7 +66,7 @@ std::string head_latex(const Column& column, char side) {
   return broken ? fmt::format("\\shortstack[{}]{{{}}}", side, text) : text;
 }
 
-/// The images' size, if all have the same.
+/// The images' size if all have the same, otherwise empty.
 std::string image_size(const Table& scenes) {
   const auto column = [&](const char* name) {
     return std::ranges::find(scenes.columns, name, &Column::name);
@@ -97,7 +97,7 @@ std::string caption_of(const Table& table, const Report& report) {
   return caption;
 }
 
-/// Lines that LaTeX skips.
+/// The text as LaTeX comment lines.
 std::string comment(const std::string& text) {
   std::string lines = "% ";
   for (const char c : text) lines += c == '\n' ? "\n% " : std::string(1, c);

@@ -1,4 +1,4 @@
-// Reports for terminals and for programs: aligned text, JSON and CSV.
+// Writes reports for terminals (aligned text) and for programs (JSON and CSV).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +25,7 @@ std::string head_text(const Column& column) {
   return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
 }
 
-/// Words to the left, numbers to the right.
+/// Pads to the width: words align left, numbers right.
 std::string padded(const std::string& text, std::size_t width, bool left) {
   const std::string space(width - std::min(width, width_of(text)), ' ');
   return left ? text + space : space + text;
@@ -63,7 +63,7 @@ json spread_json(const Spread& spread) {
   return values;
 }
 
-/// A name that stands several times, as "device" may, has an array of what it holds.
+/// A name that occurs several times, such as "device", gets an array of its values.
 json facts_json(const Facts& all) {
   json facts = json::object();
   for (const auto& [name, value] : all) {
@@ -133,10 +133,10 @@ std::string csv_cell(const Cell& cell, bool as_spread) {
   return as_spread ? text + ",,," : text;
 }
 
-/// Points with their intervals about 1, a line each.
+/// Points around 1 with their intervals, one line each.
 std::string ratios_text(const BarPlot& plot) {
   constexpr int width = 49;
-  double reach = 0.01;  // of the axis to both sides of 1, as a logarithm
+  double reach = 0.01;  // of the axis on both sides of 1, as a logarithm
   std::size_t room = 0;
   for (const Bar& bar : plot.bars) {
     for (const double value : {bar.value.min, bar.value.median, bar.value.max})

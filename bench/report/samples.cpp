@@ -44,7 +44,7 @@ Interval median_interval(const Spread& spread) {
   if (values.size() > 100) {
     k = static_cast<std::size_t>(0.5 * count - 0.98 * std::sqrt(count));
   } else {
-    double term = std::pow(0.5, count), chance = term;  // that just k, or at most k, lie below the median
+    double term = std::pow(0.5, count), chance = term;  // that exactly k, or at most k, lie below the median
     for (;; ++k, chance += term) {
       term *= (count - static_cast<double>(k)) / static_cast<double>(k + 1);
       if (chance + term > beyond) break;

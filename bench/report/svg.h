@@ -1,4 +1,4 @@
-// Plots as SVG text with their own style: a plot stands in a page or alone as a file. c0..c7 are the curves'
+// Draws plots as SVG text with their own style, for a page or a file of their own. c0..c7 are the curves'
 // classes. Internal to the report writers.
 #pragma once
 #include <string>
@@ -10,14 +10,14 @@ namespace sundog {
 /// Text with < > & " escaped.
 std::string escape_html(const std::string& text);
 
-/// A system font's letter is taken to be this wide, to keep room for labels.
+/// Assumed width of a system font's letter, to leave room for labels.
 constexpr double letter = 7.2;
 
-/// Where a plot stands: in a page, or in a paper's column, which is half as wide.
+/// The place of a plot: in a page, or in a paper's column, which is half as wide.
 enum class Place { page, column };
 
-/// The rules of all plots, with colours as variables, light, dark and for print, or for a column with those
-/// for print alone.
+/// The CSS rules of all plots. A page gets variables for light, dark and print colours, a column the print
+/// colours as literals.
 std::string plot_style(Place place);
 
 /// The opening tag and style of a plot.

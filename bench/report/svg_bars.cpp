@@ -1,4 +1,4 @@
-// Lying bars with their spread, and heat maps with the figures in the cells.
+// Draws horizontal bars with their spread, and heat maps with the figures in the cells.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ double label_room(const std::vector<std::string>& labels) {
   return std::min(static_cast<double>(longest), 44.0) * letter + 12;
 }
 
-/// Whole labels in a page. A column has room for 18 letters, so words that all labels begin with are left
+/// Whole labels in a page. A column has room for 18 letters, so leading words that all labels share are left
 /// out.
 std::vector<std::string> labels_of(const BarPlot& plot, Place place) {
   std::vector<std::string> labels;
@@ -33,7 +33,7 @@ std::vector<std::string> labels_of(const BarPlot& plot, Place place) {
   for (std::string& label : labels) {
     label.erase(0, is_long ? same : 0);
     std::size_t end = std::min(most, label.size());
-    while (end > 0 && end < label.size() && (label[end] & 0xC0) == 0x80) --end;  // within a letter of UTF-8
+    while (end > 0 && end < label.size() && (label[end] & 0xC0) == 0x80) --end;  // inside a UTF-8 letter
     label.resize(end);
   }
   return labels;
@@ -51,8 +51,8 @@ ValueRange range_of(const HeatMap& map) {
   return range;
 }
 
-/// From the best (dark green) over yellow to red, by how many times slower than the best. Lightness rises all
-/// the way to the middle and hue tells the rest; the figures stand in the cells for those who see no colours.
+/// From dark green (the best) through yellow to red, by the time relative to the best. Lightness rises up to
+/// yellow, then hue distinguishes; the figures in the cells serve readers who see no colours.
 std::string heat_color(double share) {
   constexpr std::array<std::array<double, 3>, 4> stops{
       {{26, 110, 92}, {122, 188, 120}, {247, 224, 130}, {208, 84, 60}}};
@@ -65,7 +65,7 @@ std::string heat_color(double share) {
   return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
 }
 
-/// 0 at the best, 1 from twice its time on.
+/// 0 at the best, 1 at twice its time.
 double heat_share(double value, double least) { return least > 0 ? std::log2(value / least) : 0; }
 
 }  // namespace

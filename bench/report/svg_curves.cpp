@@ -1,5 +1,4 @@
-// Curves over powers of two, each with its own color, dash and marker, so that they stay apart in black and
-// white.
+// Draws curves, each with its own color, dash and marker, so that they differ in black and white too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +19,7 @@ struct Axes {
   double low = 0, high = 1;        // log2 of x
   double most = 1;                 // y
   double bottom_y = 0, top_y = 1;  // log2 of y
-  bool logarithmic = false;        // y is, and the ticks are round numbers
+  bool logarithmic = false;        // y is logarithmic, and the ticks are round numbers
   std::vector<double> ticks_x, ticks_y;
 
   double plot_width() const { return width - left - right; }
@@ -33,7 +32,7 @@ struct Axes {
   }
 };
 
-/// A curve's marker about a point: disc, square, triangle, diamond in turn.
+/// A curve's marker at a point: disc, square, triangle or diamond, by index.
 std::string marker(std::size_t index, double x, double y) {
   const auto shape = [&](const char* points) {
     return fmt::format("<polygon class=\"m c{}\" transform=\"translate({:.1f} {:.1f})\" points=\"{}\"/>",
@@ -59,7 +58,7 @@ std::set<double> all_x(const CurvePlot& plot) {
   return values;
 }
 
-/// The numbers 1, 2 and 5 times powers of ten from below the least value to above the greatest.
+/// 1, 2 and 5 times powers of ten, from at most the least value to at least the greatest.
 std::vector<double> round_ticks(double least, double most) {
   std::vector<double> ticks;
   for (double power = std::pow(10.0, std::floor(std::log10(least))); power <= most; power *= 10)
@@ -70,7 +69,7 @@ std::vector<double> round_ticks(double least, double most) {
   return ticks;
 }
 
-/// Axes of powers of ten about all points.
+/// Axes in powers of ten that hold all points.
 Axes logarithmic_axes(const CurvePlot& plot) {
   std::set<double> ys;
   for (const Curve& curve : plot.curves)
@@ -96,7 +95,7 @@ Axes make_axes(const CurvePlot& plot) {
   if (!values.empty()) {
     axes.low = std::log2(*values.begin());
     axes.high = std::log2(*values.rbegin());
-    // The whole of y = x where it does not press the curves into less than half of the plot.
+    // Shows all of y = x unless that squeezes the curves into less than half of the plot.
     if (plot.ideal && *values.rbegin() <= 2 * most) most = std::max(most, *values.rbegin());
   }
   axes.ticks_x.assign(values.begin(), values.end());
@@ -121,7 +120,7 @@ std::string frame(const CurvePlot& plot, const Axes& axes) {
                             top + plot_height / 2, escape_html(plot.y_label));
 }
 
-/// y = x over a logarithmic axis bends, so it is drawn in short pieces, to the right or the upper border.
+/// y = x is curved over a logarithmic axis, so it is drawn in short pieces, up to the right or upper border.
 std::string ideal_line(const Axes& axes) {
   std::string points;
   const double high = std::min(axes.high, std::log2(axes.most));
@@ -152,7 +151,7 @@ struct Legend {
   double height = 0;
 };
 
-/// Below the plot, in as many lines as the names need; none for one curve, which the tables name.
+/// The legend below the plot, in as many lines as the names need; empty for one curve, which the tables name.
 Legend legend(const CurvePlot& plot, const Axes& axes) {
   Legend result;
   if (plot.curves.size() + plot.ideal < 2) return result;

@@ -1,4 +1,4 @@
-// The style of plots, within each of them, so that they stand alone as files too.
+// The style of plots, included in each so that it also works as a file of its own.
 #include <fmt/format.h>
 
 #include "bench/report/svg.h"
@@ -10,8 +10,8 @@ struct PlotColor {
   const char *name, *light, *dark, *print;
 };
 
-// The curves' colours are those of Okabe and Ito's palette, which people with colour blindness can tell
-// apart, darkened for white paper and lightened for dark screens.
+// The curves' colours are Okabe and Ito's palette, which colour-blind readers can distinguish, darkened for
+// white paper and lightened for dark screens.
 constexpr PlotColor plot_colors[] = {
     {"paper", "#ffffff", "#14181c", "#ffffff"}, {"ink", "#1c2126", "#e6e9ec", "#000000"},
     {"soft", "#59636e", "#9aa5b0", "#444444"},  {"line", "#d8dde2", "#333b43", "#bbbbbb"},
@@ -38,7 +38,7 @@ std::string plot_style(Place place) {
     rules += fmt::format("svg .l.c{0} {{ stroke: var(--c{0}); }} svg .m.c{0} {{ fill: var(--c{0}); }}\n", i);
   for (const auto& color : plot_colors) {
     const std::string use = fmt::format("var(--{})", color.name);
-    // librsvg and others that make PDFs of files know no variables.
+    // librsvg and other converters to PDF do not support variables.
     for (std::size_t at = 0; place == Place::column && (at = rules.find(use)) != std::string::npos;)
       rules.replace(at, use.size(), color.print);
     light += fmt::format(" --{}: {};", color.name, color.light);

@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t group = 64, reads = 16, steps = 8;  // as in peaks.cl
 constexpr std::size_t widest = 16, part_bytes = group * reads * widest * sizeof(float);
 constexpr std::array<unsigned, 5> widths{1, 2, 4, 8, 16};
-constexpr double least_run_seconds = 0.01;  // of a run, so that the time of a launch does not matter
+constexpr double least_run_seconds = 0.01;  // of a run, to make the time of a launch negligible
 
 double as_double(std::size_t n) { return static_cast<double>(n); }
 
-/// Whole numbers from 0 to 7 without an order.
+/// Whole numbers from 0 to 7 in pseudo-random order.
 std::vector<float> made_values(std::size_t count) {
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -39,7 +39,7 @@ std::vector<i32> sums_of(const std::vector<float>& values, unsigned width) {
   return sums;
 }
 
-/// The value that multiply_and_add() must write for an item.
+/// The value that multiply_and_add() must write for a work-item.
 i32 chain_sum(std::size_t item, unsigned width, unsigned chains, std::size_t rounds) {
   i32 sum = 0;
   for (unsigned c = 0; c < chains; ++c)
@@ -59,7 +59,7 @@ KernelDefines defines_of(const std::string& type, unsigned width, unsigned chain
   return defines;
 }
 
-/// The types that the device computes with.
+/// The scalar types that the device supports.
 std::vector<std::string> types_of(const DeviceInfo& info) {
   std::vector<std::string> types{"float"};
   if (info.extensions.find("cl_khr_fp16") != std::string::npos) types.emplace_back("half");
@@ -70,16 +70,16 @@ std::vector<std::string> types_of(const DeviceInfo& info) {
 
 }  // namespace
 
-/// The open device, and inputs of all kernels.
+/// The open device and all kernels' buffers.
 struct DevicePeaks::Opened {
   Device device;
   std::vector<float> values;
   Buffer<float> input, copies;
   Buffer<i32> sums;
-  i32 run = 0;  // counts, so that a result cannot be an earlier run's
+  i32 run = 0;  // number of the run, so that an earlier run's result is detected
 
   Opened(const DeviceInfo& info, unsigned megabytes) : device(info) {
-    // A quarter of what a buffer may have, in whole parts.
+    // At most a quarter of the device's largest allocation, in whole parts.
     const std::size_t bytes = std::min<std::size_t>(std::size_t{megabytes} << 20, info.max_allocation / 4);
     values = made_values(std::max<std::size_t>(2, bytes / part_bytes) * part_bytes / sizeof(float));
     input = device.upload(std::span<const float>(values));
@@ -91,7 +91,7 @@ struct DevicePeaks::Opened {
   Program build(const std::string& type, unsigned width, unsigned chains) {
     return device.build("entry/peaks.cl", defines_of(type, width, chains));
   }
-  /// Seconds of that many launches, of which the last is awaited.
+  /// Seconds of that many launches, until the last has finished.
   template <class Launch>
   double timed(std::size_t times, const Launch& launch) {
     ++run;
@@ -107,7 +107,7 @@ struct DevicePeaks::Opened {
   }
 };
 
-/// A kernel that is built: runs it so many times, and whether the last result is right.
+/// A built kernel: runs it `times` times and returns the seconds; checks the last result.
 struct DevicePeaks::Work {
   std::function<double(std::size_t times)> run;
   std::function<bool(std::size_t times)> is_right;
@@ -125,7 +125,7 @@ void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& mak
   subject.prepare = [=, peak = shared] {
     *work = make();
     work->run(1);
-    // Long enough for the time of a launch not to matter.
+    // Makes the time of a launch negligible.
     peak->times = 1;
     while (work->run(peak->times) < least_run_seconds && peak->times < (1u << 20)) peak->times *= 2;
     peak->amount = amount * as_double(peak->times);
@@ -223,7 +223,7 @@ void DevicePeaks::measure(const MeasureOptions& options) {
     std::vector<Subject> one{subjects_[i]};
     if (!prepared(one, options, subjects_[i].prepare)) continue;
     subjects_[i].prepare = {};
-    // Runs of an earlier report count where they did as much.
+    // With the number in its name, runs of an earlier report count only if they did as much work.
     if (peaks_[i]->times > 0) subjects_[i].name += fmt::format(", {} times", peaks_[i]->times);
   }
   sundog::measure(subjects_, options);

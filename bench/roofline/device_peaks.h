@@ -1,4 +1,4 @@
-// A device's measured limits: bytes and operations a second, and the time of a launch.
+// Measures a device's limits: bytes and operations a second, and the time of a launch.
 #pragma once
 #include <functional>
 #include <memory>
@@ -11,28 +11,28 @@
 
 namespace sundog {
 
-/// A kernel of kernels/entry/peaks.cl at one width of vectors.
+/// A kernel of kernels/entry/peaks.cl at one vector width.
 struct Peak {
   std::string what;       // "read memory", "copy memory", "read cache", "float", ..., "launch"
   std::string unit;       // "GB/s", "Gop/s" or "us"
   unsigned width = 1;     // lanes of a vector
-  unsigned chains = 0;    // computations that do not wait for each other, of a work-item; 0: none
-  double amount = 0;      // bytes or operations of a run; set before its first run counts
-  std::size_t times = 0;  // launches or rounds of a run, as many as take long enough
+  unsigned chains = 0;    // independent computations of a work-item; 0: none
+  double amount = 0;      // bytes, operations or launches of a run; set before its first run counts
+  std::size_t times = 0;  // launches or rounds of a run, enough to be measurable
 
   bool is_rate() const { return unit != "us"; }
 };
 
 class DevicePeaks {
  public:
-  /// `megabytes`: of the buffers that are larger than a cache.
+  /// `megabytes`: size of the buffers, which should exceed every cache.
   DevicePeaks(DeviceInfo device, unsigned megabytes);
 
-  /// The result of every run is compared with what the host knows it must be.
+  /// Compares every run's result with the host's.
   void measure(const MeasureOptions& options);
   void add_to(Report& report) const;
 
-  /// The greatest median of those with that name, over widths and chains; nothing: none has been measured.
+  /// The greatest median of the peaks named `what`, over widths and chains; nothing if none was measured.
   std::optional<Spread> best(const std::string& what) const;
 
  private:
@@ -50,7 +50,7 @@ class DevicePeaks {
   unsigned megabytes_;
   std::shared_ptr<Opened> opened_;
   std::vector<std::shared_ptr<Peak>> peaks_;
-  std::vector<Subject> subjects_;  // as peaks_
+  std::vector<Subject> subjects_;  // one for each of peaks_
 };
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Counts the plain tracer's visits, at the cost in operations and bytes that each has in the device's tracer
+// Counts the plain tracer's visits and charges each the operations and bytes of the device's tracer
 // (kernels/lib/trace/nodes.cl and triangles.cl).
 #include "bench/roofline/ray_work.h"
 
@@ -37,7 +37,7 @@ Cost instance_cost(const Instance& instance, bool) {
   return {transform_operations + (mesh ? start_operations : 0), sizeof(Instance)};
 }
 
-/// Adds the work of all visits of a table; their number.
+/// Adds the work of all visits of a table and returns their number.
 template <class Entry>
 double add_visits(RayWork& work, const std::vector<u32>& visits, const SharedTable<Entry>& table,
                   Cost (*cost_of)(const Entry&, bool), bool compact) {

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr double micro = 1e-6, milli = 1e-3;
 
-/// The number in a file of sysfs; below 0: it cannot be read.
+/// The number in a file of sysfs; below 0 if it cannot be read.
 double read_number(const fs::path& file) {
   std::ifstream in(file);
   double value = -1;
@@ -69,7 +69,7 @@ const Nvml& nvml() {
   return loaded;
 }
 
-/// By the identity that OpenCL tells, or as the only one.
+/// Finds the device by the identity that OpenCL reports, or as the only one; null if neither works.
 Nvml::Handle nvml_device(const DeviceInfo& device) {
   Nvml::Handle handle = nullptr, second = nullptr;
   const std::string& id = device.identity;
@@ -115,14 +115,14 @@ std::string EnergyMeter::add_processors(const std::string& system) {
     else
       counters_.push_back({name, [file] { return micro * read_number(file); }, wraps_at});
   };
-  // intel-rapl:0 is a package, on AMD's processors too; intel-rapl:0:0 a part of it.
+  // intel-rapl:0 is a package, also on AMD processors; intel-rapl:0:0 is a part of it.
   for (const fs::path& zone : entries(fs::path(system) / "class/powercap"))
     if (const std::string name = zone.filename().string();
         name.starts_with("intel-rapl:") && std::ranges::count(name, ':') == 1)
       add("RAPL " + read_line(zone / "name"), zone / "energy_uj",
           micro * std::max(0.0, read_number(zone / "max_energy_range_uj")));
   const auto is_package = [](const Counter& counter) { return counter.name.starts_with("RAPL package"); };
-  // A "psys" zone has the packages in it.
+  // A "psys" zone includes the packages.
   if (std::ranges::any_of(counters_, is_package))
     std::erase_if(counters_, [&](const Counter& counter) {
       return counter.name.starts_with("RAPL ") && !is_package(counter);

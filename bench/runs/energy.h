@@ -1,4 +1,4 @@
-// Joules that devices have used, where something here counts them.
+// Measures the joules that devices use, if the machine has counters for them.
 #pragma once
 #include <functional>
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace sundog {
 
-/// Processors by RAPL (powercap) or a hwmon driver's energy counters, NVIDIA's GPUs by NVML, which is loaded
-/// when it is there.
+/// Reads processors' energy from RAPL (powercap) or a hwmon driver, NVIDIA GPUs' from NVML, which is loaded
+/// at run time if present.
 class EnergyMeter {
  public:
   /// Measures each GPU, and all processors together if a device is one. `system`: "/sys", or a copy of its
   /// files.
   explicit EnergyMeter(std::span<const DeviceInfo> devices, const std::string& system = "/sys");
 
-  /// Since it was made; below 0: nothing counts them for one of the devices.
+  /// Joules since construction; below 0 if a device has no counter.
   double joules();
-  /// MHz at which the first GPU runs; 0: not known.
+  /// The first GPU's clock in MHz; 0: unknown.
   double clock() const { return clock_ ? clock_() : 0; }
-  /// "RAPL, package-0, package-1": what counts; or why nothing does.
+  /// "RAPL, package-0, package-1": the counters, or why there are none.
   const std::string& source() const { return source_; }
 
  private:

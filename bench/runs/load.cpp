@@ -1,4 +1,4 @@
-// Reads /proc/stat and cpufreq, and charges each run with what other processes used.
+// Reads /proc/stat and cpufreq, and finds the cores that other processes used during a run.
 #include "bench/runs/load.h"
 
 #include <unistd.h>
@@ -14,7 +14,7 @@ namespace sundog {
 namespace {
 
 constexpr double least_window = 0.5;  // seconds
-constexpr double tick = 0.01;         // of each core's count
+constexpr double tick = 0.01;         // precision of each core's count, in seconds
 constexpr double disturbing = 0.05;   // of the machine's cores
 
 }  // namespace

@@ -12,31 +12,32 @@ namespace sundog {
 
 class EnergyMeter;
 
-/// Seconds since some moment, and processor seconds until then.
+/// Clock readings: wall-clock seconds since an arbitrary moment, and processor seconds so far.
 struct ProcessorTimes {
   double wall = 0, own = 0;
   double all = -1;   // of all processes; below 0: unknown
   double clock = 0;  // MHz of the fastest core now; 0: unknown
 };
 
-/// By cpufreq, which a virtual machine has not; 0: unknown.
+/// The fastest core's MHz from cpufreq, which virtual machines lack; 0: unknown.
 double core_clock(const std::string& folder = "/sys/devices/system/cpu");
 
-/// By /proc/stat, which counts in hundredths of a second. Stolen time counts: the machine's host took it.
+/// From /proc/stat, which counts in hundredths of a second. Stolen time counts as used: the machine's host
+/// took it.
 ProcessorTimes processor_times();
 
 class LoadMeter {
  public:
-  /// `clock`: processor_times(), or made-up times of a test.
+  /// `clock`: processor_times(), or a test's made-up times.
   explicit LoadMeter(unsigned cores, std::function<ProcessorTimes()> clock = processor_times);
 
   void begin();
-  /// The run since begin(): its cores, and the cores that others had. A short run is judged together with the
-  /// half second before its end, because the system's clock is coarse.
+  /// The run since begin(), with the cores that it and other processes used. Others' cores are taken over at
+  /// least the last half second, because the system's clock is coarse.
   Run end();
-  /// Runs have joules from now on, and the clock of the GPU.
+  /// From now on, runs have joules and the GPU's clock.
   void count(std::shared_ptr<EnergyMeter> energy) { energy_ = std::move(energy); }
-  /// From how many cores of others on a run is disturbed.
+  /// A run is disturbed if other processes use more cores than this.
   double limit() const;
 
  private:

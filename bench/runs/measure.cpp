@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* busy = "busy";
 constexpr const char* slow_clock = "slow clock";
-constexpr double slower = 0.95;  // clock that matters, over another run's
+constexpr double slower = 0.95;  // a run's clock over another's, for it to count as slow
 constexpr std::size_t most_runs = 1000;
-// A run that had so much less cores, and took so much longer, than another of its way was disturbed.
+// A run that had fewer cores and took longer than another of its way by these factors was disturbed.
 constexpr double fewer_cores = 0.85, longer = 1.1;
 
 bool is_noise(const std::string& left_out) { return left_out == busy || left_out == slow_clock; }
@@ -28,7 +28,7 @@ std::size_t counted(const MeasuredWay& way) {
       std::ranges::count_if(way.runs, [](const Run& run) { return run.left_out.empty(); }));
 }
 
-/// Throws DeviceError where the row is a problem.
+/// Throws DeviceError if the row has a problem.
 void enter(const MeasureOptions& options, const std::string& row) {
   const std::string why = options.enter_row ? options.enter_row(row) : "";
   if (!why.empty()) throw DeviceError(why);
@@ -77,7 +77,7 @@ class Measurement {
     }
   }
 
-  /// Where quiet runs are too few the least disturbed count, too.
+  /// If too few runs were quiet, the least disturbed count too.
   void settle() {
     const auto repeat = static_cast<std::size_t>(options_.repeat);
     for (Subject& subject : subjects_) {
@@ -97,7 +97,7 @@ class Measurement {
   }
 
  private:
-  /// Whether it has what was asked for, or as many runs again were disturbed.
+  /// Whether the way has the requested runs, or as many again were disturbed.
   bool is_finished(const Subject& subject) const {
     const std::size_t repeat = static_cast<std::size_t>(options_.repeat), count = counted(subject);
     if (subject.once || !subject.problem.empty() || options_.repeat == 0) return true;
@@ -111,7 +111,7 @@ class Measurement {
 
   bool is_over() const { return options_.budget > 0 && clock_.seconds() > options_.budget; }
 
-  /// How well its median is known so far, where that matters.
+  /// The precision of the way's median so far, if one was requested.
   std::string width_text(const Subject& subject) const {
     if (options_.precision <= 0 || counted(subject) < fewest_for_interval) return "";
     return fmt::format(", known to {:.1f} %", 100 * half_width(subject.seconds()));

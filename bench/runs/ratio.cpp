@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t fewest = 6;        // of which an interval has 95 %
+constexpr std::size_t fewest = 6;        // for an interval of 95 %
 constexpr std::size_t resamples = 2000;  // of a bootstrap
 
 std::vector<double> medians(const Calls& calls) {
@@ -29,7 +29,7 @@ std::vector<double> all_runs(const Calls& calls) {
   return all;
 }
 
-/// The range of all runs, widened.
+/// The range of all runs, widened by high / low at both ends.
 Interval wide_range(const std::vector<double>& runs) {
   const auto [low, high] = std::ranges::minmax(runs);
   return {low * low / high, high * high / low};
@@ -64,7 +64,7 @@ Ratio ratio_of_calls(const Calls& base, const Calls& other) {
     return {value, other_range.low / range.high, other_range.high / range.low,
             std::min(of_base.size(), of_other.size()) >= fewest};
   }
-  std::mt19937 random;  // the same interval for the same runs
+  std::mt19937 random;  // fixed seed: equal runs give equal intervals
   std::vector<double> ratios;
   for (std::size_t i = 0; i < resamples; ++i)
     ratios.push_back(resampled_median(b, random) / resampled_median(a, random));

@@ -15,8 +15,7 @@ struct Search {
   TuneResult result;
   std::map<TunePoint, std::optional<double>> known;
 
-  /// Takes the point when it is faster. A point that is not affordable is left out; a cheaper one may still
-  /// be.
+  /// Takes the point if it is faster. Leaves out a point that is not affordable; a cheaper one may still be.
   void offer(const TunePoint& point) {
     if (known.count(point)) return;
     if (!problem.affordable(point)) {
@@ -34,7 +33,8 @@ struct Search {
     }
   }
 
-  /// Every second value of an axis from the best point on, both ways, or with `fine` its neighbours.
+  /// Offers every second value of an axis on both sides of the best point, and both ends; with `fine`, its
+  /// neighbours.
   void sweep(std::size_t axis, bool fine) {
     const TunePoint from = result.best;
     const std::size_t here = from[axis], count = problem.axes[axis];
@@ -60,7 +60,7 @@ TuneResult search_tuning(const TuneProblem& problem) {
   result.best = problem.start;
   const std::optional<double> usual = search.known[problem.start] = problem.measure(problem.start);
   result.tried = 1;
-  if (!usual) {  // the default itself does not work: there is nothing to compare with
+  if (!usual) {  // the default does not work, so nothing can be compared with it
     result.rejected = 1;
     return result;
   }

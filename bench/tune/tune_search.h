@@ -1,5 +1,5 @@
-// The search for the fastest point of a grid whose axes are ordered: coarse to fine, one axis at a time,
-// within a time budget. Knows no device, so it is tested on made-up timings.
+// Searches a grid with ordered axes for its fastest point: coarse to fine, one axis at a time, within a time
+// budget. It needs no device, so tests use made-up timings.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -8,13 +8,13 @@
 
 namespace sundog {
 
-/// Two points run again in pairs.
+/// The default and the best point, run again in pairs.
 struct TunePairs {
   double usual = 0, best = 0;  // median seconds
   int wins = 0, pairs = 0;     // of `best`
 
-  /// `best` takes 2 % less time and won by more than chance: 15 of 20 pairs, as only one fair coin in fifty
-  /// does.
+  /// Whether `best` takes 2 % less time and won more pairs than by chance: 15 of 20, which a fair coin
+  /// reaches once in fifty times.
   bool confirm() const;
 };
 
@@ -22,18 +22,18 @@ struct TunePairs {
 using TunePoint = std::vector<std::size_t>;
 
 struct TuneProblem {
-  std::vector<std::size_t> axes;  // how many values each has
+  std::vector<std::size_t> axes;  // number of values of each axis
   TunePoint start;                // the default
-  /// Seconds of a point; nothing: it is refused, or its result is wrong.
+  /// Seconds of a point; nothing: the device refuses it, or its result is wrong.
   std::function<std::optional<double>(const TunePoint&)> measure;
-  /// The default and what won, measured again in turn.
+  /// Measures the default and the winner again, in turn.
   std::function<TunePairs(const TunePoint& usual, const TunePoint& best)> measure_again;
   /// Whether there is time to measure a point, and to measure the winner again after it.
   std::function<bool(const TunePoint&)> affordable;
 };
 
 struct TuneResult {
-  TunePoint best;  // the default, when pairs confirm nothing else
+  TunePoint best;  // the default, unless pairs confirm another
   double default_seconds = 0, best_seconds = 0;
   std::size_t tried = 0, rejected = 0;
   std::size_t left_out = 0;  // not affordable

@@ -28,16 +28,16 @@ using enum WorkGroup::Kind;
 constexpr int runs = 3, runs_at_the_end = 20;
 
 constexpr double budget_of_surfaces = 0.15;  // of the whole
-constexpr double frame_part = 1.0 / 200;     // of the whole, that a frame may take: a candidate takes eight
+constexpr double frame_part = 1.0 / 200;     // of the whole, for one frame: a candidate takes eight
 
-/// The values to choose from, neighbours beside each other; index 0 of each is the default.
+/// The values to choose from, in order; index 0 of each axis is the default.
 struct Choices {
   std::string kernel = frame_kernel;
   std::vector<WorkGroup> groups{{}};
   std::vector<std::pair<unsigned, unsigned>> shapes{{0, 0}};
   std::vector<unsigned> packets{0};
   std::vector<double> launches{0}, tiles{0};
-  std::vector<std::vector<std::string>> options;  // an axis for each name of an option
+  std::vector<std::vector<std::string>> options;  // one axis for each option
 
   std::vector<std::size_t> sizes() const {
     std::vector<std::size_t> all{groups.size(), shapes.size(), packets.size(), launches.size(), tiles.size()};
@@ -54,7 +54,7 @@ struct Choices {
         tuning.options += (tuning.options.empty() ? "" : " ") + option;
     return tuning;
   }
-  /// The part of a point that makes another program.
+  /// The part of a point that needs a program of its own.
   static TunePoint program_of(const TunePoint& point) {
     TunePoint program{point[1], point[2]};
     program.insert(program.end(), point.begin() + first_option, point.end());
@@ -74,7 +74,7 @@ Choices choices_of_frame(const DeviceInfo& device, const CompiledScene& scene) {
   const std::size_t limit = group_limit(device, scene);
   for (std::size_t x = 1; x <= limit; x *= 2) choices.groups.push_back({fixed, x, 1});
   for (std::size_t edge = 2; edge * edge <= limit; edge *= 2) choices.groups.push_back({fixed, edge, edge});
-  if (usual.tile_w * usual.tile_h > 1) {  // explicit vectors; on other devices a lane is a pixel
+  if (usual.tile_w * usual.tile_h > 1) {  // explicit vectors; on other devices a work-item is a pixel
     for (const std::pair<unsigned, unsigned>& shape :
          {std::pair(8u, 2u), {16u, 1u}, {2u, 8u}, {4u, 2u}, {2u, 2u}})
       choices.shapes.push_back(shape);
@@ -90,7 +90,7 @@ Choices choices_of_frame(const DeviceInfo& device, const CompiledScene& scene) {
   return choices;
 }
 
-// The rest of what the frame is tuned by is for frames: the AOVs take one launch a tile, a ray a pixel.
+// The frame's other settings do not apply: AOVs take one launch for each tile and one ray for each pixel.
 Choices choices_of_surfaces(const DeviceInfo& device, const CompiledScene& scene) {
   Choices choices;
   choices.kernel = surfaces_kernel;
@@ -99,7 +99,7 @@ Choices choices_of_surfaces(const DeviceInfo& device, const CompiledScene& scene
   return choices;
 }
 
-/// To the bit.
+/// Whether both films have the same bits.
 bool are_same(const Film& a, const Film& b) {
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
@@ -107,7 +107,7 @@ bool are_same(const Film& a, const Film& b) {
   return same(a.sums, b.sums) && same(a.weights, b.weights) && same(a.aovs, b.aovs);
 }
 
-/// Frames with one tuning; nothing where the device refuses it.
+/// Renders frames with one tuning. The constructor throws if the device refuses it.
 class Candidate {
  public:
   Candidate(const DeviceInfo& device, const CompiledScene& scene, const Choices& choices,
@@ -122,15 +122,15 @@ class Candidate {
     start_seconds_ = clock.seconds();
   }
   const Film& film() const { return frames_->film(); }
-  /// Adds what its start took.
+  /// Records the cost of its start.
   void add_to(TuneCosts& costs) const {
     double& most = frames_->times().cached ? costs.open : costs.compile;
     most = std::max(most, start_seconds_);
   }
   /// Sets the film that each frame must equal.
   void expect(const Film& film) { expected_ = &film; }
-  /// Seconds: the frame's, or of the kernel that it is about, which takes too little to be seen in the frame.
-  /// Throws DeviceError for another picture than is expected.
+  /// Seconds of the frame, or of the AOVs' kernel, which is too short to show in the frame's time. Throws
+  /// DeviceError if the picture is not the expected one.
   double run() {
     const double seconds = frames_->run();
     if (expected_ && !are_same(film(), *expected_))
@@ -151,7 +151,7 @@ class Candidate {
   double start_seconds_ = 0;
 };
 
-/// The two in turn, so that what else the machine does falls on both; each is first as often as the other.
+/// Runs the two in turn, so that other load on the machine affects both; they alternate in going first.
 TunePairs duel(Candidate& usual, Candidate& best, int count) {
   std::vector<double> of_usual, of_best;
   TunePairs pairs{0, 0, 0, count};
@@ -166,7 +166,7 @@ TunePairs duel(Candidate& usual, Candidate& best, int count) {
   return pairs;
 }
 
-/// The time that remains for a kernel, and the part of it that measuring a point will take.
+/// Tracks the time that remains for a kernel, and estimates whether it suffices for another point.
 class TimeLeft {
  public:
   TimeLeft(double budget, TuneCosts& costs) : budget_(budget), costs_(costs) {}
@@ -189,7 +189,7 @@ class TimeLeft {
  private:
   double left() const { return budget_ - clock_.seconds(); }
   double open() const { return costs_.open > 0 ? costs_.open : 0.5; }
-  /// Where everything so far came from the cache, a compilation is taken to be ten times as slow.
+  /// If everything so far came from the cache, assumes that a compilation is ten times as slow.
   double compile() const { return costs_.compile > 0 ? costs_.compile : std::max(3.0, 10 * open()); }
 
   double budget_, frame_ = 0;
@@ -207,7 +207,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
   problem.start.assign(choices.sizes().size(), 0);
   Candidate usual(device, scene, choices, problem.start);
   time.add(usual, Choices::program_of(problem.start));
-  // Only the built kernels tell how large their groups may be.
+  // The limit of work-groups is known only after the kernels are built.
   std::erase_if(choices.groups, [most = usual.greatest_group()](const WorkGroup& group) {
     return most > 0 && group.kind == fixed && group.x * group.y > most;
   });
@@ -231,7 +231,7 @@ TuneOutcome tune_kernel(const DeviceInfo& device, const CompiledScene& scene, co
       time.add(candidate, Choices::program_of(point));
       if (!are_same(candidate.film(), expected)) return reject("another picture than with the defaults");
       candidate.expect(expected);
-      // The default beside it: a machine that has become slower meanwhile slows both.
+      // Runs the default in turn, so that a machine that has become slower slows both.
       const TunePairs beside = duel(usual, candidate, runs);
       return default_seconds * beside.best / beside.usual;
     } catch (const DeviceError& error) {
@@ -278,7 +278,7 @@ bool tune_device(const DeviceInfo& device, const CompiledScene& scene, const std
   tune(choices_of_frame(device, smaller), (1 - budget_of_surfaces) * budget - clock.seconds());
   const double left = budget - clock.seconds();
   if (left < std::max(costs.compile, costs.open)) return false;
-  smaller.info.samples = 1;  // the AOVs are made once, however many samples the image has
+  smaller.info.samples = 1;  // AOVs are rendered once, whatever the number of samples
   tune(choices_of_surfaces(device, smaller), left);
   return true;
 }

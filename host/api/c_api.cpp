@@ -1,4 +1,4 @@
-// The C interface over the C++ one: exceptions become a status and details in the caller's error handle.
+// Implements the C interface with the C++ one: turns exceptions into a status and details in an error handle.
 #include "api/impl.h"
 // Public headers must follow the host's (api/core.h).
 #include <sundog/session.h>
@@ -92,7 +92,7 @@ sundog_status made(sundog_error* error, Handle** handle, const char* name, const
   });
 }
 
-/// Indices have 32 bits. Throws Error (usage) for longer arrays, such as a negative number passed as size_t.
+/// Indices have 32 bits. Throws Error (usage) for larger counts, e.g. a negative number converted to size_t.
 void check_count(std::size_t length) {
   if (length > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::usage,
@@ -117,7 +117,7 @@ MeshView mesh_of(const float* positions, size_t vertex_count, const uint32_t* tr
           .uvs = groups<2>(uvs, vertex_count)};
 }
 
-/// Calls release() when the last holder lets go, once the mesh has been handed over.
+/// Calls release() when the last holder lets go, provided that the mesh was handed over.
 struct Owner {
   void (*release)(void* user);
   void* user;
@@ -130,7 +130,7 @@ struct Owner {
     if (!handed_over || !release) return;
     try {
       release(user);
-    } catch (...) {  // nobody is left to report it to
+    } catch (...) {  // no caller is left to report it to
     }
   }
 };
@@ -240,6 +240,8 @@ const char* sundog_devices_problem(const sundog_devices* devices, size_t index) 
 }
 
 void sundog_devices_free(sundog_devices* devices) noexcept { delete devices; }
+
+void sundog_wait_for_threads() noexcept { sundog::wait_for_threads(); }
 
 sundog_status sundog_render(const sundog_scene* scene, const sundog_options* options, sundog_film** film,
                             sundog_error* error) noexcept {

@@ -1,6 +1,6 @@
-// Aliases for the host's types whose names the public interface has too (core::Image and so on), since Image
-// alone means the public one (include/sundog). Each source in this folder includes this before any public
-// header, because the host's headers must not see those.
+// Includes the host's headers and declares core:: aliases for the types that share a name with a public type
+// (core::Image and so on); plain Image is the public type (include/sundog). Each source in this folder
+// includes this before any public header, because the host's headers must not see the public ones.
 #pragma once
 #include <nlohmann/json.hpp>
 

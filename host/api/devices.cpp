@@ -1,4 +1,4 @@
-// Public Device values over the host's device list, and the threads that drivers keep.
+// Converts the host's device list to public Devices, and owns the threads that drivers keep.
 #include "api/impl.h"
 
 #include <unistd.h>
@@ -43,7 +43,7 @@ const std::shared_ptr<DriverThreads>& threads_of_process() {
   return threads;
 }
 
-/// The process that called first.
+/// The id of the process that called first.
 int process_of_threads() noexcept {
   static const int process = ::getpid();
   return process;

@@ -1,4 +1,4 @@
-// Public images: shared, immutable pixels of the host's images.
+// Implements the public Image: shares the immutable pixels of a host image.
 #include <algorithm>
 
 #include "api/impl.h"

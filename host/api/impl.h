@@ -9,7 +9,7 @@
 #include <cfenv>
 #include <mutex>
 
-/// Hides a nested class of a public one from programs.
+/// Hides a class nested in a public class from programs.
 #define SUNDOG_LOCAL __attribute__((visibility("hidden")))
 
 namespace sundog {
@@ -24,8 +24,8 @@ inline constexpr const char* no_file = "(scene)";
 /// Rethrows the current exception as an Error; exceptions of callbacks stay as they are.
 [[noreturn]] void throw_public();
 
-/// Usual rounding and no traps while it lives, for threads started meanwhile too: a program may have set
-/// others for its own arithmetic.
+/// Sets default rounding and no floating-point traps during its lifetime; threads started meanwhile inherit
+/// them. The calling program may use other settings, which are restored.
 class UsualArithmetic {
  public:
   UsualArithmetic() noexcept {
@@ -59,13 +59,13 @@ struct SUNDOG_LOCAL Device::Handle {
   DeviceInfo info;
 };
 
-/// Call before using threads of the library or of a driver. Throws UsageError in a child of fork() whose
-/// parent used some: the child lacks these threads and would wait forever for their locks.
+/// Call before using threads of the library or of a driver. Throws UsageError in a child of fork() if its
+/// parent used such threads: the child lacks them and would wait forever for their locks.
 void enter_threads();
-/// A driver's compiler creates static objects as it runs; exit destroys them before threads_of_process().
-/// This waits for a thread left in a driver before that happens.
+/// Makes exit() wait first for the threads still in drivers: a driver's compiler creates static objects as it
+/// runs, and exit() destroys these before threads_of_process().
 void wait_for_threads_at_exit() noexcept;
-/// Whether this process is such a child. Call only after threads have been used.
+/// Whether this process is a child of fork() as above. Call only after threads have been used.
 bool is_forked() noexcept;
 
 struct SUNDOG_LOCAL Film::Impl {

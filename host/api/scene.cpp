@@ -1,4 +1,4 @@
-// The public Scene: a JSON document, with meshes from memory beside it.
+// Implements the public Scene: a JSON document and meshes from memory.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ Scene::Impl::Impl(const Impl& other)
 }
 
 void Scene::Impl::forget_description() {
-  std::shared_ptr<const SceneDescription> old;  // freed outside the lock: a mesh's owner runs any code
+  std::shared_ptr<const SceneDescription> old;  // freed outside the lock: a mesh's owner may run any code
   const std::lock_guard lock(mutex_);
   old.swap(described_);
 }

@@ -30,7 +30,7 @@ void append(json& document, const char* list, json value) {
   member(document, list, json::array()).push_back(std::move(value));
 }
 
-/// Adds an object. One without a material gets "default", which is added to the document.
+/// Adds an object. Without a material it gets "default", which is added to the document if missing.
 void place(json& document, json object, const Placement& placement) {
   json& objects = member(document, "objects", json::array());
   const std::string material = placement.material.empty() ? "default" : placement.material;
@@ -78,7 +78,7 @@ json material_json(const Material& material) {
   throw Error(ErrorKind::usage, "mesh \"" + name + "\": " + why);
 }
 
-/// Shares numbers that have an owner; copies those without one.
+/// Shares the numbers if they have an owner, else copies them.
 template <class To, class From, std::size_t count>
 sundog::MeshArray<To> held(std::span<const std::array<From, count>> from, std::shared_ptr<const void> owner) {
   static_assert(sizeof(To) == sizeof from[0] && alignof(To) == alignof(From));

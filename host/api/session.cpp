@@ -1,4 +1,4 @@
-// The public Session over the host's RenderSession.
+// Implements the public Session with the host's RenderSession.
 #include "api/impl.h"
 
 #include <sundog/session.h>
@@ -11,7 +11,7 @@ inline namespace v0 {
 
 namespace {
 
-/// Sessions that the process has not closed. Never destroyed, for a thread may close one during the exit.
+/// The open sessions. Never destroyed, because a thread may close a session during exit().
 struct OpenSessions {
   std::mutex mutex;
   std::set<RenderSession*> all;
@@ -21,7 +21,7 @@ OpenSessions& open_sessions() {
   return *sessions;
 }
 
-/// Their threads end before what they use is destroyed.
+/// Closes all sessions, so that their threads end before the static objects that they use are destroyed.
 void close_sessions() {
   if (is_forked()) return;
   {
@@ -37,7 +37,7 @@ struct SUNDOG_LOCAL Session::Impl {
   std::unique_ptr<RenderSession> session;
 
   explicit Impl(const std::vector<DeviceInfo>& devices) : session(std::make_unique<RenderSession>(devices)) {
-    // The drivers are loaded by now, so their own exit handlers run later.
+    // The drivers are loaded by now, so exit() runs their handlers after this one.
     [[maybe_unused]] static const int registered = std::atexit(close_sessions);
     const std::lock_guard lock(open_sessions().mutex);
     open_sessions().all.insert(session.get());

@@ -36,7 +36,7 @@ All commands: {}.
 CommandWords words_of(const CLI::App& app, const std::string& before = "") {
   CommandWords words{app.get_name(), before + app.get_name(), {}, {}, app.get_group().empty()};
   for (const CLI::Option* option : app.get_options()) {
-    const std::string type = option->get_type_name();  // with what it is checked for behind a colon
+    const std::string type = option->get_type_name();  // ends with ":CHECK" if the value is checked
     OptionWords one{{}, option->get_items_expected_min() > 0, type.substr(0, type.find(':'))};
     for (const std::string& name : option->get_lnames()) one.names.push_back("--" + name);
     for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
@@ -47,7 +47,7 @@ CommandWords words_of(const CLI::App& app, const std::string& before = "") {
   return words;
 }
 
-/// Shows a text. All processes of a job have the same command line: rank 0 alone complains of it.
+/// Shows a text. All processes of a job have the same command line, so only rank 0 reports errors.
 Command text_command(const std::string& text, int status = exit_done) {
   const auto show = [text, status] {
     if (status == exit_done || job_rank() <= 0) fmt::print(status == exit_done ? stdout : stderr, "{}", text);
@@ -56,7 +56,7 @@ Command text_command(const std::string& text, int status = exit_done) {
   return {.run = show, .in_first_thread = true};
 }
 
-/// Shows what a report of a bug should name. The first lines stand even if a driver crashes.
+/// Shows the facts that a bug report should state. Flushes the first lines in case a driver crashes.
 int show_version() {
   fmt::print("sundog " SUNDOG_VERSION "\nrevision {}\n", build_revision());
   std::fflush(stdout);

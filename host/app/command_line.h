@@ -1,4 +1,4 @@
-// The command line of `sundog`, read into one of its commands.
+// Parses sundog's command line into one of its commands.
 #pragma once
 #include "app/options/command.h"
 

@@ -1,4 +1,5 @@
-// sundog's command line: the command does its work; what goes wrong becomes one line and an exit status here.
+// The program `sundog`: parses the command line, runs the command, and turns an error into one line on stderr
+// and an exit status.
 #include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -21,14 +22,13 @@ namespace sundog {
 namespace {
 
 int run_command_line(int argc, char** argv) {
-  // All processes of a job have the same command line: its errors are reported once.
+  // All processes of a job have the same command line, so only rank 0 reports its errors.
   Command command;
   const auto parse = [&] {
     command = parse_command_line(argc, argv);
     return exit_done;
   };
-  // mpirun ends a job at the first rank that fails, and may lose what another prints then: rank 0 alone
-  // fails.
+  // mpirun ends a job at the first rank that fails, and may lose what others print, so only rank 0 fails.
   if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
   if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
   const int status =
@@ -39,9 +39,8 @@ int run_command_line(int argc, char** argv) {
 
 volatile std::sig_atomic_t final_status = 0;
 
-/// Drivers' exit handlers wait for threads of theirs, which may compile or draw for minutes, or for ever.
-/// Everything is written by then: the process ends at the latest after a few seconds, an interrupted one
-/// soon.
+/// Ends the process after at most 5 s (0.1 s if interrupted): drivers' exit handlers wait for their threads,
+/// which may compile or render for minutes or forever. Everything is written by then.
 void bound_the_end(int status) {
   const itimerval patience{{}, status == exit_interrupted ? timeval{0, 100'000} : timeval{5, 0}};
   final_status = status;
@@ -50,8 +49,8 @@ void bound_the_end(int status) {
   ::setitimer(ITIMER_REAL, &patience, nullptr);
 }
 
-/// Ends the process while drivers are at work, which would find their globals destroyed by a return. PoCL
-/// may miss the folder that it writes to: what it says of that, and that it would abort, is of no use.
+/// Ends the process by _exit() while drivers are at work, because a return would destroy their globals. PoCL
+/// may miss the folder that it writes to, so its messages and an abort are suppressed.
 [[noreturn]] void end_beside_drivers(int status) {
   final_status = status;
   std::fflush(nullptr);
@@ -67,7 +66,7 @@ void bound_the_end(int status) {
 
 int main(int argc, char** argv) {
   sundog::open_standard_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // what a limit on files refuses to write is an error like a full disk's
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit becomes an error, like a full disk
   sundog::keep_freed_memory();
   const int status = sundog::exit_status_of([&] { return sundog::run_command_line(argc, argv); });
   if (sundog::driver_threads()->count() > 0) sundog::end_beside_drivers(status);

@@ -1,4 +1,4 @@
-// Implements command-line options over CLI11, whose header only this file and command_line.cpp include.
+// Implements command-line options with CLI11, whose header only this file and command_line.cpp include.
 #include "base/arguments.h"
 
 #include <CLI/CLI.hpp>

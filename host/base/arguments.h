@@ -1,5 +1,5 @@
-// Command-line options over CLI11, without its header, which takes seconds to compile in each file that
-// includes it. Functions have CLI11's names.
+// Wraps CLI11's command-line options, because its header takes seconds to compile in each file that includes
+// it. Functions have CLI11's names.
 #pragma once
 #include <functional>
 #include <memory>
@@ -19,7 +19,7 @@ class Option {
   Option* required();
   Option* hidden();                              // omitted from help
   Option* type_name(const std::string& name);    // the word for the value in help
-  Option* one_value_each();                      // repeatable, one value each time
+  Option* one_value_each();                      // may be repeated, with one value each time
   Option* range(double low, double high);        // inclusive
   Option* positive();                            // above 0
   Option* one_of(std::vector<std::string> all);  // allowed values
@@ -53,7 +53,7 @@ class Arguments {
   explicit Arguments(CLI::App* app);
   Option* keep(CLI::Option* option);
 
-  std::unique_ptr<CLI::App> root_;  // owner if this is a program; null for a subcommand
+  std::unique_ptr<CLI::App> root_;  // the parser, if this is a program; null for a subcommand
   CLI::App* app_;
   std::vector<std::unique_ptr<Arguments>> commands_;
   std::vector<std::unique_ptr<Option>> options_;

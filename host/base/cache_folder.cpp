@@ -1,4 +1,4 @@
-// Finds or makes the cache folder, and says why one cannot be trusted.
+// Finds or creates the cache folder, and explains why a folder cannot be trusted.
 #include "base/cache_folder.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Why a folder is not the user's own; empty if it is, or does not exist.
+/// Why a folder cannot be trusted to be the user's own; empty if it can, or does not exist.
 std::string refusal(const fs::path& folder) {
   struct stat found{};
   if (::stat(folder.c_str(), &found) != 0)

@@ -1,12 +1,13 @@
-// The cache folder. Kernels in it are executed and tunings are trusted, so it must belong to the user.
+// Checks and creates the cache folder, which must belong to the user, because sundog executes the kernels in
+// it and trusts its tunings.
 #pragma once
 #include <filesystem>
 #include <string>
 
 namespace sundog {
 
-/// Why `cache` (HostEnvironment::cache) is refused: it is not set, another user owns it or a folder in it,
-/// others may write there, or it cannot be inspected. Empty if it is usable.
+/// Why `cache` (HostEnvironment::cache) is refused: it is not set, it or one of its folders belongs to
+/// another user or is writable for others, or it cannot be inspected. Empty if it is usable.
 std::string cache_refusal(const std::filesystem::path& cache);
 
 /// The subfolder `name` of `cache`; empty if the cache is not set or refused.

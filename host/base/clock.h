@@ -1,4 +1,4 @@
-// Wall time.
+// Measures wall time.
 #pragma once
 #include <chrono>
 

@@ -1,4 +1,4 @@
-// Calls libdeflate; a stream that unpacks to another size gives nothing.
+// Packs and unpacks with libdeflate.
 #include "base/deflate.h"
 
 #include <libdeflate.h>

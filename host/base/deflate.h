@@ -9,7 +9,7 @@ namespace sundog {
 
 std::string deflated(std::string_view bytes);
 
-/// Unpacks `size` bytes; nothing if `packed` is damaged or holds another number of bytes.
+/// Unpacks `size` bytes; none if `packed` is damaged or unpacks to another size.
 std::optional<std::string> inflated(std::string_view packed, std::size_t size);
 
 }  // namespace sundog

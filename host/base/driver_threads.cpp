@@ -1,4 +1,4 @@
-// Joins adopted threads that have ended, and waits for the others within a limit.
+// Joins abandoned threads that have ended, and waits for the others within a limit.
 #include "base/driver_threads.h"
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Threads inside a driver's compiler or launch whose result is no longer needed. A driver cannot be
-// interrupted, so the owner of its devices adopts such threads and joins them last.
+// Keeps threads that are inside a driver's compiler or launch when their result is no longer needed. A driver
+// cannot be interrupted, so the owner of its devices takes over such threads and joins them last.
 #pragma once
 #include <chrono>
 #include <future>
@@ -28,7 +28,7 @@ DriverThread start_thread(F f) {
           std::move(ended)};
 }
 
-/// Adopts abandoned threads and joins them. Thread-safe.
+/// Takes over abandoned threads and joins them. Thread-safe.
 class DriverThreads {
  public:
   /// A thread still in a driver after `patience` counts as hung. The longest compilation seen took 40 s
@@ -40,7 +40,7 @@ class DriverThreads {
   DriverThreads& operator=(const DriverThreads&) = delete;
 
   void take(DriverThread thread);
-  /// Joins all threads, and those that they leave here meanwhile; detaches those that hang.
+  /// Joins all threads, including any that arrive meanwhile; detaches threads that hang.
   void wait();
   /// Number of threads still running.
   unsigned count();

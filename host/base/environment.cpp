@@ -1,4 +1,4 @@
-// Reads the environment (environment.h). The only source below `app` that does.
+// Reads the process's environment variables; no other source below `app` does.
 #include "base/environment.h"
 
 #include <unistd.h>
@@ -28,7 +28,7 @@ double seconds_of(const char* name, double otherwise) {
 }
 
 std::filesystem::path cache_directory() {
-  // The XDG specification wants a relative path ignored.
+  // The XDG specification says to ignore relative paths.
   if (const std::filesystem::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "sundog";
   if (const std::filesystem::path home = variable("HOME"); home.is_absolute())
     return home / ".cache" / "sundog";
@@ -39,12 +39,12 @@ constexpr const char* usual_folders = "/usr/local/bin:/usr/bin:/bin";
 
 std::map<std::string, std::string> driver_variables() {
   std::map<std::string, std::string> result = {
-      // PoCL compiles a kernel for each local size, again for grids below 65536, and once more to return its
-      // binary. A single version was as fast in every kernel measured.
+      // PoCL specialises kernels for each local size and for grids below 65536, and compiles once more to
+      // return the binary. A single version was as fast for every kernel measured.
       {"POCL_WORK_GROUP_SPECIALIZATION", "0"},
       // Intel's driver compiles each kernel a second time, for 16 work-items at once, which takes nine tenths
-      // of the compile time. Without it, pictures keep their bits; the wide tracer is as fast, the compact
-      // one slower.
+      // of the compile time. Without it, pictures are equal to the bit and the wide tracer is as fast; the
+      // compact tracer is slower.
       {"CL_CONFIG_USE_VECTORIZER", "False"},
       {"PATH", usual_folders},
   };

@@ -1,5 +1,5 @@
-// Settings that a program reads from its environment and passes to the layers below, and a way to start
-// processes. The layers below read no variables themselves.
+// HostEnvironment: the settings that a program reads from its environment and passes to the layers below,
+// which read no variables themselves, and a function that starts processes.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -13,14 +13,14 @@ namespace sundog {
 
 class Faults;
 
-constexpr int nowhere = -1;  // /dev/null
+constexpr int nowhere = -1;  // stands for /dev/null
 
 /// A descriptor of this process (or nowhere) and its number in the new process.
 struct HandedDown {
   int here, there;
 };
 
-/// How a process ended: by a signal above 0, or with a status.
+/// How a process ended: by `signal` if above 0, else with `status`.
 struct ProgramEnd {
   int status = 0, signal = 0;
 };
@@ -29,7 +29,7 @@ struct ProgramEnd {
 class StartedProgram {
  public:
   virtual ~StartedProgram() = default;
-  /// Nothing while it runs.
+  /// How the process ended; none while it runs.
   virtual std::optional<ProgramEnd> ended() = 0;
   /// Kills the process; does not wait for its end.
   virtual void end() = 0;
@@ -39,7 +39,7 @@ class StartedProgram {
 using StartProgram = std::function<std::unique_ptr<StartedProgram>(std::vector<std::string> arguments,
                                                                    std::vector<HandedDown> descriptors)>;
 
-/// Waits for the end, for at most `seconds`.
+/// Waits for the process to end, for at most `seconds`; none if it still runs.
 std::optional<ProgramEnd> wait_for_end(StartedProgram& program, double seconds);
 
 struct HostEnvironment {
@@ -49,12 +49,12 @@ struct HostEnvironment {
   std::string dump_folder;            // folder for each program's final source; empty: none
   std::string build_options;          // extra options for drivers' compilers
   std::string build_log;              // folder for compilers' logs; empty: none
-  double launch_limit = 0;            // seconds after which a launch hangs; 0: estimated from its work
+  double launch_limit = 0;            // seconds after which a launch counts as hung; 0: estimated
   double silence_limit = 10;          // seconds after which a silent process is abandoned
   std::shared_ptr<Faults> faults{};   // injected failures; null: none
   StartProgram start_program{};       // empty: everything runs in this process
   std::function<void()> step_back{};  // lowers the priority of a slow device's thread
-  /// Drivers' variables: the user's, and sundog's defaults for those not set.
+  /// Drivers' variables: the user's values, and sundog's defaults for variables that are not set.
   std::map<std::string, std::string> drivers{};
 
   /// A driver's variable; empty if not set.
@@ -74,9 +74,9 @@ const HostEnvironment& value_of(const EnvironmentPtr& environment);
 /// is passed to Faults. Throws UsageError for a malformed SUNDOG_FAULTS.
 HostEnvironment read_environment(const std::function<void(const std::string& kind)>& end_process = {});
 
-/// Sets a variable of the process, for drivers. Keeps one that is set and not empty, unless `replaces`. Other
-/// threads may call getenv() meanwhile: unlike setenv() it frees nothing that they may be reading. None may
-/// set a variable meanwhile.
+/// Sets an environment variable, for drivers. Keeps a value that is not empty, unless `replaces`. Other
+/// threads may call getenv() meanwhile, because unlike setenv() this frees nothing that they may be reading,
+/// but they must not set variables.
 void set_variable(const std::string& name, const std::string& value, bool replaces = false);
 
 /// read_environment() for a program that starts no processes.

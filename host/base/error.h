@@ -12,7 +12,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An option that mends an error; programs add their own name for it.
+/// An option that avoids the error; programs add its name to the message.
 enum class Remedy { none, outside_files, native_code, part };
 
 /// The scene or a file it names is bad (exit 3). `place` is a JSON pointer, "line 12", or "byte 80".
@@ -27,14 +27,14 @@ struct SceneError : std::runtime_error {
   Remedy remedy;
 };
 
-/// No such device, or the device failed (exit 4). `status` is the OpenCL error code, 0 when there is none.
+/// No such device, or the device failed (exit 4). `status` is the OpenCL error code; 0: none.
 struct DeviceError : std::runtime_error {
   explicit DeviceError(const std::string& what, int status_ = 0)
       : std::runtime_error(what), status(status_) {}
   int status;
 };
 
-/// A kernel did not build (exit 5). `log` is the compiler's, with file and line.
+/// A kernel did not build (exit 5). `log` is the compiler's output, with file and line.
 struct BuildError : std::runtime_error {
   BuildError(const std::string& what, std::string log_) : std::runtime_error(what), log(std::move(log_)) {}
   std::string log;

@@ -1,4 +1,4 @@
-// Parses KIND[=VALUE][>SIZE]@WHERE[#N], and counts the occasions of each fault.
+// Parses KIND[=VALUE][>SIZE]@WHERE[#N[+]], and counts the occasions of each fault.
 #include "base/faults.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A file is written to a locked temporary beside it, which then takes its name; pipes and devices are written
-// to directly.
+// Reads files, and writes each to a locked temporary file beside it, which is then renamed. Writes directly
+// to pipes and devices.
 #include "base/file.h"
 
 #include <fcntl.h>
@@ -48,9 +48,9 @@ std::string read_file(const fs::path& path) { return read_regular_file(path); }
 
 namespace {
 
-/// Shortens a name that leaves no room for a temporary's suffix.
+/// Shortens a name that would leave no room for a temporary file's suffix.
 std::string shortened(std::string name) {
-  constexpr std::size_t most = 200;  // of 255
+  constexpr std::size_t most = 200;  // file systems allow 255 bytes
   if (name.size() <= most) return name;
   std::size_t size = most;
   while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0u) == 0x80u) --size;  // whole characters
@@ -58,8 +58,8 @@ std::string shortened(std::string name) {
   return name;
 }
 
-/// Temporaries are named PATH.HOST.PID.N.tmp and locked while written; an unlocked one has lost its writer.
-/// The host name is included because locks may be invisible to other machines.
+/// Temporary files are named PATH.HOST.PID.N.tmp and locked while written; if one is unlocked, its writer has
+/// died. The name contains the host, because locks may be invisible to other machines.
 std::string temporary_prefix(const fs::path& path) {
   static const std::string host = [] {
     char name[256] = {};
@@ -81,7 +81,7 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
-/// write_all() to a pipe or device; waits for a pipe's reader.
+/// Writes all bytes to a pipe or device; waits for a pipe's reader.
 bool write_into(const fs::path& path, std::string_view bytes) {
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
   if (file < 0) return false;
@@ -111,7 +111,7 @@ class Temporary {
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
 
-  /// Set errno on failure.
+  /// These return false and set errno on failure.
   bool is_open() const { return file_ >= 0; }
   bool write(std::string_view bytes) const {
     if (!write_all(file_, bytes)) return false;
@@ -125,7 +125,7 @@ class Temporary {
   }
 
  private:
-  /// Another process may have removed the file before it was locked.
+  /// Locks the file. Returns true if another process has locked it first, or removed it.
   bool taken_away() const {
     struct stat now = {};
     const bool locked = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;

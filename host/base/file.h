@@ -1,4 +1,4 @@
-// Files: whole reads, atomic writes.
+// Reads whole files and writes files atomically.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -12,23 +12,22 @@ class Faults;
 /// The file's bytes. Throws IoError "PATH: cannot be read: ...".
 std::string read_file(const std::filesystem::path& path);
 
-/// Writes a temporary beside `path` and renames it, so the file appears whole or not at all. Follows symbolic
-/// links; writes directly into a pipe or device. `faults` may strike. Throws IoError.
+/// Writes a temporary file beside `path` and renames it, so that the file appears whole or not at all.
+/// Follows symbolic links; writes directly into a pipe or device. `faults` may strike. Throws IoError.
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 const std::shared_ptr<Faults>& faults = nullptr);
 
-/// Writes all bytes at the place of an open file. False, with errno, on failure.
+/// Writes all bytes at an open file's current position. Returns false and sets errno on failure.
 bool write_all(int file, std::string_view bytes);
 
-/// Removes temporaries that killed write_file() calls for `named` left on this machine; never those of a
-/// running process.
+/// Removes temporary files for `named` that killed processes of this machine left; never those in use.
 void remove_left_over(const std::filesystem::path& named);
 
-/// Throws IoError if `write_file` would fail because of the name, the folder or permissions. Call it before
+/// Throws IoError if write_file() would fail because of the name, the folder or permissions. Call it before
 /// long work.
 void check_writable(const std::filesystem::path& path);
 
-/// Whether `path` is a pipe, device or stream of this process, which does not keep what is written.
+/// Whether `path` is a pipe, a device, or a stream of this process, which does not store what is written.
 bool is_pipe_or_device(const std::filesystem::path& path);
 
 /// Whether `path` exists. False if that cannot be determined, as in a folder that may not be entered.

@@ -26,7 +26,7 @@ struct Image {
   }
 };
 
-/// Where an image lies in a larger picture: its upper left corner, and that picture's size.
+/// An image's place in a larger picture: its upper left corner, and the larger picture's size.
 struct Region {
   int x = 0, y = 0, whole_width = 0, whole_height = 0;
 };

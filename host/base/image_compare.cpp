@@ -1,5 +1,4 @@
-// A pixel differs by its worst channel. NaN equals NaN; any other value that is not finite differs
-// infinitely.
+// Collects the differences of all pixels, where a pixel differs by its worst channel, and colours them.
 #include "base/image_compare.h"
 
 #include <algorithm>

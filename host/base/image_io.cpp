@@ -92,8 +92,8 @@ bool keeps_texts(const fs::path& path) {
 void check_image_size(const fs::path& path, int width, int height) {
   const std::string extension = lower_extension(path);
   const bool jpeg = extension == ".jpg" || extension == ".jpeg";
-  constexpr int most_side = 65535;          // of a JPEG's header
-  constexpr int most_samples = 0x7fffffff;  // that stb_image_write counts
+  constexpr int most_side = 65535;          // a JPEG header's limit
+  constexpr int most_samples = 0x7fffffff;  // stb_image_write counts in int
   const bool too_many = 3 * std::int64_t{width} * height > most_samples;
   if ((jpeg && (too_many || std::max(width, height) > most_side)) || (extension == ".hdr" && too_many))
     throw UsageError(fmt::format(

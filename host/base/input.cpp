@@ -1,4 +1,4 @@
-// Opens without waiting, so that a pipe in place of a file is refused, not waited for.
+// Opens files without blocking, so that a pipe in place of a file is refused instead of waited for.
 #include "base/input.h"
 
 #include <fcntl.h>

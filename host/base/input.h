@@ -14,7 +14,7 @@ class Faults;
 constexpr std::uintmax_t most_input_bytes = std::uintmax_t{2} << 30;
 
 /// Reads a regular file of at most `most` bytes. Checks the type of the opened file, so that a pipe or device
-/// cannot block. A pipe that the caller has opened may be named as /dev/stdin or /dev/fd/N. `faults` may
+/// cannot block. A pipe that the process has inherited may be named as /dev/stdin or /dev/fd/N. `faults` may
 /// strike. Throws IoError "PATH: ...".
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                               const std::shared_ptr<Faults>& faults = nullptr);
@@ -23,14 +23,14 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
 std::string read_input(const std::filesystem::path& path, std::uintmax_t most = most_input_bytes,
                        const std::shared_ptr<Faults>& faults = nullptr);
 
-/// Whether the path `named`, given in `file`, leaves the folder of `file`: absolute, by "..", or by a link.
-/// Opens nothing.
+/// Whether the path `named`, found in `file`, leads outside the folder of `file`, be it absolute, by "..", or
+/// by a link. Opens nothing.
 bool leads_outside(const std::filesystem::path& file, const std::filesystem::path& named);
 
-/// The remedy, as the end of a message.
+/// The remedy, to end a message with.
 inline constexpr const char* outside_hint = "allow outside files if it is to be read all the same";
 
-/// Identifies a file on a disk, whatever its name or links.
+/// Identifies a file on disk, whatever its name or links.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0;
   friend bool operator==(const FileIdentity&, const FileIdentity&) = default;

@@ -18,8 +18,8 @@ JsonCounts count_json(std::string_view text);
 /// Approximate memory of these values in bytes.
 std::uint64_t json_bytes(const JsonCounts& counts);
 
-/// Throws SceneError, before parsing, for a text whose values need more memory than is plausible for its
-/// length or than is available.
+/// Throws SceneError for a text whose values need more memory than is plausible for its length or than is
+/// available. Call before parsing.
 void check_json_memory(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace sundog

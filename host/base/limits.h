@@ -1,14 +1,14 @@
-// Limits of a frame; files and options beyond them are refused.
+// Limits of a frame; sundog refuses files and options that exceed them.
 #pragma once
 #include <cstdint>
 
 namespace sundog {
 
-constexpr int most_edge = 65536;  // of width and height
+constexpr int most_edge = 65536;  // width and height, in pixels
 constexpr std::int64_t most_pixels = 1 << 28;
-constexpr int most_parts = 65536;  // of a frame, for machines that share only a folder
+constexpr int most_parts = 65536;  // parts of a frame, for machines that share only a folder
 
-/// Upper bound of any file of a frame: sums, weights, AOVs and progress of most_pixels.
+/// Upper bound for any file of a frame: sums, weights, AOVs and progress for most_pixels.
 constexpr std::uintmax_t most_frame_bytes = 80 * static_cast<std::uintmax_t>(most_pixels);
 
 /// Whether a frame may have this size.

@@ -1,5 +1,5 @@
-// Available is the least of /proc/meminfo, of the limits of cgroups (versions 1 and 2) and of the address
-// space.
+// Computes available memory as the minimum over /proc/meminfo, the limits of cgroups (versions 1 and 2), and
+// the address space limit.
 #include "base/memory.h"
 
 #if __has_include(<malloc.h>)
@@ -71,7 +71,7 @@ MaybeBytes left_up_from(const fs::path& mount, const std::string& group, const N
   return least;
 }
 
-/// Lines are "0::/group" (version 2) or "7:memory:/group" (version 1).
+/// The minimum over the process's cgroups. Lines: "0::/group" (version 2), "7:memory:/group" (version 1).
 MaybeBytes left_in_groups(const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   MaybeBytes least;
@@ -117,10 +117,10 @@ void prefer_large_pages(void* at, std::size_t bytes) {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // freeing a larger block unmaps it
+  constexpr int largest_piece = 32 << 20, most = 256 << 20;  // larger blocks are unmapped when freed
   ::mallopt(M_MMAP_THRESHOLD, largest_piece);
   ::mallopt(M_TRIM_THRESHOLD, most);
-  ::mallopt(M_MXFAST, 0);  // small blocks kept apart are joined again whenever a large one is freed
+  ::mallopt(M_MXFAST, 0);  // else each freed large block makes glibc merge the small blocks it keeps apart
 #endif
 }
 

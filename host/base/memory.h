@@ -1,4 +1,4 @@
-// Available memory, and allocation of large blocks.
+// Measures available memory, and speeds up the allocation of large blocks.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +13,11 @@ namespace sundog {
 /// sys.
 std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
-/// Requests huge pages for memory that is about to be touched for the first time, which makes that much
-/// cheaper. Small blocks are left alone.
+/// Requests huge pages for untouched memory, so that first touches cost much less. Ignores small blocks.
 void prefer_large_pages(void* at, std::size_t bytes);
 
-/// For programs that render many frames: keeps up to a quarter of a GiB of freed memory for later
-/// allocations; otherwise each 4 KiB of the next frame's films costs a page fault. Does nothing without
-/// glibc. Call before starting threads.
+/// For programs that render many frames: keeps up to 256 MiB of freed memory for later allocations; otherwise
+/// every 4 KiB of the next frame's films cost a page fault. Needs glibc. Call before starting threads.
 void keep_freed_memory();
 
 /// Grows an empty vector to `size` zeros.

@@ -1,4 +1,4 @@
-// Calls memfd_create(), and fills the file.
+// Creates and fills a memory file with memfd_create().
 #include "base/memory_file.h"
 
 #include <sys/mman.h>

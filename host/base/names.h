@@ -1,4 +1,4 @@
-// Suggestions for misspelt names.
+// Suggests names from a list for a misspelt name.
 #pragma once
 #include <optional>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace sundog {
 
-/// The name closest to `found`, ignoring case, or nothing. Up to a third of its letters may be missing,
-/// added, changed or swapped with a neighbour, but not all of them.
+/// The name closest to `found`, ignoring case; none if more than a third of its letters, or all of them,
+/// would have to be added, dropped, changed or swapped with a neighbour.
 std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names);
 
 /// Returns `did you mean "NAME"?` if there is a nearest name, else `otherwise`. `quote` surrounds the name.

@@ -1,4 +1,4 @@
-// Numbers in texts, and bytes that they stand for.
+// Parses numbers, and encodes and decodes bytes in URIs.
 #pragma once
 #include <charconv>
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// The number that all of `text` is; nothing for other text, or a number that the type does not hold.
+/// Parses all of `text` as a number; none for other text, or a number outside the type's range.
 template <class Number>
 std::optional<Number> whole_number(std::string_view text) {
   Number value{};
@@ -16,8 +16,8 @@ std::optional<Number> whole_number(std::string_view text) {
   return value;
 }
 
-/// The bytes of a part of a URI (RFC 3986). A '%' without two hexadecimal digits stands for itself: programs
-/// do not always encode names.
+/// Decodes a part of a URI (RFC 3986). A '%' without two hexadecimal digits stands for itself, because not
+/// all programs encode names.
 inline std::string percent_decoded(std::string_view text) {
   std::string bytes;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -31,7 +31,7 @@ inline std::string percent_decoded(std::string_view text) {
   return bytes;
 }
 
-/// `bytes` as one segment of a URI's path (RFC 3986).
+/// Encodes `bytes` as one segment of a URI's path (RFC 3986).
 inline std::string percent_encoded(std::string_view bytes) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;

@@ -1,4 +1,4 @@
-// A loop on all cores.
+// Runs a loop on all cores.
 #pragma once
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// body(i) for each i below `count`, thousands of them at a time on a thread.
+/// Calls body(i) for each i below `count`; threads take thousands of indices at a time.
 template <class Body>
 void in_parallel(std::size_t count, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {

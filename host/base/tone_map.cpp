@@ -1,5 +1,5 @@
 // Measures the exposure and adds bloom, then maps pixels in parallel: white balance, vignette, curve,
-// contrast. Has Reinhard's and AgX's curves; aces.h has that of ACES.
+// contrast. Implements Reinhard's and AgX's curves; aces.h has the ACES curve.
 #include "base/tone_map.h"
 
 #include <algorithm>
@@ -25,8 +25,7 @@ using glm::dvec3;
 /// glm builds matrices from columns.
 dmat3 rows(dvec3 a, dvec3 b, dvec3 c) { return glm::transpose(dmat3(a, b, c)); }
 
-/// The chromaticity of a black body of less than 4000 K (Kim and others 2002, US patent 7024034: cubic
-/// splines).
+/// The chromaticity of a black body below 4000 K, by cubic splines (Kim and others 2002, US patent 7024034).
 dvec2 black_body(double kelvin) {
   const double t = 1000 / kelvin;
   const double x = ((-0.2661239 * t - 0.2343589) * t + 0.8776956) * t + 0.179910;
@@ -35,7 +34,7 @@ dvec2 black_body(double kelvin) {
   return {x, y};
 }
 
-/// That of daylight of 4000 K or more (CIE 15:2004, 3.1).
+/// The chromaticity of daylight at 4000 K or more (CIE 15:2004, 3.1).
 dvec2 daylight(double kelvin) {
   const double t = 1000 / kelvin;
   const double x = kelvin < 7000 ? ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
@@ -43,13 +42,13 @@ dvec2 daylight(double kelvin) {
   return {x, (-3 * x + 2.870) * x - 0.275};
 }
 
-/// Lamps below 3500 K, daylight from 4000 K on, and no jump between them.
+/// The chromaticity of white: a black body below 3500 K, daylight from 4000 K on, and a blend in between.
 dvec2 white_of(double kelvin) {
   const double day = std::clamp((kelvin - 3500) / 500, 0.0, 1.0);
   return glm::mix(black_body(std::min(kelvin, 4000.0)), daylight(std::max(kelvin, 4000.0)), day);
 }
 
-/// Linear colours under light of this temperature as they would be under white.
+/// The matrix that adapts linear colours from light of this temperature to white light.
 dmat3 balance(double kelvin) {
   const dmat3 xyz = xyz_from(srgb_primaries);
   return glm::inverse(xyz) * adaptation(white_of(kelvin), srgb_primaries.white) * xyz;
@@ -59,8 +58,8 @@ double luminance(const dvec3& c) { return 0.2126390 * c.x + 0.7151687 * c.y + 0.
 
 dvec3 reinhard(const dvec3& c) { return c / (1 + luminance(c)); }
 
-/// The sigmoid of AgX's default contrast over its range of 16.5 stops, both 0 to 1: slope 2 at the middle
-/// grey, the powers of toe and shoulder 3 and 3.25 (Sobotka, AgX-S2O3; Jed Smith's curve).
+/// AgX's sigmoid with default contrast: maps the range of 16.5 stops, as 0 to 1, to 0 to 1, with slope 2 at
+/// middle grey and powers 3 (toe) and 3.25 (shoulder) (Sobotka, AgX-S2O3; Jed Smith's curve).
 double agx_curve(double x) {
   constexpr double grey = 10 / 16.5, half = 0.5, slope = 2;
   const bool bright = x >= grey;
@@ -82,7 +81,7 @@ dvec3 agx(const dvec3& c) {
   }
   shown = glm::max(glm::inverse(inset) * shown, dvec3(0));
   for (int i = 0; i < 3; ++i)
-    shown[i] = linear_from_srgb(static_cast<float>(shown[i]));  // as a file has them
+    shown[i] = linear_from_srgb(static_cast<float>(shown[i]));  // AgX yields encoded colours
   return shown;
 }
 
@@ -100,8 +99,7 @@ dvec3 curved(ToneCurve curve, const dvec3& c) {
   return c;
 }
 
-/// A curve over the colours as a file has them, with the slope `contrast` at the middle; black and white
-/// stay.
+/// Applies a curve with the slope `contrast` at 0.5 to the sRGB-encoded colours; 0 and 1 stay.
 dvec3 contrasted(const dvec3& c, double contrast) {
   dvec3 shown;
   for (int i = 0; i < 3; ++i) {
@@ -112,7 +110,7 @@ dvec3 contrasted(const dvec3& c, double contrast) {
   return shown;
 }
 
-/// The light that a vignette leaves, by the square of the distance from the middle, 1 in the corners.
+/// The share of light that the vignette leaves; the loss is quadratic in the distance from the centre.
 double vignetted(const ToneMap& map, const Image& image, std::size_t pixel) {
   const auto width = static_cast<std::size_t>(image.width);
   const dvec2 size(image.width, image.height), place = dvec2(pixel % width, pixel / width) + 0.5 - size / 2.0;

@@ -35,22 +35,22 @@ struct Bounds {
   bool empty() const { return !(lower[0] <= upper[0]); }
 };
 
-/// Half the surface area of a non-empty box with its edges scaled by `scale` (no overflow at 1e30). A trace
-/// of the sum of edges distinguishes flat and thin boxes.
+/// Half the surface area of a non-empty box scaled by `scale`, so that boxes of size 1e30 do not overflow. A
+/// trace of the sum of edges distinguishes flat and thin boxes.
 inline float half_area(const Bounds& box, float scale) {
   const Lanes edge = (box.upper - box.lower) * lanes(scale);
   return edge[0] * (edge[1] + edge[2]) + edge[1] * edge[2] + 1e-6f * (edge[0] + edge[1] + edge[2]);
 }
 
-/// A primitive's box, as the builder sorts it, with its index in the fourth lane of `lower`. The index is
-/// stored as a normal float, because denormals in the spare lane would slow arithmetic.
+/// A primitive's box, which the builder sorts, with the primitive's index in the fourth lane of `lower`.
+/// `bias` makes the index a normal float, because denormals in the spare lane would slow arithmetic.
 struct Ref {
   Bounds box;
 
   static constexpr u32 bias = 0x40000000u;
   static Ref of(const Bounds& bounds, u32 prim) {
     Ref ref{bounds};
-    // -0 becomes +0, because a minimum of both would depend on their order
+    // turn -0 into +0, because the minimum of both would depend on their order
     ref.box.lower = ref.box.lower + lanes(0.0f);
     ref.box.upper = ref.box.upper + lanes(0.0f);
     ref.box.lower[3] = std::bit_cast<float>(prim + bias);

@@ -1,4 +1,4 @@
-// compile(): compiles all parts in scene_compiler.h.
+// compile(): runs a SceneCompiler once.
 #include "compile/compiled_scene.h"
 #include "compile/scene_compiler.h"
 

@@ -1,4 +1,4 @@
-// CompiledScene: the flat tables that kernels read. Indices only; no device, no pointers.
+// CompiledScene: the flat tables that kernels read, linked by indices, without pointers or device handles.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -20,18 +20,18 @@ struct SceneFeatures {
   SCENE_FEATURES(SUNDOG_FEATURE_MEMBER)
 #undef SUNDOG_FEATURE_MEMBER
   bool camera_inside = false;
-  bool unbounded = false;  // it contains planes
+  bool unbounded = false;  // the scene contains planes
   u32 bvh_stack = 1;       // worst-case traversal stack entries (scene BVH and a mesh BVH below it)
   friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };
 
 struct BvhFigures {
   std::size_t nodes = 0, blocks = 0, triangles = 0, instances = 0;
-  double sah_cost = 0;         // expected node visits + block visits of a ray that crosses the root
+  double sah_cost = 0;         // expected node and block visits of a ray that crosses the root
   double build_seconds = 0;    // excluded from the deterministic result
   double mean_block_fill = 0;  // triangles per block, 1..8; a split triangle counts in each
   std::size_t bytes = 0;
-  Bounds box = Bounds::none();  // of all instances except planes and fields, from CompiledScene::origin
+  Bounds box = Bounds::none();  // bounds of all instances but planes and fields, from CompiledScene::origin
 };
 
 /// The tables of shared/scene_tables.h.
@@ -49,7 +49,7 @@ void for_each_table(const SceneTables& tables, const Visit& visit) {
 #undef SUNDOG_VISIT_TABLE
 }
 
-/// The instance that owns triangle `prim` among those sharing a mesh BVH, of which `first` is the first.
+/// The instance that owns triangle `prim`, among the instances that share a mesh BVH and start at `first`.
 inline u32 instance_of_triangle(const SceneTables& tables, u32 first, u32 prim) {
   const std::vector<Instance>& instances = tables.instances.rows();
   while (instances[first].flags & INSTANCE_SHARES && instances[first + 1].first_prim <= prim) ++first;
@@ -61,18 +61,18 @@ std::size_t table_bytes(const SceneTables& tables);
 
 /// Parameters of photon maps.
 struct PhotonPlan {
-  u32 count = 0;               // emitted per map
-  double radius = 0;           // of the first map
+  u32 count = 0;               // photons emitted per map
+  double radius = 0;           // radius of the first map
   bool lights_inside = false;  // some light may be inside a solid with a medium
 };
 
 struct CompiledScene : SceneTables {
   SceneInfo info{};
-  dvec3 origin{0};                     // world position of the tables' origin; SceneInfo has it as floats
+  dvec3 origin{0};                     // world position of the tables' origin; SceneInfo stores it as floats
   std::string field_source;            // generated/sdf.cl (compile/fields/sdf.h); empty without fields
   std::string pattern_source;          // generated/patterns.cl (compile/fields/pattern_code.h), or empty
-  std::string integrator = "whitted";  // a name of scene/integrators.h
-  Tracer tracer = Tracer::automatic;   // the tracer to use
+  std::string integrator = "whitted";  // a name listed in scene/integrators.h
+  Tracer tracer = Tracer::automatic;
   Sampling sampling;
   PhotonPlan photons_by;
   SceneFeatures features;

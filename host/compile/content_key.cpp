@@ -1,5 +1,4 @@
-// Hashes all members of a struct in their order except those named here; large blocks of bytes are hashed in
-// pieces by several threads.
+// Hashes a struct's members in order, except those that its add() lists.
 #include "compile/content_key.h"
 
 #include "compile/steps.h"
@@ -40,7 +39,7 @@ concept Pointer = requires(const T& value) {
 template <class T>
 concept Rows = requires(const T& value) { value.data(), value.size(); };
 template <class T>
-concept Plain = NumberOrEnum<T> || requires { T::length(); };  // without bytes that do not count
+concept Plain = NumberOrEnum<T> || requires { T::length(); };  // has no padding, so its bytes can be hashed
 
 void add_member(KeyMaker& key, const Image& image) {
   key.add(image.width).add(image.height).add(image.channels).add(image.data.size());
@@ -104,7 +103,7 @@ ContentKey KeyMaker::key() const {
 }
 
 KeyMaker& KeyMaker::add(const Camera& camera) {
-  add_members(*this, camera, camera.shutter);  // it is for the frames of a film: it changes no scene
+  add_members(*this, camera, camera.shutter);  // affects only how an animation samples its frames
   return *this;
 }
 
@@ -114,7 +113,7 @@ KeyMaker& KeyMaker::add(const LightDescription& light) {
 }
 
 KeyMaker& KeyMaker::add(const EnvironmentDescription& environment) {
-  add_members(*this, environment, environment.halo_map);  // which follows from the rest
+  add_members(*this, environment, environment.halo_map);  // derived from the other members
   return *this;
 }
 

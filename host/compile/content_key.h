@@ -15,7 +15,8 @@ struct ContentKey {
   friend bool operator==(const ContentKey&, const ContentKey&) = default;
 };
 
-/// An earlier step's result as an input of a later one; the key of what it was made of stands for it.
+/// An earlier step's result as a later step's input; `key`, of the inputs that made it, is hashed in its
+/// place.
 template <class T>
 struct Known {
   const T* value = nullptr;
@@ -24,7 +25,7 @@ struct Known {
   const T* operator->() const { return value; }
 };
 
-/// An input that no key counts: it appears in messages alone, or the key of another input stands for it.
+/// An input that is left out of the key: it appears only in messages, or another input's key covers it.
 template <class T>
 struct Unkeyed {
   T value{};
@@ -35,7 +36,7 @@ struct Unkeyed {
 template <class T>
 concept NumberOrEnum = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// Hashes values in order. Numbers count by their bits: 0 and -0 differ.
+/// Hashes values in order. Numbers are hashed by their bits: 0 and -0 differ.
 class KeyMaker {
  public:
   KeyMaker& bytes(const void* data, std::size_t count);
@@ -63,7 +64,7 @@ class KeyMaker {
     return bytes(&m, sizeof m);
   }
 
-  // All that compile() reads of a description; omits names and places, which appear only in messages.
+  // Each hashes all members that compile() reads, without names and places, which appear only in messages.
   KeyMaker& add(const Camera& camera);
   KeyMaker& add(const LightDescription& light);
   KeyMaker& add(const EnvironmentDescription& environment);

@@ -1,4 +1,4 @@
-// Runs the steps in the order of the diagram below, each again only if the key of its inputs changed, and
+// Runs the steps in the order of the diagram below, skipping those whose inputs' key has not changed, and
 // merges their tables and features.
 #include "compile/scene_compiler.h"
 
@@ -21,7 +21,7 @@
 namespace sundog {
 namespace {
 
-/// Validates indices; a scene made in memory may break them.
+/// Checks indices, which may be invalid in a scene made in memory.
 void check_objects(const SceneDescription& scene) {
   const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
   for (const Object& object : scene.objects) {
@@ -50,7 +50,7 @@ void check_integrator(const SceneDescription& scene) {
                                  scene.render.integrator));
 }
 
-/// log2 of each pixel's places in the blue noise sequence; rays to a light divide samples.
+/// log2 of the number of places of each pixel in the blue noise sequence; each ray to a light takes its own.
 void set_sample_room(CompiledScene& out) {
   if (out.features.sampler != SAMPLER_BLUE_NOISE) return;
   u32 parts = 1;
@@ -58,8 +58,8 @@ void set_sample_room(CompiledScene& out) {
   out.features.sample_room = static_cast<u32>(std::bit_width(out.info.samples * parts - 1));
 }
 
-/// Whether surfaces test occlusion of area lights by shafts: there are few instances, and only surfaces
-/// change light on its way.
+/// Whether surfaces test occlusion of area lights with shafts: only among few instances, without fields or
+/// absorption.
 bool asks_by_shafts(const CompiledScene& scene) {
   return scene.features.area_lights && integrator_of(scene.integrator).branches &&
          !scene.features.absorption && scene.info.instance_count <= SHAFT_INSTANCES &&
@@ -86,7 +86,7 @@ void set_figures(CompiledScene& out) {
   figures.bytes = sizeof(SceneInfo) + table_bytes(out);
 }
 
-/// Equal for all scenes; rough glass has one more table.
+/// The table of lobe energies, equal for all scenes; rough glass has one more.
 const SharedTable<float>& lobe_energies(bool glass) {
   const auto first = [](u32 count) {
     const auto rows = built_lobe_energy().first(count);
@@ -149,7 +149,7 @@ void take(const Instances& instances, CompiledScene& out) {
   out.figures.box = instances.box;
 }
 
-/// Sets what all tables decide together.
+/// Sets the values that depend on several parts.
 void finish(CompiledScene& out) {
   if (out.features.rough || out.features.layers)
     out.lobe_energy = lobe_energies(out.features.rough_glass != 0);
@@ -213,7 +213,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   out.features.camera_inside = is_camera_inside(scene.camera.position - origin,
                                                 instances.value.instances.rows(), instances.value.boxes);
   const bool media = out.features.media;
-  if (!media)  // materials that no object has may name some
+  if (!media)  // materials that no object uses may name media
     out.features.absorption = out.features.scattering = out.features.dispersion = false;
   if (media)
     work_.touching += memo(touching, touching_inputs(scene, origin, instances.known()), compile_touching);

@@ -1,5 +1,5 @@
-// SceneCompiler: compiles successive scenes, and keeps parts whose content has not changed; the result equals
-// compile()'s to the byte.
+// SceneCompiler: compiles successive scenes and reuses parts whose content has not changed; the result equals
+// compile()'s byte for byte.
 #pragma once
 #include <memory>
 
@@ -7,10 +7,10 @@
 
 namespace sundog {
 
-/// Number of parts compiled, not reused, over all calls.
+/// Counts the parts that were compiled, not reused, over all calls.
 struct CompileWork {
-  std::uint64_t meshes = 0;     // parts of meshes: their BVHs and tables
-  std::uint64_t bvhs = 0;       // of meshes, and over instances
+  std::uint64_t meshes = 0;     // mesh parts: BVHs and tables
+  std::uint64_t bvhs = 0;       // BVHs of meshes, and over instances
   std::uint64_t lights = 0;     // parts of lights and environment
   std::uint64_t surfaces = 0;   // parts of materials, media and textures
   std::uint64_t fields = 0;     // parts of fields
@@ -29,7 +29,7 @@ class SceneCompiler {
   SceneCompiler(SceneCompiler&&) noexcept;
   SceneCompiler& operator=(SceneCompiler&&) noexcept;
 
-  /// As compile(). After an exception, parts remain from earlier scenes.
+  /// Like compile(). After an exception, parts of earlier scenes are kept.
   CompiledScene compile(const SceneDescription& scene);
   const CompileWork& work() const { return work_; }
 

@@ -1,4 +1,5 @@
-// Calls the static functions of the solid's struct by the table SOLIDS; meshes and fields have none.
+// Dispatches to the static functions of a solid's struct through the table SOLIDS; meshes and fields have
+// none.
 #include "compile/shapes.h"
 
 #include "base/error.h"
@@ -11,7 +12,7 @@ std::logic_error no_such(const UnitShape& unit, const char* what) {
   return std::logic_error(fmt::format("a {} has not {}", shape_names.at(unit.shape), what));
 }
 
-/// f of the solid's struct, as a null pointer.
+/// Calls f with a null pointer, which conveys the type of the solid's struct.
 template <class Result, class F>
 Result of_solid(const UnitShape& unit, F f) {
   switch (unit.shape) {

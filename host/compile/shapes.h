@@ -1,4 +1,4 @@
-// The exact solids as unit shapes, whichever they are (models/values/solids.h).
+// Geometry of any exact solid (models/values/solids.h) as a unit shape.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,11 +12,11 @@ UnitShape unit_shape(const std::string& file, const Object& object);
 
 /// The maximum of dot(direction, p) over the points p of a bounded solid.
 double reach(const UnitShape& unit, const dvec3& direction);
-/// None for meshes and fields.
+/// The flat faces of a solid; none for meshes and fields.
 FlatFaces flat_faces(const UnitShape& unit);
-/// Nothing for solids without curved surfaces, meshes and fields.
+/// The curvature of a solid; nothing for one without curved surfaces, and for meshes and fields.
 std::optional<Curvature> curvature(const UnitShape& unit);
-/// A lower bound of the distance to a solid that is not always open.
+/// A lower bound of the distance to a solid, negative inside; not for solids that never have an inside.
 double unit_distance(const UnitShape& unit, const dvec3& q);
 
 }  // namespace sundog

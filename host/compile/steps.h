@@ -1,6 +1,6 @@
-// The steps of compile(): functions from what they read to what they make. An input struct names all that its
-// step reads of a description and of other results, and memo() makes a result anew only where the content key
-// of its members changes.
+// The steps of compile(), as functions from inputs to results. An input struct names everything that its step
+// reads of the description and of other results; memo() recomputes a result only if its inputs' content key
+// changed.
 #pragma once
 #include <memory>
 #include <span>
@@ -18,7 +18,7 @@ struct FieldView;
 using SceneFile = Unkeyed<std::string>;
 inline SceneFile file_of(const SceneDescription& scene) { return {scene.file.string()}; }
 
-/// Whether the world's fog is a scattering medium instead of emitting light itself.
+/// Whether the world's fog is a medium that scatters light, rather than one that emits it.
 bool fog_scatters(const SceneDescription& scene);
 
 struct ViewInputs {
@@ -41,7 +41,7 @@ CompiledView compile_view(const ViewInputs& in);
 struct HaloInputs {
   const EnvironmentDescription* environment;
 };
-/// The description's own map, or one that is traced; null without a halo.
+/// The description's own map, or else a traced one; null without a halo.
 using Halo = std::shared_ptr<const HaloMap>;
 Halo compile_halo(const HaloInputs& in);
 
@@ -52,7 +52,7 @@ struct LightInputs {
   const EnvironmentDescription* environment = nullptr;
   Known<Halo> halo{};
   dvec3 fog_color{0};
-  double fog_density = 0;  // of fog that does not scatter
+  double fog_density = 0;  // density of fog that does not scatter
 };
 /// Lights of the scene file, the environment and its sun, with positions relative to the origin.
 struct Lights {
@@ -73,12 +73,12 @@ LightInputs light_inputs(const SceneDescription& scene, const dvec3& origin, con
 struct SurfaceInputs {
   SceneFile file{};
   bool paths = false, caustics = false;
-  bool lacks_materials = false;  // some object or mesh has none
+  bool lacks_materials = false;  // some object or mesh has no material
   std::span<const MediumDescription> media{};
   std::span<const MaterialDescription> materials{};
   std::span<const ImageDescription> images{};
   std::span<const TextureDescription> textures{};
-  const FogDescription* fog = nullptr;  // that scatters
+  const FogDescription* fog = nullptr;  // scattering fog, or null
 };
 struct Surfaces {
   SharedTable<Medium> media;
@@ -94,7 +94,7 @@ struct Surfaces {
   SceneFeatures features;
   u32 texel_page = 0;
   std::string pattern_source;
-  u32 default_material = NO_MATERIAL;  // of objects without one
+  u32 default_material = NO_MATERIAL;  // material of objects without one
 };
 /// Equal media are merged, except the world's at 0. Throws SceneError for an unknown texture.
 Surfaces compile_surfaces(const SurfaceInputs& in);
@@ -107,7 +107,7 @@ struct MeshInputs {
   std::size_t material_count = 0;
   std::vector<const Mesh*> meshes{};               // null: no object places it
   std::vector<std::vector<std::size_t>> groups{};  // mesh_groups()
-  Unkeyed<std::vector<std::string>> places{};      // of the first object of each mesh
+  Unkeyed<std::vector<std::string>> places{};      // place of the first object of each mesh
 };
 /// A mesh in the tables, with the facts that its instances need.
 struct PlacedMesh {
@@ -119,8 +119,8 @@ struct PlacedMesh {
   u32 triangle_count = 0;
   double cost = 0;             // expected cost of a ray that crosses the BVH's box
   u32 stack = 0;               // traversal stack entries that the BVH may need
-  std::vector<Bounds> boxes;   // of its root's grandchildren: a tight hull for a rotated instance
-  std::vector<u32> materials;  // of its triangles, without duplicates
+  std::vector<Bounds> boxes;   // boxes of its root's grandchildren: a tight hull if rotated
+  std::vector<u32> materials;  // distinct materials of its triangles
 };
 struct Meshes {
   SharedTable<Bvh8Node> nodes;
@@ -130,9 +130,9 @@ struct Meshes {
   std::vector<PlacedMesh> placed;  // one for each mesh
   double mean_block_fill = 0;
 };
-/// A mesh whose largest coordinate is beyond 1e11 or below 1e-11 is scaled to about 1, since products of its
-/// edges and transforms would leave a float's range. Throws SceneError for a non-finite or distant vertex,
-/// and for an index out of range.
+/// A mesh whose largest coordinate is 2^25 or more, or below 2^-24, is scaled to about 1, because products of
+/// its edges and transforms would leave a float's range. Throws SceneError for a non-finite or distant
+/// vertex, and for an index out of range.
 Meshes compile_meshes(const MeshInputs& in);
 MeshInputs mesh_inputs(const SceneDescription& scene, const Surfaces& surfaces);
 
@@ -152,7 +152,7 @@ MeshMapping compile_mapping(const MappingInputs& in);
 MappingInputs mapping_inputs(const SceneDescription& scene, const Known<Meshes>& meshes,
                              const Surfaces& surfaces);
 
-/// A material's facts that instances depend on.
+/// Properties of a material that instances depend on.
 struct SurfaceFacts {
   u32 flags, kind;
   bool shines;
@@ -170,10 +170,10 @@ struct InstanceInputs {
   std::vector<dmat4> planes{};  // place_of_plane() of each plane among the objects
   std::vector<SurfaceFacts> surfaces{};
 };
-/// Bounded instances come first, in leaf order, then planes, then fields, which are not in the scene's BVH.
-/// Meshes without triangles have none.
+/// Bounded instances come first, in leaf order, then planes, then fields. Planes and fields are outside the
+/// scene's BVH. Meshes without triangles get no instance.
 struct Instances {
-  SharedTable<Bvh8Node> nodes;  // those of meshes, and of the tree over instances
+  SharedTable<Bvh8Node> nodes;  // nodes of the BVHs of meshes, and over instances
   SharedTable<Instance> instances;
   SharedTable<float4> moves;
   SharedTable<Turn> turns;
@@ -198,7 +198,7 @@ struct TouchingInputs {
   Unkeyed<std::span<const Object>> objects{};
   Unkeyed<std::span<const Mesh>> meshes{};
 };
-/// Instances with marks on those that touch others.
+/// The instances; those that touch others are marked.
 struct Touching {
   SharedTable<Instance> instances;
   bool any = false;
@@ -208,7 +208,7 @@ TouchingInputs touching_inputs(const SceneDescription& scene, const dvec3& origi
                                const Known<Instances>& instances);
 
 /// `fields` as the camera sees them. In a deep view each field that an object places is compiled by itself,
-/// relative to the tables' origin: `fields` has one for each, in the order of their instances.
+/// relative to the tables' origin; `fields` then has one entry per instance, in their order.
 struct FieldInputs {
   SceneFile file{};
   bool paths = false, deep = false;
@@ -216,26 +216,26 @@ struct FieldInputs {
   // Only for deep views:
   Known<SharedTable<Instance>> instances{};
   dvec3 origin{0};
-  Unkeyed<u32> first_instance{};  // of fields
+  Unkeyed<u32> first_instance{};  // the first that is a field
   Unkeyed<std::span<const Object>> objects{};
 };
 struct Fields {
   std::string source;  // generated/sdf.cl
   SharedTable<SdfField> sdf_fields;
   SharedTable<float> sdf_parameters;
-  SharedTable<Instance> deep_instances;  // with the indices of these fields
+  SharedTable<Instance> deep_instances;  // instances with the indices of these fields
   SceneFeatures features;
 };
 Fields compile_field_tables(const FieldInputs& in);
-/// `placed`: the instances, of which those of fields begin at `first`.
+/// `placed`: the instances; those of fields begin at `first`.
 FieldInputs field_inputs(const SceneDescription& scene, const dvec3& origin,
                          const std::vector<FieldView>& views, const Known<SharedTable<Instance>>& placed,
                          u32 first);
 
-/// `instances` have their marks of touching others.
+/// `instances` already have their marks for touching others.
 struct AllLightsInputs {
   dvec3 origin;
-  float4 camera_position;  // from the origin
+  float4 camera_position;  // relative to the origin
   std::span<const LightDescription> lights;
   std::span<const MaterialDescription> materials;
   std::span<const Mesh> meshes;
@@ -248,8 +248,8 @@ struct AllLightsInputs {
   const SharedTable<Instance>& instances;
   std::span<const Bounds> boxes;  // one for each instance
 };
-/// All lights, those of meshes among them, with the tree over them and photons, and the tables that hold
-/// numbers of lights or of light groups.
+/// All lights, including those of meshes, with the tree over them and photons, and the tables that refer to
+/// lights or light groups by number.
 struct AllLights {
   SharedTable<Light> lights;
   SharedTable<LightRay> light_rays;
@@ -282,8 +282,8 @@ struct Memo {
   Known<Value> known() const { return {&value, key}; }
 };
 
-/// Makes the result unless the memo's was made of equal inputs. Returns whether it was made; an exception
-/// leaves the memo as it was.
+/// Recomputes the result unless the memo's inputs were equal. Returns whether it did; an exception leaves the
+/// memo unchanged.
 template <class Value, class Inputs>
 bool memo(Memo<Value>& last, const Inputs& inputs, Value (*compile)(const Inputs&)) {
   const ContentKey key = key_of(inputs);

@@ -1,5 +1,5 @@
-// Joins sundog's options, the device rule's, the entry's, a tuning's, the caller's and the environment's; the
-// last three replace those before them by the same name.
+// Joins sundog's options, the device rule's, the entry's, a tuning's, the caller's and the environment's;
+// each of the last four replaces options of the same name from the sources before it, except sundog's own.
 #include "device/build_options.h"
 
 #include <fmt/format.h>
@@ -25,13 +25,13 @@ std::vector<std::string> words(std::string_view options) {
   return {std::istream_iterator<std::string>(text), {}};
 }
 
-/// An option up to its value, without the mark of one that is left out.
+/// An option without its value and without the leading "!".
 std::string name_of(std::string option) {
   if (option.starts_with('!')) option.erase(0, 1);
   return option.substr(0, option.find('='));
 }
 
-/// Appends those of `more` that `stronger` does not have by the same name, nor takes away.
+/// Appends the options of `more`, except any that `stronger` sets or removes by name.
 void append_options(std::string& options, std::string_view more, const std::string& stronger) {
   std::set<std::string> names;
   for (const std::string& option : words(stronger)) names.insert(name_of(option));

@@ -1,4 +1,4 @@
-// How devices are driven, and why one was chosen.
+// Decides which kernels suit a device, and explains why the default device was chosen.
 #pragma once
 #include <span>
 #include <string>
@@ -11,11 +11,11 @@ namespace sundog {
 /// ray per lane (the "compact" one): device_rules.h.
 bool wants_vectors(const DeviceInfo& device);
 
-/// Whether the compiler keeps function calls (device_rules.h): without, the interpreter of fields
-/// (kernels/lib/sdf/interpret.cl) is not built.
+/// Whether the device's compiler keeps function calls (device_rules.h). If not, the interpreter of distance
+/// fields (kernels/lib/sdf/interpret.cl) is not built.
 bool calls_functions(const DeviceInfo& device);
 
-/// "0:0 ... (estimate 48000), before 1:0 ... (600)": the default device and the estimates that decided.
+/// "0:0 ... (estimate 48000), before 1:0 ... (600)": the default device and the deciding estimates.
 std::string choice_text(std::span<const DeviceInfo> all, const DeviceInfo& chosen);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// A table of OpenCL 1.2's status codes, and sentences for those a user can mend.
+// The table of OpenCL 1.2's status codes, and the conversion of a failed call to DeviceError.
 #include "device/cl_status.h"
 
 #define CL_TARGET_OPENCL_VERSION 120

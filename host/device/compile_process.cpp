@@ -1,4 +1,5 @@
-// Source and binary are passed in memory files, so that neither process blocks on reading.
+// Starts the compiling process and serves its side. Source and binary are passed in memory files, so that
+// neither process blocks on reading.
 #include "device/compile_process.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ namespace {
 
 constexpr double longest_wait = 30;  // seconds; longer means that something hangs
 
-/// By name, as this works around a particular driver.
+/// Whether the driver is PoCL on a CPU, whose slow start this works around.
 bool reads_a_library(const DeviceInfo& device) { return is_pocl(device) && device.type == "cpu"; }
 
 std::string contents(int file) {

@@ -17,15 +17,15 @@ class StartedProgram;
 /// can compile meanwhile; linking its result here takes 20 ms.
 class CompileProcess {
  public:
-  /// With a launch, builds the whole program, else compiles it without linking. None if nothing would be
-  /// gained: another driver, one processor, or a HostEnvironment that starts no program. Never throws: on
-  /// failure this process builds the program.
+  /// With a launch, builds the whole program, else compiles it without linking. Returns none if nothing would
+  /// be gained (a driver other than PoCL, or a single processor), if HostEnvironment forbids starting
+  /// programs, or on failure; this process then builds the program. Never throws.
   static std::optional<CompileProcess> start(const DeviceInfo& device, const std::string& source,
                                              const std::string& options,
                                              const EmptyLaunch* launch = nullptr) noexcept;
   CompileProcess(CompileProcess&& other) noexcept;
   CompileProcess& operator=(CompileProcess&&) = delete;
-  ~CompileProcess();  // kills it
+  ~CompileProcess();  // kills the process
 
   /// Waits for the driver's binary of the program; empty on failure.
   std::string wait() noexcept;
@@ -33,7 +33,7 @@ class CompileProcess {
  private:
   CompileProcess(std::unique_ptr<StartedProgram> process, int result);
   std::unique_ptr<StartedProgram> process_;  // null: ended
-  int result_;                               // memory file for its output
+  int result_;                               // memory file with the process's output
 };
 
 /// The other side (`sundog compile P:D`): compiles or builds the contents of the file `in` (a line of

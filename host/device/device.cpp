@@ -49,8 +49,8 @@ cl::Device sub_device(cl::Device parent, const DeviceInfo& info) {
   return parts[index];
 }
 
-/// Waits until the driver's threads release a queue whose work is done. PoCL's may still hold it for its last
-/// event, and crash when the sub-device is destroyed. A queue held for longer than a second is leaked.
+/// Waits until the driver's threads release a queue whose work is done. PoCL's threads may still hold it for
+/// its last event, and crash when the sub-device is destroyed. A queue held longer than a second is leaked.
 void await_release(const cl::Device& device, const cl::CommandQueue& queue) {
   const auto held = [&] {
     cl_uint references = 1;
@@ -67,8 +67,8 @@ void await_release(const cl::Device& device, const cl::CommandQueue& queue) {
   }
 }
 
-/// An event's time on the device; 0 if the driver does not measure. Rusticl on llvmpipe stamps begin and end
-/// nanoseconds apart, but no launch takes less than a microsecond.
+/// An event's time on the device; 0 if the driver does not measure it. Times below a microsecond count as not
+/// measured: rusticl on llvmpipe stamps begin and end nanoseconds apart.
 double event_ms(const cl::Event& event) {
   constexpr cl_ulong least = 1000;
   cl_int started = CL_SUCCESS, ended = CL_SUCCESS;
@@ -78,8 +78,8 @@ double event_ms(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
-/// CPU compilers define a macro for the instruction, and may claim fma() without it; for others, the driver's
-/// report counts.
+/// Whether the driver reports a fused multiply-add. Not for CPUs: their drivers may report it without the
+/// instruction, and their compilers define a macro instead.
 bool has_fma_instruction(const cl::Device& device, const DeviceInfo& info) {
   return info.type != "cpu" && (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0;
 }
@@ -143,7 +143,7 @@ Device::Device(Device&&) noexcept = default;
 
 Device::~Device() {
   save_programs();
-  // Their last events hold the queue.
+  // Pending events hold the queue.
   pending_.clear();
   fence_ = {};
   if (info_.sub_units > 0 && queue_()) await_release(device_, queue_);

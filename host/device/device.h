@@ -1,5 +1,5 @@
-// An opened device: its context and queue, memory, programs and launches. The only folder that knows OpenCL;
-// its types are thin, and calls check the kernels' argument types.
+// An opened device: its context and queue, memory, programs and launches. Only this folder uses OpenCL. Its
+// types are thin wrappers that check the kernels' argument types.
 #pragma once
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -49,11 +49,11 @@ struct ArgumentType<Buffer<T>> {
   static std::string name() { return kernel_type_name(typeid(T)) + "*"; }
 };
 
-struct ProgramRecord;   // what the binary cache needs of a built program (program.h)
-struct ProgramSource;   // its text (program.h)
-struct PreparedBuilds;  // prepared for the next build() (program.h)
+struct ProgramRecord;   // a built program and its entry in the binary cache (program.h)
+struct ProgramSource;   // a program's text (program.h)
+struct PreparedBuilds;  // cached or concurrent builds for the next build() (program.h)
 
-/// A kernel with arguments of types Args: Buffer<T> for a __global T*, or a value: scalar, vector or struct.
+/// A kernel with arguments of types Args: Buffer<T> for a __global T*, or a value (scalar, vector or struct).
 template <class... Args>
 struct Kernel {
   cl::Kernel kernel;
@@ -79,7 +79,7 @@ class Program {
   explicit Program(std::shared_ptr<ProgramRecord> record) : record_(std::move(record)) {}
 
   /// Throws BuildError for a kernel that is not in the file, or whose parameters differ from Args. Without
-  /// Args they are not compared.
+  /// Args, the parameters are not checked.
   template <class... Args>
   Kernel<Args...> kernel(const std::string& name) const {
     return {make_kernel(name, {ArgumentType<Args>::name()...}), name, record_};
@@ -92,8 +92,7 @@ class Program {
   std::shared_ptr<ProgramRecord> record_;
 };
 
-/// Types of a kernel's parameters as in its source: {"Ray*", "u32"}; empty if the driver does not report
-/// them.
+/// The types of a kernel's parameters as in its source, e.g. {"Ray*", "u32"}; empty if not reported.
 std::vector<std::string> argument_types(const cl::Kernel& kernel);
 
 /// Adds an OpenCL context to `info` that all its Devices share, unless it has one or is a sub-device. Some
@@ -123,14 +122,14 @@ class Device {
   Program build(const std::string& entry, const KernelDefines& defines, BuildReport* report = nullptr,
                 const GeneratedFiles& generated = {});
 
-  /// Whether build() would not compile: it has built this before, or the binary cache has it.
+  /// Whether build() needs no compilation, because this device or the binary cache has the program.
   bool has(const std::string& entry, const KernelDefines& defines,
            const GeneratedFiles& generated = {}) const;
 
-  /// Starts to build in another process what build() will need, entirely and with machine code for `launch`.
-  /// build() then waits for it, and builds here if it fails. Returns whether a process was started: not if
-  /// build() would not compile, or if the driver can compile concurrently (PoCL on a CPU cannot). Replaces a
-  /// process started before. Never throws.
+  /// Starts another process that builds the program for build(), with machine code for `launch`. build() then
+  /// waits for it, and builds here if it fails. Returns whether a process was started: not if build() would
+  /// not compile, or if the driver can compile concurrently (PoCL on a CPU cannot). Replaces an earlier
+  /// process. Never throws.
   bool build_ahead(const std::string& entry, const KernelDefines& defines, const EmptyLaunch& launch,
                    const GeneratedFiles& generated = {}) noexcept;
 
@@ -163,7 +162,7 @@ class Device {
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
     write_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
   }
-  /// Blocks; the only way to wait that is reliable on every driver.
+  /// Blocks until the values are read; the only reliable way to wait on every driver.
   template <class T>
   void read(const Buffer<T>& buffer, std::span<T> values, std::size_t first = 0) {
     read_bytes(buffer.memory, values.data(), values.size_bytes(), first * sizeof(T), CL_TRUE);
@@ -199,9 +198,9 @@ class Device {
   const std::map<std::string, KernelTimes>& times() const { return times_; }
   void forget_times() { times_.clear(); }
 
-  /// Stores in the binary cache what was compiled since the last call (some drivers compile at the first
-  /// launch of each local size), with `all` also programs that were not launched, which PoCL compiles for
-  /// that. Also called by the destructor. Never throws.
+  /// Stores in the binary cache the machine code compiled since the last call (some drivers compile at the
+  /// first launch of each local size). `all` includes programs that were never launched, which PoCL must
+  /// compile first. Also called by the destructor. Never throws.
   void save_programs(bool all = false) noexcept;
 
  private:
@@ -229,7 +228,7 @@ class Device {
   void run_empty(cl::Kernel& kernel, ProgramRecord* program, const EmptyLaunch& launch);
 
   DeviceInfo info_;
-  bool fma_ = false;  // has the fma instruction (kernels/lib/core/config.h)
+  bool fma_ = false;  // the device has an fma instruction (kernels/lib/core/config.h)
   BuildWish wish_;
   std::unique_ptr<PreparedBuilds> prepared_;
   cl::Device device_;

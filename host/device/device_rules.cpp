@@ -1,6 +1,6 @@
-// Holds the table; its first matching row counts. docs/measurements/gpu-compilers.md has the figures. Kernels
-// alone (kernels/lib/core/config.h) know what only a compiler's macros tell: the generation of an AMD GPU,
-// for DEVICE_WAVES, and whether Intel's extension for DEVICE_SUBGROUP is there.
+// Holds the table; the first matching row applies. docs/measurements/gpu-compilers.md has the figures. Only
+// the compiler's macros, used in kernels/lib/core/config.h, tell the generation of an AMD GPU (DEVICE_WAVES)
+// and whether Intel's extension for DEVICE_SUBGROUP exists.
 #include "device/device_rules.h"
 
 #include <fmt/format.h>
@@ -15,10 +15,10 @@ namespace sundog {
 namespace {
 
 constexpr std::array rules{
-    // Inlined, frames keep their structs in registers. With 128 registers a multiprocessor holds 16 warps;
-    // most kernels spill little or nothing for that. The tracer alone fits into 64 without spills, so 32
-    // warps run instead of 20; four boxes at a time (NODE_LOOP=2) it would spill 80 bytes. With a lathe it
-    // would spill 808 bytes for that, and none with 16 warps.
+    // Inlining everything keeps structs in registers. With 128 registers a multiprocessor holds 16 warps, and
+    // most kernels spill little or nothing. The tracer by itself fits into 64 registers without spills, so 32
+    // warps run instead of 20; testing four boxes at a time (NODE_LOOP=2) would spill 80 bytes. With a lathe,
+    // 64 registers would spill 808 bytes; 128 registers (16 warps) spill none.
     DeviceRule{.name = "nvidia",
                .reports = "NVIDIA",
                .of_gpus = true,
@@ -27,18 +27,20 @@ constexpr std::array rules{
                .of_lathes = "-cl-nv-maxrregcount=128",
                .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
-    // Four boxes at a time: the traversal needs 79 registers instead of 103, and 16 waves fit instead of 12.
-    // Ten waves (RDNA 3 and newer) cost plain scenes no spills; with textures, layers or rough glass up to
-    // 240 registers, where 5 to 9 waves would fit.
+    // Testing four boxes at a time, the traversal needs 79 registers instead of 103, so 16 waves fit instead
+    // of
+    // 12. Ten waves (RDNA 3 and newer) spill nothing in plain scenes; textures, layers or rough glass spill
+    // up
+    // to 240 registers, where 5 to 9 waves would fit without spills.
     DeviceRule{.name = "amd",
                .reports = "Advanced Micro Devices",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10",
                .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
                         "!-DDEVICE_INLINES_ALL"},
-    // Intel's own driver. Its compiler gives programs that spill 256 registers instead of 128, for half the
-    // threads, where the GPU has them; render_path and the tracer alone get them always, and the tracer then
-    // takes 16 rays a thread without spills, where the compiler chooses 8. GPUs without ignore both options.
+    // Intel's own driver. If the GPU offers 256 registers per thread instead of 128, at half the threads, the
+    // compiler uses them for programs that spill. render_path and the tracer always get them; the tracer then
+    // takes 16 rays per thread without spills, where the compiler would choose 8. Other GPUs ignore these.
     DeviceRule{.name = "intel",
                .reports = "Intel(R) OpenCL",
                .of_gpus = true,
@@ -49,7 +51,7 @@ constexpr std::array rules{
                .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -cl-intel-256-GRF-per-thread "
                         "!-cl-intel-256-GRF-per-thread !-cl-intel-enable-auto-large-GRF-mode "
                         "!-DDEVICE_INLINES_ALL"},
-    // By other drivers, which do not know these options.
+    // Intel GPUs under other drivers, which do not know the options above.
     DeviceRule{.reports = "Intel",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2",
@@ -57,12 +59,12 @@ constexpr std::array rules{
     DeviceRule{.of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL",
                .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL"},
-    // Mesa's compilers inline every call: the interpreter of fields (kernels/lib/sdf/interpret.cl) takes
-    // minutes.
+    // Mesa's compilers inline every call; they would take minutes for the interpreter of distance fields
+    // (kernels/lib/sdf/interpret.cl).
     DeviceRule{.reports = "rusticl", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
     DeviceRule{.reports = "Clover", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
-    // Vectors: by PoCL with AVX-512 the wide tracer traces 7 times as many primary rays a second as the
-    // compact one, and 3 times as many bounce rays. There a loop is slower (NODE_LOOP).
+    // Under PoCL with AVX-512, the wide tracer is 7 times as fast as the compact one for primary rays and 3
+    // times as fast for bounce rays. A loop over boxes (NODE_LOOP) is slower there.
     DeviceRule{.calls = true, .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
 };
 

@@ -1,4 +1,4 @@
-// Lanes, compiler options and definitions by device, chosen by the names that it reports: one table.
+// A table of lanes, compiler options and definitions for each kind of device, found by the names it reports.
 #pragma once
 #include <span>
 #include <string_view>
@@ -10,19 +10,19 @@ namespace sundog {
 
 /// A row of the table; the first row that matches a device decides.
 struct DeviceRule {
-  std::string_view name{};     // as in `sundog kernels --gpu`
-  std::string_view reports{};  // in its vendor or platform
-  bool of_gpus = false;        // only for the class gpu
-  bool calls = false;          // its compiler keeps calls of functions
-  // A work-item takes 16 rays in vectors (lanes), where the device reports vectors; otherwise one.
+  std::string_view name{};     // accepted by `sundog kernels --gpu`
+  std::string_view reports{};  // part of the vendor's or platform's name
+  bool of_gpus = false;        // matches only devices of the class gpu
+  bool calls = false;          // the compiler keeps function calls
+  // A work-item takes 16 rays in vectors (lanes) if the device reports vectors; otherwise one.
   bool vectors = false;
-  std::string_view options{};    // for its compiler; definitions that kernels have defaults for
-  std::string_view of_tracer{};  // of entry/trace_rays.cl, in place of options by the same name
-  std::string_view of_lathes{};  // instead of these, if not empty, for scenes with lathes
-  std::string_view of_paths{};   // of entry/render_path.cl, likewise
+  std::string_view options{};    // compiler options, and definitions that override the kernels' defaults
+  std::string_view of_tracer{};  // for entry/trace_rays.cl; replace `options` of the same name
+  std::string_view of_lathes{};  // instead of of_tracer for scenes with lathes; empty: of_tracer
+  std::string_view of_paths{};   // for entry/render_path.cl; replace `options` of the same name
   std::string_view tries{};      // alternatives for `sundog tune`: options_to_try()
   bool matches(const DeviceInfo& device) const;
-  /// The options that a program has in place of, or beside, the general ones.
+  /// The program's own options, which add to `options` and replace those of the same name.
   std::string_view of_program(const KernelText& text) const;
 };
 
@@ -31,7 +31,8 @@ std::span<const DeviceRule> device_rules();
 
 const DeviceRule& rule_of(const DeviceInfo& device);
 
-/// A GPU that matches that row, as far as programs depend on it. Throws UsageError with the known names.
+/// A GPU that matches the row of that name, with only the properties that programs depend on. Throws
+/// UsageError with the known names.
 DeviceInfo typical_gpu(std::string_view name);
 
 }  // namespace sundog

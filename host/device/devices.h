@@ -14,8 +14,7 @@ struct HostEnvironment;
 /// The kind of kernel that suits a device (by what it reports, never by its name).
 enum class DeviceClass { cpu, gpu };  // explicit vectors in a work-item; one ray per lane
 
-/// A device as its driver reports it. Every device has a row, and so has every platform without devices
-/// (device = -1).
+/// A device as its driver reports it. A platform without devices has a row too, with device = -1.
 struct DeviceInfo {
   int platform = 0, device = -1;  // as `clinfo -l` prints them
   std::string platform_name, platform_version, name, vendor, driver, version, c_version, extensions;
@@ -31,19 +30,19 @@ struct DeviceInfo {
   unsigned sub_units = 0;   // not 0: a sub-device of that many compute units (/N)
   unsigned first_unit = 0;  // offset of a sub-device, after earlier ones of the same device
   std::string identity;  // equal in every process that sees the device: its UUID or bus address; often empty
-  int rank = 0;          // of the owning process in a job
-  std::string host;      // of that process; empty: there is only one
+  int rank = 0;          // rank of the process that owns it in a job
+  std::string host;      // that process's host; empty: there is only one process
   void* handle = nullptr;                                // cl_device_id
   std::shared_ptr<const HostEnvironment> environment{};  // passed to enumerate_devices()
-  std::weak_ptr<DriverThreads> threads{};                // adopts threads left in its driver
+  std::weak_ptr<DriverThreads> threads{};                // takes over threads left in its driver
   std::shared_ptr<void> context{};  // from share_context(); null: each Device has its own
 
-  /// Whether other devices of its machine may run on the same cores. A sub-device has its own.
+  /// Whether other devices of its machine may run on the same cores. A sub-device has its own cores.
   bool shares_cores() const { return type == "cpu" && sub_units == 0; }
   bool usable() const { return problem.empty() && device >= 0; }
-  /// "0:1"; that of the whole device for a sub-device.
+  /// "0:1"; for a sub-device, the whole device's place.
   std::string place() const;
-  /// "0:1", or "0:1/2" for a sub-device of two units: the SPEC of select_devices() that means it.
+  /// "0:1", or "0:1/2" for a sub-device of two units: a SPEC for select_devices() that selects it.
   std::string spec() const;
   /// "0:1 Portable Computing Language / pthread-...", with "/2" for a sub-device of two units, "/2@4" if they
   /// start at unit 4, and "(rank 1 on node7)" in a job of several processes.

@@ -1,5 +1,5 @@
-// A folder is in use while its file "lock" is locked; the kernel releases the lock when a process ends,
-// however it ends.
+// Creates, locks and removes PoCL's folder. A folder is in use while its file "lock" is locked; the kernel
+// releases the lock when the process ends, however it ends.
 #include "device/driver_folder.h"
 
 #include <fcntl.h>
@@ -39,7 +39,7 @@ int lock_folder(const fs::path& folder, int more_flags) {
   return -1;
 }
 
-/// Old enough that its creator would have locked it.
+/// Whether the folder is so old that a living creator would have locked it.
 bool is_old(const fs::path& folder) {
   std::error_code error;
   const auto written = fs::last_write_time(folder, error);
@@ -60,8 +60,8 @@ void remove_left_over(const fs::path& root, std::string_view beginning) {
   }
 }
 
-// PoCL was seen to write 2 MiB for a scene's kernels. A folder with less than ample_room is used only if
-// there is no better one; one with less than least_room is useless.
+// PoCL was seen to write 2 MiB for a scene's kernels. A folder with less free space than ample_room is used
+// only if no other has more; a folder with less than least_room is useless.
 constexpr std::uintmax_t ample_room = std::uintmax_t{32} << 20, least_room = std::uintmax_t{3} << 20;
 
 /// Free bytes in a folder; none: unknown.
@@ -80,7 +80,7 @@ bool forbids_execution(const fs::path& folder) {
   return ::statvfs(folder.c_str(), &found) == 0 && (found.f_flag & ST_NOEXEC) != 0;
 }
 
-/// The limit of file size in bytes; none: unlimited.
+/// The process's limit on file sizes in bytes; none: unlimited.
 std::optional<std::uintmax_t> file_limit() {
   rlimit limit = {};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
@@ -100,8 +100,8 @@ void try_to_make(const fs::path& folder) {
   }
 }
 
-/// Creates and locks a folder below `root`; empty on failure. Another process that removes leftovers may take
-/// it before it is locked, so this retries. On a file system without locks nobody can take it.
+/// Creates and locks a folder below `root`; empty on failure. Retries, because another process that removes
+/// leftovers may lock the folder first. On a file system without locks, the folder is used unlocked.
 std::string make_locked_below(const fs::path& root, std::string_view beginning) {
   for (int attempt = 0; attempt < 10; ++attempt) {
     std::string folder = (root / beginning).string() + "XXXXXX";
@@ -144,7 +144,7 @@ DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : proces
   } catch (const std::exception&) {
     // PoCL's own folder works too, while it is writable and undamaged.
   }
-  // PoCL aborts if it is empty.
+  // PoCL aborts if POCL_CACHE_DIR is empty.
   if (const char* left = std::getenv("POCL_CACHE_DIR"); left && !*left) ::unsetenv("POCL_CACHE_DIR");
 }
 

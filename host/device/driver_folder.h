@@ -26,12 +26,12 @@ class DriverFolder {
 
   /// For a process that ends by _exit(). PoCL may abort if one of its threads is still working.
   void remove() const noexcept;
-  /// Why PoCL cannot write its files, and the remedy, for the end of a message; empty: nothing known. Ask
-  /// before using PoCL, which aborts or fails silently.
+  /// Why PoCL cannot write its files, and the remedy, to end a message with; empty if no problem is known.
+  /// Call before using PoCL, which would abort or fail silently.
   std::string problem(const HostEnvironment& environment) const;
 
  private:
-  std::string own_;    // empty: drivers use the user's or their own
+  std::string own_;    // empty: drivers use the user's folder or their own
   const int process_;  // owner; a child of fork() leaves the folder alone
 };
 

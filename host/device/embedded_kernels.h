@@ -15,14 +15,14 @@ struct MissingKernelFile : BuildError {
 };
 
 struct EmbeddedKernel {
-  std::string_view path, text;  // "lib/rng.cl"
+  std::string_view path, text;  // path: "lib/rng.cl"
 };
 
 /// All files, sorted by path.
 std::span<const EmbeddedKernel> embedded_kernels();
 
-/// A file's text, read from `folder` if given, for kernel development. Of a folder, whose path ends in a
-/// slash, a line that includes each of its .cl files. Throws MissingKernelFile.
+/// A file's text, read from `folder` if given, for kernel development. For a folder (a path that ends in a
+/// slash): an #include line for each .cl file in it. Throws MissingKernelFile.
 std::string embedded_kernel(const std::string& path, const std::filesystem::path& folder = {});
 
 }  // namespace sundog

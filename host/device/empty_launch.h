@@ -10,7 +10,7 @@ namespace sundog {
 std::string to_line(const EmptyLaunch& launch);
 EmptyLaunch empty_launch_of(const std::string& line);
 
-/// Launches and waits. Returns an OpenCL status.
+/// Launches the kernel over no work and waits. Returns an OpenCL status.
 cl_int launch_nothing(const cl::Context& context, const cl::CommandQueue& queue, cl::Kernel& kernel,
                       const EmptyLaunch& launch);
 

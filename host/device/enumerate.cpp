@@ -69,13 +69,13 @@ struct Query {
 };
 
 std::string type_name(cl_device_type type) {
-  // Oclgrind claims all types; the first counts.
+  // Oclgrind claims all types, so the first match counts.
   if (type & CL_DEVICE_TYPE_CPU) return "cpu";
   if (type & CL_DEVICE_TYPE_GPU) return "gpu";
   return type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "custom";
 }
 
-/// "OpenCL C 1.2 ..." means a version of at least 1.2.
+/// Whether the device supports OpenCL C 1.2: `c_version` is "OpenCL C 1.2 ..." or newer.
 bool speaks_c12(const std::string& c_version) {
   int major = 0, minor = 0;
   if (std::sscanf(c_version.c_str(), "OpenCL C %d.%d", &major, &minor) != 2) return false;
@@ -123,7 +123,7 @@ void read_figures(Query& query, DeviceInfo& info) {
   info.host_unified_memory = query.optional<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY, CL_FALSE) != CL_FALSE;
 }
 
-/// Equal for processes of one machine that see the same device. Empty if the driver cannot identify it.
+/// An identifier that all processes on a machine agree on; empty if the driver cannot identify the device.
 std::string identity(cl_device_id device, const std::string& extensions) {
   const auto hex = [&](cl_device_info what, std::size_t size) {
     std::array<unsigned char, 16> bytes{};
@@ -213,7 +213,7 @@ std::vector<DeviceInfo> enumerate_devices(const EnvironmentPtr& environment) {
   const ProcessLock lock;
   [[maybe_unused]] static const bool prepared = prepare_drivers(value_of(environment));
   cl_uint count = 0;
-  // No platform is an error status too (CL_PLATFORM_NOT_FOUND_KHR); an empty list says the same.
+  // Having no platform is an error status too (CL_PLATFORM_NOT_FOUND_KHR); report it as an empty list.
   if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
   std::vector<cl_platform_id> platforms(count);
   if (clGetPlatformIDs(count, platforms.data(), nullptr) != CL_SUCCESS) return {};

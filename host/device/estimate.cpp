@@ -1,5 +1,5 @@
-// OpenCL reports no lane count for GPUs and misleading values for emulators, so both are guessed from other
-// properties.
+// Estimates speed. OpenCL reports no lane count for GPUs and misleading values for emulators, so both are
+// guessed from other properties.
 #include "device/estimate.h"
 
 #include <algorithm>
@@ -10,9 +10,8 @@ namespace {
 // Lanes of a GPU compute unit: 32 to 128 on a discrete chip, 8 to 64 if it shares the host's memory.
 constexpr double discrete_lanes = 64, integrated_lanes = 16;
 
-// A CPU that reports neither vectors nor a cache is an emulated device: llvmpipe and Oclgrind look so, PoCL
-// and vendors' CPU drivers do not. The fastest of them (llvmpipe) traced rays 40 to 80 times slower than
-// PoCL.
+// A CPU that reports neither vectors nor a cache is emulated: llvmpipe and Oclgrind do so, PoCL and vendors'
+// CPU drivers do not. The fastest emulated device (llvmpipe) traced rays 40 to 80 times slower than PoCL.
 constexpr double emulation_penalty = 1.0 / 40;
 
 // Virtual machines often report no clock rate.

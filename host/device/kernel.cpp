@@ -15,7 +15,7 @@
 namespace sundog {
 namespace {
 
-/// Normalises types with several spellings.
+/// Normalises the spelling of a type ("unsigned int" and "uint" become "u32").
 std::string plain_type(std::string type) {
   static const std::map<std::string, std::string> spellings = {
       {"unsigned int", "u32"}, {"uint", "u32"}, {"int", "i32"}};

@@ -1,5 +1,5 @@
-// Include expansion. Within the #if branches under which a file was included, it is not included again; after
-// them, the compiler may not have seen it, so it is expanded anew, and a guard about it keeps it single.
+// Expands #include lines. A file is not expanded again within the #if branches that included it. After those
+// branches the compiler may not have seen it, so it is expanded again inside an include guard.
 #include "device/kernel_source.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace sundog {
 namespace {
 
-/// `# word rest` of a preprocessor line; word is empty for other lines.
+/// The parts of a preprocessor line `# word rest`; word is empty for other lines.
 struct Directive {
   std::string word, rest;
 };
@@ -81,7 +81,7 @@ class Expander {
       follow_conditional(directive.word);
       const std::string target = included_path(directive);
       if (directive.word == "pragma" && directive.rest == "once") {
-        out += "\n";  // compilers warn of it in what they take for the main file
+        out += "\n";  // compilers warn about #pragma once in a main file
       } else if (target.empty()) {
         out += line + "\n";
       } else if (is_seen(target)) {

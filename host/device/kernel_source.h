@@ -1,4 +1,4 @@
-// Expands kernel files to the single text that an OpenCL compiler gets.
+// Expands a kernel file and its includes to the single text for an OpenCL compiler.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -6,13 +6,13 @@
 
 namespace sundog {
 
-/// `-D` definitions, sorted by name; part of the kernel cache's key.
+/// Macro definitions, sorted by name; part of the kernel cache's key.
 using KernelDefines = std::map<std::string, std::string>;
 
 /// Kernel files that the host generates (formulas): include path -> text.
 using GeneratedFiles = std::map<std::string, std::string>;
 
-/// A kernel file and what it is expanded with.
+/// A kernel file with the definitions and files to expand it with.
 struct KernelText {
   std::string entry;
   KernelDefines defines = {};
@@ -24,7 +24,7 @@ struct KernelText {
   /// directives so that logs name file and line. Plain files are converted to lanes (lanes/lanes.h).
   /// `#include <...>` stays. Throws BuildError for a missing file or one that includes itself.
   std::string expanded() const;
-  /// All that expanded() depends on, but faster: plain files are left as they are.
+  /// A text that differs whenever expanded() does, but is faster to make: plain files stay unconverted.
   std::string identity() const;
 };
 

@@ -1,4 +1,4 @@
-// Sizes of launches, and their times: plain values.
+// Launch sizes and times, as plain values.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,11 +24,11 @@ struct EmptyLaunch {
   std::vector<std::size_t> argument_bytes;  // 0: a buffer
 };
 
-/// Total of one kernel's launches on one device. device_ms is from events, 0 if the driver has none. host_ms
+/// Totals of one kernel's launches on one device. device_ms is from events, 0 if the driver has none. host_ms
 /// is by the host's clock, from the first enqueue of a batch to the end of finish(), divided among the
-/// batch's launches by event time (equally without events). first_ms is the part of host_ms beyond events for
-/// first launches of a local size, when drivers compile or load the kernel. The local sizes are those of the
-/// last launch; 0: the driver's.
+/// batch's launches by event time (equally without events). first_ms is the part of host_ms beyond event time
+/// for first launches of a local size, when drivers compile or load the kernel. local_x and local_y are from
+/// the last launch; 0: chosen by the driver.
 struct KernelTimes {
   std::uint64_t launches = 0;
   double device_ms = 0, host_ms = 0, first_ms = 0;

@@ -6,12 +6,12 @@ namespace sundog {
 
 struct HostEnvironment;
 
-/// PoCL uses the library hwloc, which reads /sys; without it, as in a minimal chroot, PoCL finds no memory
-/// and aborts. This gives hwloc the numbers from system calls in its variable HWLOC_SYNTHETIC, unless the
-/// user set hwloc's variables. Call before the first OpenCL call.
+/// PoCL uses the library hwloc, which reads /sys. Without /sys, as in a minimal chroot, PoCL finds no memory
+/// and aborts. This passes hwloc the numbers from system calls in its variable HWLOC_SYNTHETIC, unless the
+/// user has set hwloc's variables. Call before the first OpenCL call.
 void describe_machine_to_drivers(const HostEnvironment& environment);
 
-/// Why the numbers had to be given, and the remedy; empty if /sys is mounted.
+/// Why hwloc needed these numbers, and the remedy; empty if /sys is mounted.
 std::string topology_note();
 
 }  // namespace sundog

@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-// Register allocation since compute capability 3.0.
+// Registers are allocated like this since compute capability 3.0.
 constexpr std::uint64_t register_step = 256, schedulers = 4;
 
 /// The number before `words` in the line.
@@ -37,7 +37,7 @@ std::map<std::string, PtxasFigures> read_ptxas_log(const std::string& log) {
     std::smatch match;
     if (std::regex_search(line, match, entry)) {
       kernel = &kernels[match[1]];
-      *kernel = {};  // of several devices, keep the last
+      *kernel = {};  // several devices: keep the last one's figures
     }
     if (!kernel) continue;
     add(kernel->stack, number_before(line, "bytes stack frame"));

@@ -1,4 +1,4 @@
-// Takes a mutex, then flock() on a file of /proc, which copies of this library share.
+// Locks a mutex, then a file of /proc with flock(), which all copies of this library share.
 #include "device/process_lock.h"
 
 #include <fcntl.h>

@@ -3,8 +3,8 @@
 
 namespace sundog {
 
-/// Held during its lifetime, by one thread of the process at a time. Copies of this library loaded side by
-/// side share it, unlike a mutex: it is a file lock on the process's entry in /proc. Without /proc it only
+/// Held during its lifetime, by one thread of the process at a time. Unlike a mutex, copies of this library
+/// loaded side by side share it: it is a file lock on the process's entry in /proc. Without /proc it only
 /// works within one copy.
 class ProcessLock {
  public:

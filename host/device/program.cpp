@@ -1,4 +1,4 @@
-// Builds programs: from the binary cache if it can be trusted, else with the driver's compiler.
+// Builds programs: from the binary cache if its entry is intact, else with the driver's compiler.
 #include "device/program.h"
 
 #include <fmt/format.h>
@@ -104,8 +104,7 @@ cl::Program program_from_binary(const cl::Context& context, const cl::Device& de
   return program;
 }
 
-/// Builds a trivial program, so that the driver loads what it needs to build. A unique name keeps it out of
-/// the driver's cache.
+/// Builds a trivial program, so that the driver loads its compiler. A unique name avoids the driver's cache.
 cl_int build_nothing(const cl::Context& context, const cl::Device& device, const std::string& name,
                      const std::string& options) {
   cl_int status = CL_SUCCESS;
@@ -127,7 +126,7 @@ cl::Program program_of_parts(const cl::Context& context, const cl::Device& devic
   return status == CL_SUCCESS && kernels_work(whole) ? whole : cl::Program();
 }
 
-/// Compiles in another process while this one's driver initialises; false: compile it here.
+/// Compiles in another process while this one's driver initialises; false: the program must be compiled here.
 bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                     const std::string& source) {
   auto process = CompileProcess::start(record.device, source, record.options);
@@ -138,7 +137,7 @@ bool compile_beside(ProgramRecord& record, const cl::Context& context, const cl:
   return record.program() != nullptr;
 }
 
-/// Creates the program from another process's binary, if it has built the same; else null.
+/// Creates the program from another process's binary if it has the same key, else null.
 cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record, const cl::Context& context,
                           const cl::Device& device) {
   if (!prepared.begun || prepared.begun->key != record.key) return {};
@@ -147,7 +146,7 @@ cl::Program program_begun(PreparedBuilds& prepared, const ProgramRecord& record,
   return built.empty() ? cl::Program() : program_from_binary(context, device, built, record.options);
 }
 
-/// The cached program of `key`, perhaps already read.
+/// The cached program for `key`; uses the one already read, if any.
 std::optional<CachedProgram> cached_program(const std::filesystem::path& file, const std::string& key,
                                             PreparedBuilds& prepared) {
   std::optional<PreparedBuilds::Found> found = std::exchange(prepared.found, std::nullopt);
@@ -155,12 +154,12 @@ std::optional<CachedProgram> cached_program(const std::filesystem::path& file, c
   return load_program(file, key);
 }
 
-/// Whether a build must produce the compiler's log, which neither a cache nor another process has.
+/// Whether the build must produce the compiler's log, which neither a cache nor another process provides.
 bool wants_log(const HostEnvironment& environment, const BuildWish& wish) {
   return wish.from_source || !environment.build_log.empty();
 }
 
-/// Whether the user's options broke the build: nothing can be built with them.
+/// Whether the user's options broke the build, i.e. not even a trivial program builds with them.
 bool options_are_bad(const ProgramRecord& record, const cl::Context& context, const cl::Device& device) {
   return !value_of(record.device.environment).build_options.empty() &&
          build_nothing(context, device, hash128(record.key), record.options) != CL_SUCCESS;
@@ -178,7 +177,7 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
     status = record.program.build({device}, portable.c_str());
     used = portable;
     if (status == CL_SUCCESS) {
-      record.cache_file.clear();  // the cached program would be asked for with the options
+      record.cache_file.clear();  // its key would name options that the program lacks
       report.note = fmt::format("{}: the driver refuses options of its maker; built without, and not cached",
                                 record.entry());
     }
@@ -198,9 +197,9 @@ void compile(ProgramRecord& record, const cl::Context& context, const cl::Device
                    report.log);
 }
 
-/// Oclgrind's optimiser leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes):
-/// such a program builds, but has no kernels. Without optimisation it works. That program is not cached,
-/// because the failure may be transient and the kernels are slow.
+/// Compiles the program, without optimisation if the driver makes no kernels otherwise: Oclgrind's optimiser
+/// leaves calls that its interpreter does not know (llvm.bitreverse, noalias scopes). The unoptimised program
+/// is not cached, because the failure may be transient and the kernels are slow.
 void compile_to_kernels(ProgramRecord& record, const cl::Context& context, const cl::Device& device,
                         const std::string& source, BuildReport& report) {
   const auto makes_kernels = [&](const std::string& options) {
@@ -254,7 +253,7 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
   }
   if (!record->cache_file.empty())
     if (const auto reason = cannot_store(record->cache_file)) {
-      report.note = *reason;
+      report.note = *reason + "; set XDG_CACHE_HOME to a folder that can be written";
       record->cache_file.clear();
     }
   if (!from_source) record->program = program_begun(prepared, *record, context, device);

@@ -13,7 +13,7 @@
 
 namespace sundog {
 
-/// A program's text, which is only expanded where it is compiled.
+/// A program's text, expanded only if it is compiled.
 struct ProgramSource {
   KernelText text;
   std::string identity;  // text.identity()
@@ -25,7 +25,7 @@ struct ProgramRecord {
   ProgramSource source;
   std::string options;               // build options
   std::string key;                   // everything that the binary depends on
-  std::filesystem::path cache_file;  // empty: not cached
+  std::filesystem::path cache_file;  // empty: do not cache
   bool stored = false;               // the cache holds this program, with machine code for stored_variants
   std::set<std::string> stored_variants, launched_variants;
 
@@ -54,16 +54,16 @@ std::shared_ptr<ProgramRecord> build_program(const cl::Context& context, const c
                                              const BuildWish& wish, PreparedBuilds& prepared,
                                              BuildReport& report);
 
-/// Whether build_program() would find it in the cache. Keeps it for the next build.
+/// Whether build_program() would find the program in the cache. Keeps it for the next build.
 bool is_program_cached(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                        PreparedBuilds& prepared);
 
-/// Starts building for build_program() in another process, with machine code for `launch`. Returns whether it
-/// started.
+/// Starts another process that builds for build_program(), with machine code for `launch`. Returns whether
+/// the process started.
 bool begin_program(const DeviceInfo& info, const ProgramSource& source, const BuildWish& wish,
                    const EmptyLaunch& launch, PreparedBuilds& prepared);
 
-/// Updates the cache if it lacks a launched variant; of a program that was never launched only with
+/// Updates the cache if it lacks a launched variant. Skips a program that was never launched unless
 /// `unlaunched`. Throws DeviceError, IoError.
 void save_program(ProgramRecord& record, bool unlaunched);
 

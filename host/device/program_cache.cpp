@@ -1,6 +1,6 @@
-// File format: magic and version, a checksum of the rest, three sizes, then key, variants and binary as one
-// zlib stream. The key, which contains the kernel's source, is stored in full, so that hash collisions are
-// detected; compression reduces the file to a quarter.
+// Reads and writes cache files: magic and version, a checksum of the rest, three sizes, then key, variants
+// and binary as one zlib stream. The key, which contains the kernel's source, is stored in full to detect
+// hash collisions; compression reduces the file to a quarter.
 #include "device/program_cache.h"
 
 #include <fmt/format.h>

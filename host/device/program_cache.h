@@ -10,7 +10,7 @@ namespace sundog {
 
 struct HostEnvironment;
 
-/// A file's content. `variants` are the launches (kernel and local size) with machine code in the binary:
+/// A file's contents. `variants` are the launches (kernel and local size) with machine code in the binary:
 /// some drivers recompile a kernel for each local size, at its first launch.
 struct CachedProgram {
   std::string binary;
@@ -23,7 +23,7 @@ std::string hash128(std::string_view bytes);
 /// The file for the program of `key`; empty without a cache folder, or if kernels are not cached.
 std::filesystem::path program_cache_file(const HostEnvironment& environment, const std::string& key);
 
-/// Creates the folder of `file` if needed; returns why nothing can be stored there, or nothing.
+/// Creates the folder of `file` if needed. Returns why nothing can be stored there; none if storing works.
 std::optional<std::string> cannot_store(const std::filesystem::path& file);
 
 /// The program stored for exactly this key; nothing if the file is missing, damaged, or has another format or

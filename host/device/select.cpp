@@ -20,7 +20,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Numbers match no device, because they occur in many names.
+/// Numbers as patterns match no device, because they occur in many names.
 bool is_number(std::string_view text) {
   return text.find_first_not_of("0123456789") == std::string_view::npos;
 }
@@ -29,7 +29,7 @@ struct Spec {
   std::string text;     // as given
   std::string pattern;  // in lower case, without ! and /N
   bool exclude = false;
-  bool may_miss = false;   // of an exclusion: has a trailing ?
+  bool may_miss = false;   // an exclusion with a trailing ?
   unsigned sub_units = 0;  // 0: the whole device
 };
 
@@ -117,7 +117,7 @@ std::string refusal(const DeviceInfo& device, const Spec& spec, const std::vecto
   return {};
 }
 
-/// The next units of the device; the device itself for all units of one that cannot be split.
+/// A sub-device of the next free units; the device itself if it cannot be split and all units are wanted.
 DeviceInfo part(DeviceInfo device, unsigned units, const std::vector<DeviceInfo>& chosen) {
   if (units == device.compute_units && device.max_sub_devices < 2) return device;
   for (const DeviceInfo& other : chosen)
@@ -152,8 +152,8 @@ struct Selection {
   std::vector<std::string> warnings;
 };
 
-/// Adds the matches of one SPEC in `candidates`. Warns of those that cannot provide the requested part, if
-/// another can.
+/// Adds the matches of one SPEC in `candidates`. Warns about matches that cannot provide the requested part
+/// if another can.
 void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& candidates) {
   std::vector<DeviceInfo>& chosen = selection.devices;
   std::vector<std::string> refused;
@@ -172,7 +172,7 @@ void add(Selection& selection, const Spec& spec, const std::vector<DeviceInfo>& 
   for (const std::string& why : refused) selection.warnings.push_back(why + "; it is left out");
 }
 
-/// An exclusion without effect would leave a render on the unwanted device.
+/// Throws for an exclusion without effect, which would leave a render on the unwanted device.
 void check_exclusions(std::span<const DeviceInfo> all, const std::vector<Spec>& specs) {
   for (const Spec& spec : specs)
     if (spec.exclude && !spec.may_miss && std::ranges::none_of(all, [&](const DeviceInfo& device) {

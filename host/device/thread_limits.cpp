@@ -13,9 +13,9 @@
 namespace sundog {
 namespace {
 
-// Threads of a frame beside the driver's, one per processor. A concurrent compile process needs as many.
+// A frame's threads besides the driver's (one per processor). A compile process may need as many again.
 constexpr unsigned frame_threads = 4;
-// Memory of program, libraries and compiler beyond the current use, without stacks (PoCL 3.1: 320 MiB total).
+// Memory that libraries and the compiler need beyond current use, without stacks (PoCL 3.1: 320 MiB total).
 constexpr std::size_t other_memory = std::size_t{256} << 20;
 
 void* wait_for_all(void* all) {

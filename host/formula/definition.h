@@ -16,7 +16,7 @@ struct FormulaParameter {
   double minimum = -1e6, maximum = 1e6;
   bool whole = false;
   std::string meaning = {};
-  std::string old_name = {};  // accepted as well
+  std::string old_name = {};  // also accepted
 };
 
 /// escape: the solid is the set of points whose orbit stays within the bailout radius; distance from |z| and
@@ -30,8 +30,7 @@ enum class EscapeEstimate { logarithmic, linear };
 /// The derivative in the estimate. running: one number that bounds the growth of lengths. radial: likewise,
 /// but a triplex power grows as along z only, n r^(n-1): common in other programs, faster, not a bound near
 /// the poles. jacobian: the largest stretch of all partial derivatives of z. automatic: jacobian if the
-/// running bound would be loose, else radial, or running for maps that fold and hybrids.
-/// hybrid's.
+/// running bound would be loose, else radial, or running for hybrids and maps that fold.
 enum class FormulaDerivative { automatic, running, radial, jacobian };
 
 struct FormulaDefinition {
@@ -41,7 +40,7 @@ struct FormulaDefinition {
   std::string start, map, distance;  // statements; statements; one expression
   EscapeEstimate estimate = EscapeEstimate::logarithmic;
   FormulaDerivative derivative = FormulaDerivative::automatic;
-  bool normalize = false;  // direct: the expression is no distance; divide by the length of its gradient
+  bool normalize = false;  // direct: the expression is not a distance; divide by its gradient's length
   std::vector<FormulaParameter> parameters;
   int iterations = 8;        // 1..max_iterations
   double bailout = 16;       // radius at which an orbit has escaped, 0: never
@@ -49,17 +48,17 @@ struct FormulaDefinition {
   // escape: factor on the depth estimate. Not a proven bound: orbits inside grow faster than their derivative
   // predicts.
   double inside_safety = 0.1;
-  double safety = 1;      // (0, 1]: makes the estimate a bound, as measured by the tests
+  double safety = 1;      // (0, 1]: factor that makes the estimate a bound, as tests measure it
   double exceptions = 0;  // fraction of the interval where that may fail (triplex powers: near the poles)
   std::array<double, 6> bounds{-1.5, -1.5, -1.5, 1.5, 1.5, 1.5};  // default interval: lower, upper
-  std::string old_name = {};                                      // accepted as well
-  bool smooth = false;  // no detail at every scale: hits are refined
+  std::string old_name = {};                                      // also accepted
+  bool smooth = false;  // without detail at every scale: hits are refined
   static constexpr int max_iterations = 1000;
   static constexpr std::size_t max_parameters = 32;
 };
 
-/// A pattern: text that ends in an expression, a number or a vec3, of `p`, the position, and `width`, the
-/// footprint, both in pattern units.
+/// A pattern: text that ends in an expression, a number or a vec3, of the position `p` and the footprint
+/// `width`, both in pattern units.
 struct PatternFormula {
   std::string text;
   std::vector<FormulaParameter> parameters;

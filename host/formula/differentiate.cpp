@@ -1,5 +1,5 @@
 // Forward-mode automatic differentiation of a formula's graph (Wengert 1964): computes each node's tangent
-// from those of its operands.
+// from its operands' tangents.
 #include <algorithm>
 
 #include "formula/graph.h"

@@ -1,4 +1,4 @@
-// Runs the lowered graphs in the kernels' order: start, a map a turn until the orbit escapes, finish.
+// Runs the lowered graphs in the kernels' order: start, one map per turn until the orbit escapes, finish.
 #include "formula/evaluate.h"
 
 #include <algorithm>

@@ -21,7 +21,7 @@ struct FieldValue {
   double slope = 0;
 };
 
-/// An argument outside a function's domain: at `count` of the points evaluated, and the first of them.
+/// Arguments outside a function's domain: at how many of the evaluated points, and the first of these.
 struct DomainBreach {
   DomainGuard guard;
   std::string section;  // "start", "map" or "distance"
@@ -38,12 +38,12 @@ class FormulaEvaluator {
   explicit FormulaEvaluator(const FormulaField& field);
   /// The estimate times the field's safety; 0 inside if the formula gives no depth.
   FieldValue at(const glm::dvec3& p);
-  /// The factor by which an iteration changes far points' lengths, in the mean, where each map changes them
-  /// in proportion, as the Mandelbox's does and no power.
+  /// The mean factor by which one iteration scales distant points; nothing unless every map scales them in
+  /// proportion (the Mandelbox's does, a power does not).
   std::optional<double> scale();
   /// Maximum number of operations of an evaluation.
   std::size_t cost() const;
-  /// Over all points so far.
+  /// Breaches at all points so far.
   const std::vector<DomainBreach>& breaches() const { return breaches_; }
 
  private:

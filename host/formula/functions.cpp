@@ -1,4 +1,4 @@
-// A function is a row: its call and meaning for the help, its numbers of arguments, and its rule.
+// A function is a row: its call and meaning for the help, its range of argument counts, and its rule.
 #include "formula/functions.h"
 
 #include <functional>

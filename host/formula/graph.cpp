@@ -1,4 +1,4 @@
-// Nodes are simplified as they are added; a GraphProgram keeps those that its outputs need.
+// Simplifies nodes as they are added; a GraphProgram keeps only those that its outputs need.
 #include "formula/graph.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ inline constexpr NodeId no_node = 0xFFFFFFFFu;
 /// else b. All others return numbers. power takes a base >= 0; inverse_root is 1 / sqrt(a)^b of an a > 0 and
 /// a constant integer b; rough_inverse_root is 1 / sqrt(a) to 1e-4, for slopes.
 ///
-/// X(operation, its value of a, b and c): each operation stands here alone.
+/// X(operation, its value for a, b and c): the only list of operations.
 #define SUNDOG_FORMULA_OPS(X)             \
   X(add, a + b)                           \
   X(subtract, a - b)                      \

@@ -1,4 +1,4 @@
-// The end of a line ends a statement, except within parentheses.
+// Splits a formula's text into tokens. A line's end ends a statement, except within parentheses.
 #include "formula/lexer.h"
 
 #include <array>

@@ -15,7 +15,7 @@ struct Token {
   double value = 0;
 };
 
-/// The last token is `end`. Newlines inside brackets do not end statements.
+/// Splits a text into tokens; the last one is `end`. Newlines inside brackets do not end statements.
 std::vector<Token> tokens_of(std::string_view text);
 
 }  // namespace sundog

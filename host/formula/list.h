@@ -10,7 +10,7 @@ namespace sundog {
 /// All surfaces, in the order in which `sundog formulas` prints them.
 const std::vector<FormulaDefinition>& formula_list();
 
-/// nullptr if unknown.
+/// The surface with this name, current or old; nullptr if unknown.
 const FormulaDefinition* find_formula(const std::string& name);
 
 /// An operation that combines fields: its type in scene files, its keys, its effect.

@@ -6,7 +6,6 @@
 // r^(n-1) max(1, |sin nt / sin t|) for triplex numbers at angle t from their axis), sums add it. It is used
 // while these bounds are tight (see Value::tight). The Jacobian is the exact derivative by forward-mode
 // differentiation of the scalar graph; the estimate divides by its largest stretch.
-// direction.
 #pragma once
 #include <vector>
 
@@ -29,7 +28,7 @@ constexpr int tangent_of_c(int component, int axis) { return tangent_c + compone
 struct Section {
   Graph graph;
   std::vector<NodeId> z, c;                                   // 3 or 4 components
-  NodeId derivative = no_node, c_slope = no_node;             // running
+  NodeId derivative = no_node, c_slope = no_node;             // of the running derivative
   std::vector<std::array<NodeId, 3>> z_tangents, c_tangents;  // per component and axis
   NodeId distance = no_node;
   std::array<NodeId, 3> gradient{no_node, no_node, no_node};  // of the distance
@@ -37,16 +36,16 @@ struct Section {
 };
 
 /// start: p -> z, c. map: z, c, derivative -> z, derivative. finish: z, derivative, p -> distance, gradient.
-/// A direct field has `finish` alone.
+/// A direct field has only `finish`.
 struct LoweredFormula {
   int size = 3;           // components of z
-  bool jacobian = false;  // derivative: length of the gradient; else the running one
-  bool folds = false;     // of the map: Values::folds
+  bool jacobian = false;  // derivative: the Jacobian's largest stretch; else the running one
+  bool folds = false;     // Values::folds of the map
   Section start, map, finish;
 };
 
 /// Throws FormulaError. `values` are the parameters' components in order: an exponent that is a whole number
-/// is compiled in. `start`: of the formula that a hybrid's sequence begins with, else the definition's own.
+/// is compiled in. `start`: the start of a hybrid's first formula, else the definition's own.
 LoweredFormula lower(const FormulaDefinition& definition, const std::vector<double>& values,
                      const Section* start = nullptr);
 
@@ -59,7 +58,7 @@ struct LoweredPattern {
 /// Throws FormulaError.
 LoweredPattern lower_pattern(const PatternFormula& formula);
 
-/// The default values of a definition's parameters, one after the other.
+/// The default values of a definition's parameters, concatenated.
 std::vector<double> default_values(const FormulaDefinition& definition);
 
 }  // namespace sundog

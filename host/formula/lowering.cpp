@@ -1,5 +1,5 @@
-// Walks each expression depth first and leaves the operations to Values and call_function(); errors get the
-// innermost place, and domain checks the branch they are in.
+// Walks each expression depth first and leaves the operations to Values and call_function(); errors carry the
+// innermost place, and domain checks the branch that they are in.
 #include "formula/lowering.h"
 
 #include <cmath>
@@ -166,7 +166,7 @@ Value Lowering::power(const Expression& e) {
       n = parameter_values_.at(static_cast<std::size_t>(node.value) -
                                static_cast<std::size_t>(in::parameter));
   }
-  // A constant exponent of a number costs no more than its digits; others would make a kernel for each value.
+  // A number's literal exponent takes few multiplications; each value of others needs its own kernel.
   const double most = base.type == ValueType::scalar && g.is_constant(exponent.x()) ? 1024 : 16;
   if (n && *n == std::floor(*n) && std::abs(*n) <= most)
     return v.power(base, v.number(*n), static_cast<int>(*n));

@@ -18,7 +18,7 @@ class Powers {
     return n % 2 ? g.mul(square, x) : square;
   }
 
-  /// v|^n, n >= 0, from |v|^2; approximate for odd n.
+  /// |v|^n, n >= 0, from |v|^2; approximate for odd n.
   NodeId length_power(NodeId square, int n) {
     if (n == 0) return g.constant(1);
     if (n % 2 == 0) return whole(square, n / 2);
@@ -56,7 +56,7 @@ class Powers {
     const NodeId rho_square = g.add(g.mul(v.x(), v.x()), g.mul(v.y(), v.y()));  // as in square_length3
     const Pair polar = imaginary(v.z(), square, rho_square, n);
     Value r = grown(v, square, n, polar.b);
-    if (n <= 8) {  // rho^(n-1) fits into a float: a shorter dependency chain
+    if (n <= 8) {  // rho^(n-1) fits into a float, which shortens the dependency chain
       const Pair around = imaginary(v.x(), rho_square, g.mul(v.y(), v.y()), n);
       const NodeId kept = g.max(rho_square, g.constant(1e-10));
       const NodeId factor =

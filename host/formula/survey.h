@@ -16,17 +16,17 @@ struct PlacedValue {
 struct FormulaSurvey {
   int points = 0, finite = 0, inside = 0;
   glm::dvec3 lost{0};           // a point without a finite value, if finite < points
-  PlacedValue least, greatest;  // estimates; searched beyond the points
-  PlacedValue steepest;         // slopes (FieldValue); searched likewise
+  PlacedValue least, greatest;  // estimates, refined by climbing from the points
+  PlacedValue steepest;         // FieldValue::slope, refined likewise
   bool is_bounded = true;       // the search for the steepest slope converged
-  /// The smallest ratio, at most 1, of true distance to estimate that was found; the estimate is too long by
+  /// The smallest ratio of true distance to estimate that was found, at most 1; the estimate is too long by
   /// at least its inverse.
   PlacedValue reach{1, glm::dvec3(0)};
   std::vector<DomainBreach> breaches;
 };
 
-/// Deterministic; about ten thousand operations a point, up to a thousand points. `closely`: also finds the
-/// steepest slope and the reach. Throws FormulaError.
+/// Deterministic; samples 64 to 1024 points, fewer for costly formulas. `closely`: also finds the steepest
+/// slope and the reach. Throws FormulaError.
 FormulaSurvey survey_formula(const FormulaField& field, const glm::dvec3& lower, const glm::dvec3& upper,
                              bool closely);
 

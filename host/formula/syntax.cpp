@@ -11,7 +11,7 @@
 namespace sundog {
 namespace {
 
-/// The mend for a reserved word, which authors bring along from shading languages.
+/// A hint for a reserved word, which authors bring along from shading languages.
 std::string_view instead_of(std::string_view word, const Token& next) {
   if (word == "for" || word == "while" || word == "do")
     return ": a map is one iteration, and no text has loops";

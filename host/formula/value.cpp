@@ -1,4 +1,4 @@
-// Each operation checks types, adds nodes to the graph, and says whether the slope is still a tight bound.
+// Each operation checks types, adds nodes to the graph, and determines whether the slope is a tight bound.
 #include "formula/value.h"
 
 #include <cmath>
@@ -24,8 +24,8 @@ void Values::require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
 }
 
-/// A value computed from others: it varies if one of them does, and then has no tight slope until a rule
-/// gives it one.
+/// A value computed from others. It varies if an operand does, and then has no tight slope until a rule sets
+/// one.
 Value Values::result(ValueType type, std::initializer_list<const Value*> from) {
   Value r;
   r.type = type;

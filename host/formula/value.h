@@ -20,7 +20,7 @@ struct Value {
   ValueType type = ValueType::scalar;
   std::array<NodeId, 4> part{no_node, no_node, no_node, no_node};
   bool varies = false;     // changes with p
-  bool depends_z = false;  // through z
+  bool depends_z = false;  // varies through z
   bool tight = true;
   NodeId slope = no_node;
 
@@ -73,8 +73,7 @@ class Values {
   Value invert(const Value& v, const Value& square_radius);
   Value wrap(const Value& v, const Value& period);
   Value rotate(const Value& v, const Value& axis, const Value& angle);
-  /// Applies op per component, widening scalars to the other operand's type. Lengths grow by at most
-  /// `growth`.
+  /// Applies op per component, widening scalars to the other operand's type.
   Value each(Op op, const Value& a);
   Value each(Op op, const Value& a, const Value& b);
   Value clamped(const Value& v, const Value& low, const Value& high);
@@ -82,7 +81,7 @@ class Values {
   Graph& g;
   std::vector<DomainGuard> guards;
   bool radial = false;  // triplex powers use the slope along z only
-  bool folds = false;   // a fold, inversion or repetition was used; |z| is a fold
+  bool folds = false;   // a fold, inversion or repetition was used; |z| counts as a fold
 
  private:
   friend class Powers;

@@ -1,5 +1,5 @@
-// Preprocesses and parses a file, specialises what its entries call, and writes structures and functions
-// behind guards, as several files may make the same ones.
+// Preprocesses and parses a file, specialises the functions that its entries call, and writes structures and
+// functions behind guards, because several files may generate the same ones.
 #include "lanes/lanes.h"
 
 #include "lanes/writer.h"
@@ -21,7 +21,7 @@ class Text {
     text += std::string(2 * static_cast<std::size_t>(line.depth), ' ') + line.text + "\n";
     ++number_;
   }
-  /// Lines that a program may have from several plain files.
+  /// Adds lines that a program may get from several plain files.
   void add_once(const std::string& name, const std::string& feature, const std::vector<Line>& all) {
     add({0, "#ifndef MADE_" + name, {}});
     add({0, "#define MADE_" + name, {}});
@@ -71,7 +71,7 @@ std::vector<Specialisation*> Lanes::specialised(const std::string& path) {
 
 std::string Lanes::text(const std::string& path, bool lines, const IsWanted& is_wanted) {
   Text out(lines, fmt::format("// Made of {} in lanes.\n", path));
-  // Writing may ask for structures alone: what is called is known.
+  // Writing may only request further structures: all called functions are known.
   std::vector<Specialisation*> all = specialised(path);
   std::erase_if(all, [&](const Specialisation* s) { return !is_wanted(s->name); });
   if (all.empty()) return out.text;
@@ -83,7 +83,7 @@ std::string Lanes::text(const std::string& path, bool lines, const IsWanted& is_
     used.insert(writer.structures().begin(), writer.structures().end());
   }
   Writer writer(specialisations_, *all.front());
-  for (const auto& [s, in_lanes] : used) writer.structure(*s, in_lanes);  // finds those of members
+  for (const auto& [s, in_lanes] : used) writer.structure(*s, in_lanes);  // finds the structures of members
   used.insert(writer.structures().begin(), writer.structures().end());
   for (const Structure& s : parser_.program().structures) {
     const bool plain = used.contains({&s, false}), in_lanes = used.contains({&s, true});

@@ -1,8 +1,8 @@
-// Vectorises plain kernels: converts OpenCL C for one path (parse.h defines the dialect) to functions in the
-// vocabulary of kernels/lib/core/lanes.h, for any number of lanes. Infers what varies between lanes;
-// specialises functions for each kind of call; control flow becomes masks (after M. Pharr and W. Mark, "ispc:
-// A SPMD Compiler for High-Performance CPU Programming", 2012, and R. Karrenberg and S. Hack, "Whole-Function
-// Vectorization", 2011).
+// Vectorises plain kernels: converts OpenCL C for one path (parser.h defines the dialect) to functions in the
+// vocabulary of kernels/lib/core/lanes.h, for any number of lanes. Infers which values vary between lanes,
+// specialises functions for each kind of call, and turns control flow into masks (after M. Pharr and W. Mark,
+// "ispc: A SPMD Compiler for High-Performance CPU Programming", 2012, and R. Karrenberg and S. Hack,
+// "Whole-Function Vectorization", 2011).
 #pragma once
 #include <functional>
 #include <string>
@@ -15,26 +15,26 @@ namespace sundog::spmd {
 /// Whether a kernel file is plain, i.e. below plain/.
 bool is_plain(const std::string& path);
 
-/// Whether a program still lacks the function or structure of lanes of this name.
+/// Whether a program still lacks the function or structure `name` in lanes.
 using IsWanted = std::function<bool(const std::string& name)>;
 
 /// The plain files of a program. Methods throw BuildError "file:line:column: what".
 class Lanes {
  public:
-  /// `shows_helpers`: of files without ENTRY functions all functions count as such, for authors.
+  /// `shows_helpers`: in files without ENTRY functions, all functions count as ENTRY functions, for authors.
   explicit Lanes(ReadFile read, bool shows_helpers = false);
 
-  /// The plain file `path` in lanes: its structures and ENTRY functions, with their callees, as far as they
-  /// are wanted. `lines`: #line directives name the plain file.
+  /// Converts the plain file `path` to lanes: its structures, its ENTRY functions and their callees, as far
+  /// as they are wanted. `lines`: #line directives name the plain file.
   std::string text(
       const std::string& path, bool lines,
       const IsWanted& is_wanted = [](const std::string&) { return true; });
 
-  /// Reports what varies in each generated function, why, and the function's cost.
+  /// Reports which variables vary in each generated function, why, and the function's cost.
   std::string explained(const std::string& path);
 
  private:
-  /// Analyses what was not read before. Returns the ENTRY functions and their callees: callees first.
+  /// Analyses files not read before. Returns the ENTRY functions and their callees, callees first.
   std::vector<Specialisation*> specialised(const std::string& path);
 
   Preprocessor preprocessor_;

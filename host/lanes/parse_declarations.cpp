@@ -46,7 +46,7 @@ std::string Parser::name(std::string_view what) {
   return tokens_[at_++].text;
 }
 
-/// `(name, 4, ...)`: those words, at least `least`.
+/// Reads the words of `(name, 4, ...)`, at least `least`.
 std::vector<std::string> Parser::words_in_brackets(std::size_t least) {
   std::vector<std::string> all;
   const Place where = place();
@@ -56,7 +56,7 @@ std::vector<std::string> Parser::words_in_brackets(std::size_t least) {
   return all;
 }
 
-/// From an opening bracket to behind the one that closes it.
+/// Skips from an opening bracket past its closing one.
 void Parser::skip_brackets() {
   const Place from = place();
   int depth = 0;
@@ -210,7 +210,7 @@ void Parser::function() {
   const bool plain = is_plain_(*f.place.file);
   f.uniform |= !plain;
   Function& kept = out_.functions.emplace_back(std::move(f));
-  const Function*& known = out_.function_of[kept.name];  // a prototype may stand before the text
+  const Function*& known = out_.function_of[kept.name];  // a prototype may precede the definition
   if (known && (known->body || !at("{"))) fail(kept.place, "'{}' is there already", kept.name);
   known = &kept;
   if (!at("{")) return want(";");
@@ -229,7 +229,7 @@ void Parser::parameter(Function& f) {
     const Type type = pointed(base_type());
     v.name = name("a parameter");
     v.type = lengthened(type);
-    if (v.type.is_array()) v.type = pointer_to(*v.type.of);  // as C hands it over
+    if (v.type.is_array()) v.type = pointer_to(*v.type.of);  // as C passes it
   }
   const Variable& kept = out_.variables.emplace_back(std::move(v));
   f.parameters.push_back(&kept);

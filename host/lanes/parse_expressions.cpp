@@ -1,4 +1,4 @@
-// Expressions, with their types: OpenCL's conversions stand in the tree.
+// Parses expressions with their types; OpenCL's implicit conversions become nodes of the tree.
 #include <set>
 
 #include "lanes/parser.h"
@@ -25,7 +25,7 @@ const Type& Parser::scalar(Type::Kind kind) const {
   return type(kind == Type::Kind::real ? "float" : kind == Type::Kind::integer ? "int" : "uint");
 }
 
-/// `e` as a value of `type`, by the conversions that C makes by itself.
+/// Converts `e` to `type` by C's implicit conversions.
 ExpressionPtr Parser::converted(ExpressionPtr e, const Type& type) const {
   const Type& own = e->type;
   if (own.fits(type)) return e;
@@ -59,7 +59,7 @@ ExpressionPtr Parser::expression() {
   return made(Kind::assign, to->type, sign.place, "", to, converted(value, to->type));
 }
 
-/// Steps stand by themselves: elsewhere the order in which lanes do them would matter.
+/// Refuses ++ and -- within expressions, where the order of lanes would matter.
 void Parser::refuse_steps(const Expression& e) const {
   any_within(e, [](const Expression& part) -> bool {
     if (!part.steps()) return false;
@@ -117,7 +117,7 @@ ExpressionPtr Parser::combined(const Token& sign, ExpressionPtr a, ExpressionPtr
     if (!a->type.is_number() || !b->type.is_number()) refuse();
     const bool shifts = sign.is("<<") || sign.is(">>");
     if (shifts && b->type.is_real()) fail(sign.place, "a shift by a float");
-    // Truths are numbers; what is not negative wins over what may be; numbers with a point over both.
+    // As in C, int wins over bool, unsigned over int, and float over all.
     if (!shifts && b->type.kind > type.kind) type = b->type;
     if (type.is_truth()) type = this->type("int");
     a = converted(a, type);

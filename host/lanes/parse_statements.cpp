@@ -1,4 +1,4 @@
-// Statements.
+// Parses statements; leaves conditions on features to the preprocessor, and rewrites do loops as while loops.
 #include <set>
 
 #include "lanes/parser.h"
@@ -6,7 +6,7 @@
 namespace sundog::spmd {
 namespace {
 
-/// The preprocessor's text of a condition of features alone, else empty.
+/// The preprocessor's text of a condition on features only; otherwise empty.
 std::string feature_text(const Expression& e) {
   using Kind = Expression::Kind;
   if (e.kind == Kind::constant && e.text.starts_with("HAS_")) return e.text;
@@ -20,7 +20,8 @@ std::string feature_text(const Expression& e) {
   return a.empty() || b.empty() ? "" : fmt::format("({} {} {})", a, e.text, b);
 }
 
-/// Takes the features out that a chain of && begins with; nothing may be left.
+/// Removes the features at the start of a chain of && and returns them; `e` becomes null if nothing else is
+/// left.
 std::string take_features(ExpressionPtr& e) {
   std::string all = feature_text(*e);
   if (!all.empty()) {
@@ -117,7 +118,7 @@ StatementPtr Parser::branch() {
   ExpressionPtr asked = truth(in_brackets());
   s->body.push_back(statement());
   if (take("else")) s->body.push_back(statement());
-  // Features are the preprocessor's: `if (HAS_X && c) s` is `#if HAS_X`, `if (c) s`.
+  // The preprocessor tests features: `if (HAS_X && c) s` becomes `#if HAS_X` and `if (c) s`.
   if (s->body.size() == 1 || !feature_text(*asked).empty()) s->feature = take_features(asked);
   if (asked) s->expressions.push_back(std::move(asked));
   if (s->feature.empty() || s->expressions.empty()) return s;
@@ -128,7 +129,7 @@ StatementPtr Parser::branch() {
   return outer;
 }
 
-// `do s while (c);` is `bool first = true; while (first || c) { first = false; s }`.
+// `do s while (c);` becomes `bool first = true; while (first || c) { first = false; s }`.
 StatementPtr Parser::do_loop() {
   const Place where = place();
   const Type& truths = type("bool");

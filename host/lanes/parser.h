@@ -1,7 +1,7 @@
-// Parses plain kernels: OpenCL C 1.2 for one path, with the words that kernels/README.md lists. In: text.
-// Out: a typed tree; unknown constructs are rejected. Interfaces may have, besides:
-//   UNIFORM T f(...)      a hand-written function that gives one value for all lanes
-//   LANE_VECTOR(Spectrum, Spectra, spectrum, 4)     a vector of x to w: spectrum_add, spectrum_scale, ...
+// Parses plain kernels (OpenCL C 1.2 for one path, with the words that kernels/README.md lists) to a typed
+// tree; rejects unknown constructs. Interfaces may also have:
+//   UNIFORM T f(...)                      a hand-written function that gives one value for all lanes
+//   LANE_VECTOR(Type, Type, prefix, 4)    a vector of x to w: prefix_add, prefix_scale, ...
 #pragma once
 #include "lanes/tree.h"
 
@@ -9,12 +9,12 @@ namespace sundog::spmd {
 
 using IsPlain = std::function<bool(const std::string& path)>;
 
-/// A recursive-descent parser. Throws BuildError with the place. Skips functions of files for which
-/// `is_plain` is false, which may be called with uniform arguments.
+/// A recursive-descent parser. Throws BuildError with the place. Skips the bodies of functions in files for
+/// which `is_plain` is false; these may be called with uniform arguments.
 class Parser {
  public:
   explicit Parser(IsPlain is_plain);
-  /// Adds to the program what the tokens declare.
+  /// Adds the tokens' declarations to the program.
   void read(Tokens tokens);
   const Program& program() const { return out_; }
 
@@ -29,7 +29,7 @@ class Parser {
   std::string name(std::string_view what);
   std::vector<std::string> words_in_brackets(std::size_t least);
   void skip_brackets();
-  /// Calls `read` for each element up to `end`, commas between.
+  /// Calls `read` for each element up to `end`; commas separate elements.
   template <class Read>
   void list_until(std::string_view end, const Read& read) {
     while (!take(end)) {
@@ -105,7 +105,7 @@ class Parser {
   std::size_t at_ = 0;
   Program out_;
   std::map<std::string, Type> types_, constants_;
-  std::vector<const Variable*> known_;  // the names at this place, none of which hides another
+  std::vector<const Variable*> known_;                  // visible names; none hides another
   std::map<const std::string*, std::string> features_;  // of files: HAVING(HAS_X);
   const Function* function_ = nullptr;                  // the function being parsed
 };

@@ -1,5 +1,5 @@
-// Blanks comments, splits lines into tokens with their places, handles directives, and expands macros between
-// two directives at once.
+// Blanks comments, splits lines into tokens with their places, handles directives, and expands macros in each
+// stretch between two directives in one go.
 #include "lanes/preprocess.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool continues_name(char c) { return begins_name(c) || is_digit(c); }
 
-/// The text with comments made blank, and '\v' for the end of a line that is joined to the next.
+/// Replaces comments by spaces and line continuations by '\v'.
 std::string whole_lines(std::string text) {
   for (std::size_t at = text.find("\\\n"); at != std::string::npos; at = text.find("\\\n", at))
     text.replace(at, 2, " \v");
@@ -63,7 +63,7 @@ Token first_token(std::string_view text) {
   return token(Token::Kind::sign, 1);
 }
 
-/// The tokens of a whole line, which begins at `place`; that moves to the next one.
+/// Splits a logical line that begins at `place` into tokens, and advances `place` to the next line.
 Tokens tokens_of(std::string_view text, Place& place) {
   Tokens out;
   std::size_t begin = 0;
@@ -84,7 +84,7 @@ Tokens tokens_of(std::string_view text, Place& place) {
   return out;
 }
 
-/// The position of the closing bracket.
+/// Reads a macro's arguments from the bracket at `open` on; returns the position of the closing one.
 std::size_t read_arguments(const Tokens& in, std::size_t open, std::vector<Tokens>& arguments) {
   arguments.emplace_back();
   int depth = 0;
@@ -175,7 +175,7 @@ void Preprocessor::directive(Tokens words, const Place& place) {
   } else if (!is_active()) {
     return;
   } else if (what == "include") {
-    std::string path;  // a path in quotation marks: its words stand side by side
+    std::string path;  // a path in quotation marks: join its tokens
     for (const Token& word : words)
       if (!word.is("\"")) path += word.text;
     if (words.size() < 3 || !words[0].is("\"")) fail(place, "wanted #include \"path\"");
@@ -207,7 +207,7 @@ void Preprocessor::define(const Tokens& words, const Place& place) {
   macros_[words[0].text] = std::move(macro);
 }
 
-/// `defined(X)` and `!defined(X)`, joined by && or ||, is what headers ask.
+/// Evaluates `defined(X)` and `!defined(X)` joined by && or ||, the only conditions that headers use.
 bool Preprocessor::condition(const Tokens& words, const Place& place) const {
   bool result = true, joined_by_or = false;
   for (std::size_t i = 0;; ++i) {

@@ -48,15 +48,15 @@ class Preprocessor {
  public:
   Preprocessor(ReadFile read, std::function<bool(const std::string&)> keeps_names);
 
-  /// The tokens of a file and of all that it includes, but of files that it gave before; the last one is
-  /// `end`.
+  /// The tokens of a file and of its includes, except for files whose tokens it has returned before; the last
+  /// token is `end`.
   Tokens tokens_of(const std::string& path);
-  /// The file and all that it includes.
+  /// The file and all that it includes, directly or not.
   std::set<std::string> files_of(const std::string& path) const;
 
  private:
   struct Macro {
-    std::optional<std::vector<std::string>> parameters;  // none: it takes no list
+    std::optional<std::vector<std::string>> parameters;  // none: a macro without a list
     Tokens body;
     bool keeps_name = false;
   };
@@ -73,11 +73,11 @@ class Preprocessor {
 
   ReadFile read_;
   std::function<bool(const std::string&)> keeps_names_;
-  std::deque<std::string> paths_;                             // for places
-  std::map<std::string, std::vector<std::string>> includes_;  // of each file that was read
+  std::deque<std::string> paths_;                             // file names, for places
+  std::map<std::string, std::vector<std::string>> includes_;  // direct includes of each file read
   std::map<std::string, Macro> macros_;
   std::vector<bool> open_;  // whether the branch of each open #if is taken
-  Tokens pending_, out_;    // pending: not yet expanded, as a macro's arguments may stand on several lines
+  Tokens pending_, out_;    // pending_: not yet expanded, because a macro's arguments may span lines
 };
 
 }  // namespace sundog::spmd

@@ -1,5 +1,5 @@
-// Walks the function again and again until nothing more varies: variables set in divergent branches or loops
-// vary, and calls take their own specialisations.
+// Walks the function until no further value varies: variables set in divergent branches or loops vary, and
+// each kind of call gets its own specialisation.
 #include "lanes/specialisation.h"
 
 namespace sundog::spmd {
@@ -14,7 +14,7 @@ bool any_of(const std::vector<bool>& all) { return std::ranges::find(all, true) 
 bool is_parted(const Frames& frames) { return std::ranges::any_of(frames, &Frame::divergent); }
 
 double cost_of(const Expression& e) {
-  if (e.kind <= Kind::component) return 0;  // what is read as it stands
+  if (e.kind <= Kind::component) return 0;  // values read directly
   if (e.divides_whole()) return 30;
   if (e.is_binary("/")) return 6;
   if (e.kind == Kind::assign || e.kind == Kind::choose || e.kind == Kind::index) return 2;
@@ -61,7 +61,7 @@ void Specialisation::find_only_result() {
   });
   if (all.size() != 1) return;
   for (const StatementPtr& part :
-       function.body->body)  // in a block within, its name would not be known at the end
+       function.body->body)  // in an inner block its name would be out of scope at the end
     if (part->is(Statement::Kind::declare) &&
         std::ranges::find(part->variables, *all.begin()) != part->variables.end())
       only_result = *all.begin();
@@ -95,7 +95,7 @@ bool Specialisation::is_dead_after(const Variable* v, const Statement* loop, con
                                    std::size_t from) const {
   for (std::size_t k = from; k < frames.size(); ++k)
     if (frames[k].kind == Frame::Kind::loop) {
-      if (frames[k].node != loop) return false;  // an outer loop comes back
+      if (frames[k].node != loop) return false;  // an outer loop reaches it again
       break;
     }
   const auto last = last_use_.find(v);
@@ -195,7 +195,7 @@ Specialisation& Specialisations::of(const Function& f, const std::vector<bool>& 
   return *made;
 }
 
-// ---- which values vary: expressions, what is assigned, calls
+// ---- which values vary: expressions, assignments, calls
 
 Specialisation::Root Specialisation::root_of(const Expression& e) const {
   if (e.kind == Kind::variable) return {e.variable, false};
@@ -296,7 +296,7 @@ std::vector<bool> Specialisation::arguments_of(const Expression& call, const Fra
   const std::vector<const Variable*>& parameters = call.function->taken;
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (is_own_pointer(parameters[i])) vary[i] = pointee_varies(*call.of[i]);
-  if (any_of(vary))  // what is written through pointers varies together with the rest
+  if (any_of(vary))  // values written through pointers vary with the other arguments
     for (std::size_t i = 0; i < parameters.size(); ++i)
       if (is_own_pointer(parameters[i])) vary[i] = true;
   return vary;

@@ -1,4 +1,4 @@
-// Infers, for one kind of call of a function, what varies between lanes and where masks are needed.
+// Infers, for one kind of call of a function, which values vary between lanes and where masks are needed.
 #pragma once
 #include <set>
 
@@ -6,17 +6,17 @@
 
 namespace sundog::spmd {
 
-/// Control flow around a place; lanes diverge in a divergent one.
+/// Control flow around a place. In a divergent frame, only some lanes may be active.
 struct Frame {
   enum class Kind { branch, loop, round, alike };
   Kind kind = Kind::branch;
   const Statement* node = nullptr;
   bool divergent = false;
-  std::string only = {};  // of a branch that no lane leaves: the condition of its lanes
+  std::string only = {};  // the lanes' condition, for a branch that no lane leaves
 };
 using Frames = std::vector<Frame>;
 bool is_parted(const Frames& frames);
-/// The loop that a break or continue in `frames` is of, and whether only some lanes take it there.
+/// The loop that a break or continue in `frames` belongs to, and whether only some lanes take it there.
 std::pair<const Statement*, bool> left_loop(const Statement& s, const Frames& frames);
 
 class Specialisations;
@@ -46,18 +46,18 @@ class Specialisation : public Findings {
     bool through;
   };
   Root root_of(const Expression& e) const;
-  /// The divergent control flow between a variable's declaration and `frames`. Excludes loops whose leaving
-  /// lanes never read the variable again.
+  /// The divergent control flow between a variable's declaration and `frames`. Excludes loops after which the
+  /// lanes that leave never read the variable again.
   std::vector<const Frame*> between(const Variable* v, const Frames& frames);
   void declare(const Variable* v, const Frames& frames);
   /// Which arguments vary in a call.
   std::vector<bool> arguments_of(const Expression& call, const Frames& frames);
 
   const Function& function;
-  std::string name;  // of the generated function
+  std::string name;  // name of the generated function
   bool writes_uniform = false;
   double cost = 0;
-  const Variable* only_result = nullptr;  // every return returns it
+  const Variable* only_result = nullptr;  // the variable that every return returns
   std::map<const Variable*, std::string> why;
   std::set<const Specialisation*> calls;
   std::set<const Variable*> set_by_call;  // first used as the OUT argument of a call
@@ -78,7 +78,7 @@ class Specialisation : public Findings {
   void find_only_result();
 
   Specialisations& all_;
-  std::map<const Variable*, std::size_t> declared_in_;  // so many frames
+  std::map<const Variable*, std::size_t> declared_in_;  // number of frames there
   std::map<const Variable*, int> last_use_;             // positions in reading order
   std::map<const Statement*, int> loop_end_;
 };
@@ -95,7 +95,7 @@ class Specialisations {
   std::vector<Specialisation*> done_;
 };
 
-/// The cost of an expression without its parts, and of a call that is not of the program.
+/// The cost of an expression without its parts; for a call, only that of a built-in function.
 double cost_of(const Expression& e);
 
 }  // namespace sundog::spmd

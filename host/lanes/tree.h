@@ -10,9 +10,8 @@ namespace sundog::spmd {
 
 struct Structure;
 
-/// A vector of the language, whose lane form has functions for what operators do: float3 is a REAL3, with
-/// add3, scale3, ...; an interface declares others, which are of lanes always: Spectrum is a SampledSpectrum,
-/// with spectrum_add, ...
+/// A vector type whose lane form has functions in place of operators: float3 becomes REAL3, with add3,
+/// scale3, ...; interfaces declare others, which always vary: SampledSpectrum has spectrum_add, ...
 struct VectorForm {
   std::string name, lanes, prefix;  // an empty prefix: the functions end in the number of parts
   int parts = 0;
@@ -22,7 +21,7 @@ struct VectorForm {
 struct Type {
   enum class Kind { nothing, boolean, integer, natural, real, vector, structure, pointer, array };
   Kind kind = Kind::nothing;
-  std::string name = {};             // in the device's compiler, for one path
+  std::string name = {};             // for one path, in the device's compiler
   const VectorForm* form = nullptr;  // of a vector
   const Structure* structure = nullptr;
   std::shared_ptr<const Type> of = {};    // of a pointer or array
@@ -42,9 +41,9 @@ struct Type {
   bool is_pointer() const { return is(Kind::pointer); }
   bool is_table() const { return is_pointer() && global; }
   bool is_own_pointer() const { return is_pointer() && !global; }
-  /// Whether a value of it may stand, as it is, where one of `wanted` does.
+  /// Whether a value of this type can be used unchanged where `wanted` is expected.
   bool fits(const Type& wanted) const;
-  /// Whether its lane form is hand-written; for structures, `joins` the lanes of two.
+  /// Whether its lane form is hand-written; for structures, `joins`: whether lanes of two can be joined.
   bool is_by_hand() const;
   bool joins() const;
 };
@@ -73,7 +72,7 @@ struct Variable {
   std::string name;
   Type type;
   bool uniform = false, here = false;  // here: the place of the mask in a hand-written function's parameters
-  bool out = false;                    // what it points to becomes undefined in lanes that are off
+  bool out = false;                    // its target becomes undefined in inactive lanes
   Place place;
 };
 
@@ -112,9 +111,9 @@ struct Expression {
   bool is_binary(std::string_view sign) const { return kind == Kind::binary && text == sign; }
   bool is_unary(std::string_view sign) const { return kind == Kind::unary && text == sign; }
   bool steps() const { return is_unary("++") || is_unary("--"); }
-  /// Whole numbers, which trap if the divisor is zero.
+  /// Whether it divides whole numbers, which traps if the divisor is zero.
   bool divides_whole() const { return (is_binary("/") || is_binary("%")) && type.is_whole(); }
-  /// The structure or vector that a member or component is of.
+  /// The structure or vector that a member or component belongs to.
   const Type& whole() const { return of[0]->type.is_pointer() ? *of[0]->type.of : of[0]->type; }
 };
 
@@ -124,7 +123,7 @@ bool any_within(const Expression& e, const Test& test) {
   return test(e) || std::ranges::any_of(e.of, [&](const auto& part) { return any_within(*part, test); });
 }
 
-/// Kinds of operators.
+/// Kinds of binary operators.
 bool compares(std::string_view sign);
 bool joins(std::string_view sign);  // && and ||
 
@@ -132,7 +131,7 @@ bool joins(std::string_view sign);  // && and ||
 struct BuiltIn {
   std::size_t arguments = 1;
   Type::Kind takes{}, gives{};  // `nothing`: takes any number
-  std::string lanes = {};       // its name for lanes, if that is another one
+  std::string lanes = {};       // its name for lanes, if different
   double cost = 1;
 };
 const BuiltIn* built_in_of(const std::string& name);
@@ -145,11 +144,11 @@ struct Statement {
     block,       // body...
     declare,     // variables with initialisers, which may be null
     branch,      // if (expressions[0]) body[0] else body[1]; feature: by the preprocessor
-    loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; there may be no expressions[1]
+    loop,        // for (body[0]; expressions[0]; expressions[1]) body[1]; expressions[1] may be missing
     each_alike,  // variables[0] takes each distinct value of expressions[0]: body[0]
     leave_loop,  // break
     next_round,  // continue
-    give,        // return expressions[0], if there is one
+    give,        // return expressions[0], which may be missing
     compute,     // expressions[0]
   };
   Kind kind = Kind::block;
@@ -170,9 +169,9 @@ void each_within(const Statement& s, const Visit& visit) {
 }
 
 struct Function {
-  std::string name, lanes;  // `lanes`: name of the hand-written one
+  std::string name, lanes;  // `lanes`: name of the hand-written function
   Type result;
-  std::vector<const Variable*> parameters, taken;  // taken: those that a call passes
+  std::vector<const Variable*> parameters, taken;  // taken: parameters that a call passes
   std::string feature;                             // the feature that it needs; empty: none
   StatementPtr body;                               // none: hand-written
   bool is_inline = false, is_entry = false, takes_mask = false, uniform = false;  // uniform: its result

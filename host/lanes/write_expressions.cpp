@@ -1,4 +1,4 @@
-// Expressions: of one value for all lanes as they were written, of others in lanes.
+// Writes expressions: as in the source if they have one value for all lanes, otherwise in lanes.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
@@ -12,7 +12,7 @@ bool is_name(const std::string& text) {
   return std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.'; });
 }
 
-/// The text of a whole number as one of `type`; empty: it has to be cast.
+/// The text of a whole number as a literal of `type`; empty if it needs a cast.
 std::string number_of(const Expression& e, const Type& type) {
   const std::string& text = e.text;
   if (e.kind != Kind::number || e.type.is_real() || text != e.digits) return "";
@@ -79,7 +79,7 @@ std::string Writer::spread(const std::string& text, const Type& type) {
     return fmt::format("all_{}({})", type.name, text);
   }
   if (type.is_pointer() || type.is_array()) return text;
-  if (type.is(Type::Kind::integer))  // a number without a sign in an expression of whole numbers
+  if (type.is(Type::Kind::integer))  // the text may be unsigned
     return fmt::format("(MASK)((int)({}))", text);
   return fmt::format("({})({})", type_text(type, true), text);
 }
@@ -92,7 +92,7 @@ std::string Writer::simple(const Expression& e) {
   return name;
 }
 
-/// As it is written, in lanes where it varies.
+/// The expression as in the source, in lanes if it varies.
 std::string Writer::value(const Expression& e) {
   const bool v = varies(e);
   const auto part = [&](std::size_t i) { return value(*e.of[i]); };
@@ -169,7 +169,7 @@ std::string Writer::varying_cast(const Expression& e) {
   return fmt::format("{}({})", from.is_real() ? "TO_MASK" : "AS_MASK", text);
 }
 
-/// The parts of a vector: those wanted, or all.
+/// The wanted parts of a vector, or all of them, separated by commas.
 std::string Writer::parts_of(const Expression& e, std::string_view wanted) {
   if (wanted.empty()) wanted = letters.substr(0, static_cast<std::size_t>(e.type.form->parts));
   const bool gathers = is_gathered(e);
@@ -196,7 +196,7 @@ std::string Writer::varying_vector_binary(const Expression& e) {
 
 std::string Writer::varying_binary(const Expression& e) {
   const Expression &a = *e.of[0], &b = *e.of[1];
-  if (e.divides_whole() && varies(b)) {  // lanes that are off must not trap, so they divide by 1
+  if (e.divides_whole() && varies(b)) {  // inactive lanes must not trap, so they divide by 1
     const std::string by = lanes(b), one = fmt::format("({})(1)", type_text(e.type, true));
     return fmt::format("({} {} select({}, {}, {}))", lanes(a), e.text, one, by, mask_);
   }
@@ -207,7 +207,7 @@ std::string Writer::varying_binary(const Expression& e) {
 
 // ---- conditions as masks, and choices between two values
 
-/// Whether e must not be computed in lanes that do not ask for it.
+/// Whether e must not be computed in inactive lanes.
 bool Writer::is_guarded(const Expression& e) {
   return any_within(e, [&](const Expression& part) {
     if (part.kind == Kind::any || (part.kind == Kind::member && is_gathered(part))) return true;
@@ -277,7 +277,7 @@ std::string Writer::mask_of(const Expression& e) {
   return e.kind == Kind::choose ? varying_choice(e) : value(e);
 }
 
-/// && and ||: the second condition is asked only where C asks it.
+/// && and ||: evaluates the second condition only where C does.
 std::string Writer::joined_masks(const Expression& e) {
   const Expression &a = *e.of[0], &b = *e.of[1];
   const char sign = e.text[0];

@@ -1,4 +1,4 @@
-// Loops and ways out: lanes leave one by one, and a loop ends when none is left.
+// Writes loops, break, continue and return: lanes leave one by one, and a loop ends when no lane is left.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {

@@ -1,4 +1,4 @@
-// Tables and arrays at places that vary, structures, and calls.
+// Writes accesses to tables and arrays at varying places, structures, and calls.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
@@ -9,7 +9,7 @@ using Kind = Expression::Kind;
 
 }  // namespace
 
-/// Whether e is read from a table at a place that varies.
+/// Whether e is read from a table at a varying place.
 bool Writer::is_gathered(const Expression& e) {
   if (e.kind != Kind::member && e.kind != Kind::component && e.kind != Kind::index) return false;
   if (e.of[0]->type.is_table()) return varies(*e.of[0]) || (e.kind == Kind::index && varies(*e.of[1]));
@@ -21,7 +21,7 @@ std::string Writer::index_of(const Expression& e) {
   return e.type.is_natural() ? fmt::format("AS_MASK({})", text) : text;
 }
 
-/// table[index].member[place].x: words at a place of each lane; the given part of a vector.
+/// Gathers table[index].member[place].x at the places of all lanes; of a vector, the given part.
 std::string Writer::gather(const Expression& e, std::size_t part) {
   int offset = 0, stride = 0;
   std::string table, index, places;
@@ -55,7 +55,8 @@ std::string Writer::gather(const Expression& e, std::size_t part) {
   return kind == Type::Kind::natural ? fmt::format("AS_UINTS({})", all) : all;
 }
 
-/// A pointer to a table: what is alike in all lanes, and an index of each lane, which may be empty.
+/// Splits a pointer to a table into a part that is equal in all lanes and an index per lane, which may be
+/// empty.
 std::pair<std::string, std::string> Writer::table_and_index(const Expression& e) {
   if (!varies(e)) return {value(e), ""};
   if (const auto kept = tables_.find(e.variable); kept != tables_.end()) return {kept->second, e.text};
@@ -65,7 +66,7 @@ std::pair<std::string, std::string> Writer::table_and_index(const Expression& e)
   return {value(*of.of[0]), index_of(*of.of[1])};
 }
 
-/// The type of an array's elements, as lanes.h names it, and the place of one in each lane.
+/// The type of an array's elements, as lanes.h names it, and the place of the element that `lane` accesses.
 std::pair<std::string, std::string> Writer::place_in_lane(const Expression& e, const std::string& lane) {
   if (!e.type.is_real() && !e.type.is(Type::Kind::integer))
     fail(e.place, "an element that varies of an array of {}", name_of(e.type));
@@ -74,7 +75,7 @@ std::pair<std::string, std::string> Writer::place_in_lane(const Expression& e, c
           fmt::format("{}[MASK_LANE({}, {})]", value(*e.of[0]), index, lane)};
 }
 
-/// An element of an array of lanes, or of one, at a place that may differ from lane to lane.
+/// Reads an element of an array, which may vary, at an index that may differ between lanes.
 std::string Writer::element(const Expression& e) {
   const std::string name = fresh("element"), lane = fresh("lane");
   const auto [type, place] = place_in_lane(e, lane);
@@ -84,7 +85,7 @@ std::string Writer::element(const Expression& e) {
   return name;
 }
 
-/// `to = value`, where the place in an array differs from lane to lane.
+/// Writes `to = value` to an array at an index that differs between lanes.
 std::string Writer::scatter(const Expression& to, const std::string& value) {
   const std::string name = fresh("value"), lane = fresh("lane");
   const auto [type, place] = place_in_lane(to, lane);
@@ -123,7 +124,7 @@ std::string Writer::hand_written(const Expression& e) {
     const Expression& given = *e.of[i++];
     if (given.type.is_own_pointer() || given.type.is_array()) return pointed(given);
     if (parameter->uniform || given.type.is_pointer()) return value(given);
-    // Masks of what is written by hand are among the lanes that are there.
+    // Hand-written functions receive masks of active lanes only.
     const bool narrows = parameter->type.is_truth() && f.takes_mask;
     return narrows ? fmt::format("{} & {}", mask_, lanes(given)) : lanes(given);
   });
@@ -137,9 +138,9 @@ std::string Writer::pointed(const Expression& e) {
   return value(e);
 }
 
-// ---- structures: as they are, and in lanes with what takes lanes of two
+// ---- structures: for one path, and in lanes, with functions that select between two
 
-/// `head`, a line for each member, where its feature is there, and `end`.
+/// Writes `head`, a line for each member, within #if of its feature, and `end`.
 template <class Text>
 void Writer::member_lines(const Structure& s, const std::string& head, const Text& text, const char* end) {
   place_ = s.place;
@@ -153,7 +154,7 @@ void Writer::member_lines(const Structure& s, const std::string& head, const Tex
   line(end);
 }
 
-/// `head {`, which sets all members of `r`: by `text` of their place, or of each element of theirs.
+/// Writes the function `head`, which sets all members of `r`, and each element of arrays, by `text`.
 template <class Text>
 std::vector<Line> Writer::structure_function(const Structure& s, const std::string& head, const Text& text) {
   line("static inline {} {} {{", s.lanes, head);
@@ -184,7 +185,7 @@ std::vector<Line> Writer::structure(const Structure& s, bool in_lanes) {
   return structure_function(s, fmt::format("select_{0}({1} a, {1} b, MASK m)", s.name, s.lanes), joined);
 }
 
-/// One path's, the same in all lanes.
+/// Writes the function that repeats one path's structure in all lanes.
 std::vector<Line> Writer::spread_structure(const Structure& s) {
   out_.clear();
   const auto spread_part = [&](const Type& type, const std::string& at) {

@@ -1,4 +1,4 @@
-// Statements: what is stored where lanes have parted, branches, and what is returned.
+// Writes functions and their statements: declarations, masked stores and branches.
 #include "lanes/writer.h"
 
 namespace sundog::spmd {
@@ -6,8 +6,8 @@ namespace {
 
 using StatementKind = Statement::Kind;
 
-constexpr double cheap = 12;      // operations up to which a branch is computed rather than jumped over
-constexpr double long_rest = 24;  // operations left from which on it pays to ask whether any lane is left
+constexpr double cheap = 12;      // operations up to which a branch is computed rather than skipped
+constexpr double long_rest = 24;  // remaining operations above which testing for active lanes pays
 
 /// The type of a variable that is set later on.
 Type settable(Type type) {
@@ -50,7 +50,7 @@ double Writer::weight(const Statement& s) {
   return all;
 }
 
-/// Whether it pays to ask if any lane is left before what stands from `from` on.
+/// Whether it pays to test if any lane is left before the statements from `from` on.
 bool Writer::is_long(const std::vector<StatementPtr>& all, std::size_t from) {
   double rest = 0;
   bool loops = false;
@@ -117,7 +117,7 @@ void Writer::statement(const Statement& s) {
   }
 }
 
-/// `in_loop`: the round of the innermost loop.
+/// `in_loop`: the block is the body of the innermost loop.
 void Writer::block(const std::vector<StatementPtr>& all, bool in_loop) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Statement& s = *all[i];
@@ -127,11 +127,11 @@ void Writer::block(const std::vector<StatementPtr>& all, bool in_loop) {
     if (!leaves || !is_long(all, i + 1)) continue;
     Loop& l = loops_.back();
     line("if (!any_lane({})) {}", l.going, l.going == l.lanes ? "break;" : "continue;");
-    if (i == 0 && l.going == l.lanes) l.checked = true;  // the loop itself need not ask
+    if (i == 0 && l.going == l.lanes) l.checked = true;  // the loop itself need not test
   }
 }
 
-/// Whether this place is reached several times.
+/// Whether control may reach this place several times.
 bool Writer::comes_again() const {
   return !loops_.empty() || std::ranges::any_of(frames_, [](const Frame& f) {
     return f.kind == Frame::Kind::alike && f.divergent;
@@ -157,8 +157,8 @@ void Writer::declaration(const Variable& v, const Expression* first) {
   }
   const Type type = settable(v.type);
   const bool is_array = type.is_array(), constant = v.type.constant && !type.is_pointer() && first;
-  // Nothing stays undefined: to hand that to select() would be undefined behaviour, for which LLVM drops a
-  // kernel.
+  // Initialises every variable: passing an undefined value to select() would be undefined behaviour, for
+  // which LLVM drops a kernel.
   std::string start;
   if (first)
     start = " = " + (vary ? lanes(*first) : value(*first));
@@ -168,7 +168,7 @@ void Writer::declaration(const Variable& v, const Expression* first) {
        is_array ? fmt::format("[{}]", type.length) : "", start);
 }
 
-/// An expression for what it does.
+/// Writes an expression for its effect.
 std::string Writer::computed(const Expression& e) {
   if (e.kind != Expression::Kind::assign && !e.steps()) return value(e);
   const Expression& to = *e.of[0];
@@ -186,7 +186,7 @@ std::string Writer::computed(const Expression& e) {
   return store(to, fmt::format("{} {} 1", place, e.text[0]));
 }
 
-/// `to = value` in the lanes that are there, and that the variable still matters to.
+/// Writes `to = value`, under a mask unless inactive lanes never read the variable again.
 std::string Writer::store(const Expression& to, const std::string& what) {
   const auto [root, through] = s_.root_of(to);
   const std::string place = value(to);
@@ -213,7 +213,7 @@ bool mentions(const std::string& text, const std::string& name) {
   return false;
 }
 
-/// Takes the line out that declares the mask `name`, unless a line behind it uses that.
+/// Removes the line that declares the mask `name`, unless a later line uses it.
 void Writer::drop_unused(std::size_t line_at, const std::string& name) {
   const auto place = out_.begin() + static_cast<std::ptrdiff_t>(line_at);
   if (std::none_of(place + 1, out_.end(), [&](const Line& l) { return mentions(l.text, name); }))

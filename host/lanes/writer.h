@@ -31,7 +31,7 @@ class Writer {
     const Statement* node;
     std::string going, lanes;
     bool masked;           // lanes leave it at different times
-    bool checked = false;  // its body asks first whether any is left
+    bool checked = false;  // its body first tests whether any lane is left
   };
   using Write = std::function<std::string()>;
 
@@ -59,7 +59,7 @@ class Writer {
   std::string varying_vector_binary(const Expression& e);
   std::string parts_of(const Expression& e, std::string_view wanted = "");
   std::string spread(const std::string& text, const Type& type);
-  std::string simple(const Expression& e);  // may be repeated
+  std::string simple(const Expression& e);  // text that may be repeated
 
   std::string mask_of(const Expression& e);
   std::string joined_masks(const Expression& e);
@@ -93,7 +93,7 @@ class Writer {
   void drop_unused(std::size_t line_at, const std::string& name);
   bool is_long(const std::vector<StatementPtr>& all, std::size_t from);
   bool comes_again() const;
-  std::string alive() const;  // the lanes that are left
+  std::string alive() const;  // the remaining lanes
   double weight(const Statement& s);
   double weight(const Expression& e);
 
@@ -116,7 +116,7 @@ class Writer {
   Place place_;
 };
 
-/// The texts of `all`, commas between.
+/// The texts of `all`, separated by commas.
 template <class All, class Text>
 std::string joined(const All& all, const Text& text) {
   std::string out;

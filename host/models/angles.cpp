@@ -1,5 +1,5 @@
-// Reduces the quotient to |t| <= tan(pi / 8) and sums its series by Estrin's scheme, in a loop of selections
-// that compilers vectorise.
+// Reduces the quotient to |t| <= tan(pi / 8) and sums its series by Estrin's scheme, in a loop without
+// branches that compilers vectorise.
 #include "models/angles.h"
 
 #include <cmath>
@@ -22,9 +22,9 @@ void angles_of(std::span<const double> sines, std::span<const double> cosines, s
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double sine = sines[i], cosine = std::abs(cosines[i]);
     const double low = sine < cosine ? sine : cosine, high = sine < cosine ? cosine : sine;
-    const bool far = low > tan_pi_8 * high;  // then from pi / 4
+    const bool far = low > tan_pi_8 * high;  // measure from pi / 4
     const double t = (far ? low - high : low) / (far ? low + high : high), z = t * t, zz = z * z;
-    // Estrin's scheme: short chains.
+    // Estrin's scheme shortens dependency chains.
     const double p01 = powers[0] + z * powers[1], p23 = powers[2] + z * powers[3],
                  p45 = powers[4] + z * powers[5];
     const double p67 = powers[6] + z * powers[7], p89 = powers[8] + z * powers[9],

@@ -10,7 +10,7 @@
 namespace sundog::models {
 
 /// Finds the file that `model` names, relative to `folder`: by the name as written, else with backslashes as
-/// slashes, else by its last component, because programs write paths of their author's machine. Strips
+/// slashes, else by its last component, because programs write paths from their author's machine. Strips
 /// quotes, and a trailing comment if no such file exists. Leaves the model's folder only if allowed.
 std::optional<std::filesystem::path> find_beside(const Source& model, const std::filesystem::path& folder,
                                                  std::string_view name);

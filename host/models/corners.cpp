@@ -1,4 +1,4 @@
-// Counts and places corners in parallel by atomic additions, then sorts those of each point.
+// Counts and places corners in parallel by atomic additions, then sorts the corners of each point.
 #include "models/corners.h"
 
 #include <algorithm>

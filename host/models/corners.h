@@ -16,7 +16,8 @@ inline std::uint32_t corner_vertex(const Mesh& mesh, std::uint32_t corner) {
   return mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
 }
 
-/// Large arrays are first touched by the threads that fill them: zeroing one takes longer than its use.
+/// A large array whose pages are first touched by the threads that fill them; zeroing it takes longer than
+/// using it.
 template <class T>
 using Filled = std::unique_ptr<T[]>;
 
@@ -31,8 +32,8 @@ struct CornersByPoint {
   }
 };
 
-/// The corners of vertices without a normal. `has_normal`: a flag per vertex, or empty: none has. `points`:
-/// of each vertex; empty: each vertex is a point.
+/// Gathers the corners of vertices without a normal. `has_normal`: a flag per vertex; empty: no vertex has
+/// one. `points`: the point of each vertex; empty: each vertex is a point.
 CornersByPoint gather_corners(const Mesh& mesh, const std::vector<bool>& has_normal,
                               const std::vector<std::uint32_t>& points);
 

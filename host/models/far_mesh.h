@@ -6,9 +6,9 @@
 
 namespace sundog::models {
 
-/// An origin for positions in the box from `lower` to `upper`. Along an axis where the box's centre is
-/// farther from 0 than `far_sizes` sizes: the centre, rounded to a power of two above the size (so that
-/// patterns whose size divides it stay in place); else 0.
+/// An origin for positions in the box from `lower` to `upper`. Along an axis on which the box's centre is
+/// farther from 0 than `far_sizes` sizes, it is the centre rounded to a multiple of a power of two above the
+/// size, so that patterns whose period divides that stay in place; otherwise 0.
 dvec3 near_origin(const dvec3& lower, const dvec3& upper, double far_sizes = 8);
 dvec3 near_origin(std::span<const dvec3> positions, double far_sizes = 8);
 

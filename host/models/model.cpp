@@ -1,4 +1,4 @@
-// load_model(): selects one reader per format.
+// load_model(): selects the format's reader, moves far meshes near their origin, and checks the extent.
 #include "models/model.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ constexpr double farthest = 1e17;
 
 bool is_near(const dmat4& world_from_object, const glm::vec3& point) {
   const dvec3 at(world_from_object * glm::dvec4(point, 1));
-  return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= farthest;  // false for no number
+  return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= farthest;  // false for NaN
 }
 
 /// Whether the box around all vertices, used or not, is near.

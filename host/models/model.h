@@ -20,7 +20,7 @@ namespace sundog {
 /// Which of a model's animations plays, and its time.
 struct Playing {
   std::string animation{};  // its name; empty: all
-  bool cycle = false;       // begins again after the last key
+  bool cycle = false;       // repeats after the last key
   double seconds = 0;
 };
 
@@ -33,12 +33,12 @@ struct Model {
   std::vector<ImageDescription> images;
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
-  bool for_paths = true;  // these are for path tracing: ModelOptions::for_paths
+  bool for_paths = true;  // the materials suit path tracing (ModelOptions::for_paths)
   std::vector<MediumDescription> media;
   std::vector<Object> objects;
   /// Unit conversion. glTF: candela and lux become intensity = value / pi (phong's kd lacks 1/pi), with
-  /// falloff {0, 0, 1} for point and spot lights. NFF: each light, and an ambient one, gets SPD's sqrt(n) /
-  /// (2 n).
+  /// falloff {0, 0, 1} for point and spot lights. NFF: each of n lights, and an added ambient one, gets SPD's
+  /// sqrt(n) / (2 n).
   std::vector<LightDescription> lights;
   std::optional<Camera> camera;         // glTF: the first of the default scene; NFF: the view
   std::optional<ImageSettings> image;   // NFF: resolution and background
@@ -47,8 +47,8 @@ struct Model {
   std::vector<std::string> warnings;    // about ignored features, missing material files, ...
   std::vector<std::string> animations;  // names
   double duration = 0;                  // seconds to the last key, once pose() has read them
-  std::vector<dvec3> origins;           // of meshes whose vertices were moved nearer (far_mesh.h)
-  /// Sets objects, camera, lights and the meshes that joints deform; none without animations. See posed().
+  std::vector<dvec3> origins;           // one per mesh; not 0 if its vertices were moved nearer (far_mesh.h)
+  /// Sets objects, camera, lights and the meshes that joints deform; empty without animations. See posed().
   std::function<void(const Playing&, Model&)> pose;
 };
 
@@ -65,11 +65,12 @@ struct ModelOptions {
   std::optional<bool> for_paths = std::nullopt;
 };
 
-/// X(extension, reader) for each format, whose reader is models::load_READER(); `First` takes the first.
+/// X(extension, reader) for each format, First(extension, reader) for the first; models::load_READER() reads
+/// it.
 #define SUNDOG_MODEL_FORMATS(First, X) \
   First(".gltf", gltf) X(".glb", gltf) X(".obj", obj) X(".ply", ply) X(".stl", stl) X(".nff", nff)
 
-/// The files that load_model() reads, in texts: ".gltf .glb ...".
+/// The extensions that load_model() reads, as text: ".gltf .glb ...".
 #define SUNDOG_MODEL_EXTENSIONS SUNDOG_MODEL_FORMATS(SUNDOG_FIRST_EXTENSION, SUNDOG_NEXT_EXTENSION)
 #define SUNDOG_FIRST_EXTENSION(extension, reader) extension
 #define SUNDOG_NEXT_EXTENSION(extension, reader) " " extension
@@ -79,7 +80,7 @@ struct ModelOptions {
 /// SceneError{file, "line N", "byte N" or a JSON pointer, what}.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
-/// The model of the file `path` at a time of its animations. Throws SceneError for those that are malformed.
+/// The model of the file `path` at a time of its animations. Throws SceneError for malformed animations.
 Model posed(Model model, const std::filesystem::path& path, const Playing& playing);
 
 /// Whether `path` has a model file's extension (with or without .gz).

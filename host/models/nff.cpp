@@ -1,7 +1,7 @@
 // Reads NFF, the Standard Procedural Databases' format (E. Haines, "Neutral File Format", version 3.9, 1996).
 // Spheres, cones and cylinders stay exact solids (cones and cylinders open, as the format says); the polygons
-// and patches of a fill form one mesh. Negative radii, for surfaces visible from inside only, lose their
-// sign, since surfaces have two sides here.
+// and patches of a fill form one mesh. Negative radii, for surfaces visible only from inside, lose their
+// sign, because surfaces have two sides here.
 #include <fmt/format.h>
 
 #include <cmath>

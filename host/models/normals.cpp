@@ -1,5 +1,5 @@
-// Angle-weighted vertex normals (Thürmer and Wüthrich 1998) with creases. In: triangles, perhaps some
-// normals. Out: normals, with vertices split along creases; computed in parallel.
+// Computes angle-weighted vertex normals (Thürmer and Wüthrich 1998) in parallel, and splits vertices along
+// creases.
 #include "models/normals.h"
 
 #include <tbb/parallel_for.h>
@@ -77,7 +77,7 @@ class PointFans {
  public:
   explicit PointFans(const Surroundings& shared) : shared_(shared) {}
 
-  /// Appends the vertices around a point to `vertices`, and sets the one of each corner.
+  /// Appends the vertices around a point to `vertices`, and sets each corner's vertex.
   void add(std::span<const uint32_t> corners, std::vector<FanVertex>& vertices, uint32_t* vertex_of) {
     join_across_edges(corners);
     sum_fans(corners);

@@ -1,4 +1,5 @@
-// Generates missing vertex normals.
+// Completes a mesh's vertex normals: normalises given ones, generates missing ones and splits vertices at
+// creases.
 #pragma once
 #include <cstdint>
 #include <vector>

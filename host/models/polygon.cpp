@@ -13,7 +13,7 @@ using glm::dvec3;
 
 double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-// Twice the area as a vector (Newell); it points to where the polygon appears counterclockwise.
+// Twice the area as a vector (Newell). Seen from its tip, the polygon is counterclockwise.
 dvec3 area_vector(std::span<const glm::vec3> corners) {
   const dvec3 origin = corners[0];
   dvec3 sum{0};
@@ -35,7 +35,7 @@ std::vector<dvec2> flatten(std::span<const glm::vec3> corners, dvec3 normal) {
   return points;
 }
 
-// Twice the area of the fan's smallest triangle: above 0, the fan covers the polygon once; at 0 too, but with
+// Twice the area of the fan's smallest triangle. Above 0, the fan covers the polygon once; at 0 too, but with
 // degenerate triangles.
 double least_in_fan(const std::vector<dvec2>& points) {
   double least = std::numeric_limits<double>::infinity();

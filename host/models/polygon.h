@@ -1,4 +1,4 @@
-// Triangulates polygons.
+// Splits a polygon, given by its corners in order, into triangles of corner indices.
 #pragma once
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -7,7 +7,7 @@
 
 namespace sundog::models {
 
-/// Limit for concave polygons (ear clipping is quadratic); convex ones may have any number of corners.
+/// Limit for concave polygons (ear clipping is quadratic); convex polygons may have any number of corners.
 inline constexpr std::size_t most_concave_corners = 8192;
 
 /// Appends corners.size() - 2 triangles of corner indices with the polygon's winding: a fan if the polygon is

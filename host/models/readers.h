@@ -15,7 +15,7 @@ void add_mesh(Model& model, Mesh mesh, const dvec3& origin = dvec3(0));
 /// Adds a feature to Model::unread once.
 void leave_unread(Model& model, const std::string& feature);
 
-/// An 8-bit sRGB channel (IEC 61966-2-1) as linear.
+/// Converts an sRGB channel in [0, 1] (IEC 61966-2-1) to linear.
 float linear_from_srgb(double value);
 
 }  // namespace sundog::models

@@ -7,7 +7,7 @@
 
 namespace sundog::models {
 
-inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // UTF-8's
 
 struct Source {
   std::filesystem::path path;
@@ -15,8 +15,8 @@ struct Source {
   bool outside_files = false;  // may name files outside its folder
 };
 
-/// The file's bytes, of all but STL and glTF without a byte order mark; a name that ends in .gz is unpacked
-/// (zlib), within a bound. Throws SceneError.
+/// Reads the file. Unpacks it (zlib), within a bound, if its name ends in .gz, and removes a byte order mark,
+/// except for STL and glTF. Throws SceneError.
 Source read_source(const std::filesystem::path& path);
 
 /// The extension in lower case, without a final .gz: ".obj" for "Box.OBJ.gz".

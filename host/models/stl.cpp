@@ -1,5 +1,5 @@
-// Reads STL, ASCII and binary. Ignores facet normals, because the order of corners gives the same and is
-// always present.
+// Reads STL, ASCII and binary. Ignores facet normals, because the order of corners gives the same normals and
+// is always present.
 #include <fmt/format.h>
 
 #include <bit>

@@ -17,7 +17,7 @@ RenderResult render_once(const CompiledScene& scene, const std::vector<WorkerPla
   return finish_frame(*frame);
 }
 
-/// Devices of this process.
+/// Plans a worker for each device of this process.
 std::vector<WorkerPlan> plan_workers(const Scene& scene, const std::vector<DeviceInfo>& devices) {
   std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : devices) plans.push_back(plan_local(scene, device));

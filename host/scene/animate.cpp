@@ -1,5 +1,5 @@
-// Resolves names, checks that tracks do not undo each other, and applies them in their order; then the
-// frame's number seeds the noise.
+// Resolves names, checks that tracks do not undo each other, and applies them in order; then seeds the noise
+// with the frame's number.
 #include "scene/animate.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,8 @@ bool is_point(const json& document, const std::string& pointer) {
   return std::ranges::all_of(document[place], [](const json& item) { return item.is_number(); });
 }
 
-/// A track that turns begins with the value that stands; the others put theirs in its place.
+/// Checks that a track does not undo an earlier one: keyed tracks replace the value, while a turning track
+/// starts from the current value.
 void check_alone(const std::vector<Track>& tracks, std::size_t i, const JsonValue& place) {
   if (tracks[i].kind == Track::Kind::rotate) return;
   for (std::size_t k = 0; k < i; ++k)
@@ -59,7 +60,7 @@ void apply_tracks(json& document, double frame, const JsonValue& list) {
   }
 }
 
-/// Frames have other noise, unless the scene has a seed.
+/// Gives each frame its own noise, unless the scene has a seed.
 void set_seed(json& document, double frame) {
   json& seed = document["render"]["seed"];
   if (seed.is_null() || seed == "frame") seed = std::abs(std::lround(frame));
@@ -69,7 +70,7 @@ void set_seed(json& document, double frame) {
 
 void apply_animation(json& document, double frame, const JsonContext& context) {
   if (document.contains("animate")) {
-    const json tracks = document["animate"];  // which may change themselves
+    const json tracks = document["animate"];  // a copy: tracks may change the document
     apply_tracks(document, frame, JsonObject::section("scene", "animate", tracks, context));
   }
   if (!document.contains("render") || document["render"].is_object()) set_seed(document, frame);

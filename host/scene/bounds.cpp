@@ -1,4 +1,4 @@
-// Transforms the corners of each object's box, and places a camera before the box of all.
+// Transforms the corners of each object's box, and places a camera in front of the box around all.
 #include "scene/bounds.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace sundog {
 
 namespace {
 
-/// Half the size of a solid's bounding box about its origin; negative for infinite ones.
+/// Half the size of a solid's bounding box about its origin; negative for meshes, fields and planes.
 struct HalfSize {
   dvec3 operator()(const MeshShape&) const { return dvec3(-1); }
   dvec3 operator()(const FieldShape&) const { return dvec3(-1); }
@@ -55,7 +55,7 @@ Camera frame(const SceneBounds& bounds, double aspect, Camera camera) {
   const dvec3 back = glm::normalize(dvec3(0.55, 0.4, 1)),
               right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
   const dvec3 up = glm::cross(back, right), half = (bounds.upper - bounds.lower) * 0.5;
-  // Each corner requires a distance at which it is at the edge of the image.
+  // Each corner needs a distance at which it reaches the edge of the image.
   double distance = 0;
   for (const dvec3& corner : corners_of(half)) {
     const double across =

@@ -15,13 +15,13 @@ struct SceneBounds {
   void add(const dvec3& point) { lower = glm::min(lower, point), upper = glm::max(upper, point); }
 };
 
-/// Bounds of all finite objects (planes are skipped). Exact for meshes; a box around the transformed bounding
-/// box for solids and fields.
+/// Bounds of all finite objects (planes are skipped): exact for meshes; for solids and fields, of their
+/// transformed bounding boxes.
 SceneBounds bounds_of(std::span<const Object> objects, std::span<const Mesh> meshes,
                       std::span<const SdfDescription> fields = {});
 
 /// Moves `camera` so that the box nearly fills an image of width / height `aspect`, seen from the front,
-/// right and above (y is up). Unchanged for an empty box.
+/// right and above (y is up). Returns it unchanged for an empty box.
 Camera frame(const SceneBounds& bounds, double aspect, Camera camera);
 
 }  // namespace sundog

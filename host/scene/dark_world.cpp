@@ -1,5 +1,5 @@
 // Searches environment, lights, materials, fields, background and fog for light; the warning proposes a box
-// that has the world's medium.
+// filled with the world's medium.
 #include "scene/dark_world.h"
 
 #include <fmt/format.h>

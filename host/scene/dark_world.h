@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-/// Whether anything in the scene shines or has a colour without light: else its picture is black.
+/// Whether anything in the scene emits light or shows a colour without light; otherwise its picture is black.
 bool has_light(const SceneDescription& scene);
 
 /// Warns, with the remedy, if the world's medium or fog absorbs all light of a sun, sky or directional light.

@@ -55,7 +55,7 @@ void decode(ImageDescription& image) {
   image.encoded.shrink_to_fit();
 }
 
-/// Decodes the image. An image of a model that cannot be decoded becomes one white pixel.
+/// Decodes the image. A model's image that cannot be decoded becomes one white pixel, and `failure` says why.
 void decode_or_white(ImageDescription& image, std::string& failure, FrameCache* cache) {
   try {
     if (cache && !image.encoded.empty())
@@ -73,7 +73,8 @@ void decode_or_white(ImageDescription& image, std::string& failure, FrameCache* 
   }
 }
 
-/// White is a factor of one, but not a normal or a height.
+/// Removes normal and height maps that became white: white is neutral as a factor, but not as a normal or
+/// height.
 void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
                   const SceneDescription& scene) {
   const auto drop = [&](int& texture) {
@@ -86,12 +87,12 @@ void drop_reliefs(MaterialDescription& material, const std::vector<bool>& white,
   drop(material.displaced_by);
 }
 
-/// Including mip levels.
+/// Bytes of the image on a device, including mip levels.
 std::size_t device_bytes(const ImageDescription& image) {
   return image.pixels.pixel_count() * image.pixels.pixel_bytes() * 4 / 3;
 }
 
-/// Colours are weighted by alpha if some texture uses it.
+/// Colours are weighted by alpha if any texture uses the alpha.
 SampleUse use_of(const ImageDescription& image, const SceneDescription& scene) {
   if (!image.srgb) return SampleUse::data;
   const bool cut = std::ranges::any_of(scene.textures, [&](const TextureDescription& texture) {

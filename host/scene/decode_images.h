@@ -1,4 +1,4 @@
-// Decodes a scene's images once all are known.
+// Decodes a scene's images, after all have been collected.
 #pragma once
 #include "scene/description.h"
 
@@ -6,9 +6,10 @@ namespace sundog {
 
 class FrameCache;
 
-/// Decodes all images, several at a time; one that is there twice for the same use is kept once. Images that
-/// together take more than `render.texture_memory`, the greatest first, are halved, with a warning each.
-/// `cache` has those of the frames before. Throws SceneError with the image's file and place.
+/// Decodes all images in parallel; keeps images of equal bytes and use once. If they take more than
+/// `render.texture_memory` together, halves the largest ones, with a warning for each. A model's image that
+/// cannot be decoded becomes white, with a warning. `cache` holds the images of earlier frames. Throws
+/// SceneError with the image's file and place.
 void decode_images(SceneDescription& scene, FrameCache* cache = nullptr);
 
 }  // namespace sundog

@@ -28,7 +28,7 @@ enum class Tracer { automatic, wide, compact };
 
 /// How samples are distributed over the pixels.
 struct Sampling {
-  double threshold = 0;    // above 0: adaptive; a pixel gets samples until its estimated error is below it
+  double threshold = 0;    // above 0: adaptive; a pixel is sampled until its estimated error is below this
   int first_samples = 1;   // adaptive: initial samples per pixel
   bool surfaces = false;   // adaptive: more samples for neighbours that show different surfaces or colours
   double contrast = 4;     // adaptive: colours that differ by this many thresholds count as different
@@ -38,7 +38,7 @@ struct Sampling {
   bool progressive = false;         // samples double pass by pass: 1, 2, 4...
 };
 
-/// A sphere that light comes from; matte surfaces send some paths towards it.
+/// A sphere from which light comes; matte surfaces send some paths towards it.
 struct Guide {
   dvec3 center{0};
   double radius = 1;
@@ -51,14 +51,14 @@ struct RenderSettings {
   int samples = 1;        // per pixel, 1..65536; 1 = the pixel's centre
   int light_samples = 0;  // shadow rays from each surface to random area lights, 0..1024; 0: to each light
   double cutoff = 1e-3;   // throughput below which a ray ends, [0, 1]
-  double max_component = std::numeric_limits<double>::infinity();  // of a sample's light, above 0
+  double max_component = std::numeric_limits<double>::infinity();  // upper limit of a sample's light, above 0
   std::string integrator = "whitted";
   int roulette = 2;                   // path: depth at which Russian roulette starts, 1..65; 65: never
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
-  std::vector<Guide> guides;          // path
+  std::vector<Guide> guides;          // path: spheres to aim at
   bool caustics = false;              // path: photon mapping of light through glass and mirrors
-  int photons = 65536;                // emitted per photon map, 64..4194304
-  double photon_radius = 0;           // of the first map; 0: chosen for the scene
+  int photons = 65536;                // photons emitted per map, 64..4194304
+  double photon_radius = 0;           // radius of the first map; 0: chosen for the scene
   u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
   int seed = 0;                       // changes the noise
   Filter filter = Filter::box;
@@ -77,12 +77,12 @@ struct EnvironmentDescription {
   dvec3 color{1};
   double intensity = 1;
   dvec3 up{0, 1, 0};
-  double rotate = 0;          // degrees about `up`
-  int samples = 1;            // shadow rays from each surface to it, and as many to its sun
-  bool visible = true;        // whether camera rays that hit nothing show it; other rays do
-  bool hidden = false;        // no ray shows it
-  std::string group;          // of lights, for AOVs; empty: none
-  Image picture;              // image: equirectangular, zenith in row 0
+  double rotate = 0;    // degrees about `up`
+  int samples = 1;      // shadow rays from each surface to the environment, and as many again to its sun
+  bool visible = true;  // whether camera rays that hit nothing show it; other rays always do
+  bool hidden = false;  // no ray shows it
+  std::string group;    // light group, for AOVs; empty: none
+  Image picture;        // image: equirectangular, zenith in row 0
   dvec3 bottom{0.3}, top{1};  // gradient: linear in the sine of the elevation
   // Sky, and halo, which is a sky with ice crystals:
   double sun_altitude = 40, sun_azimuth = 60;  // degrees, from -18 (halo: 0); clockwise from ahead
@@ -122,10 +122,10 @@ struct SceneDescription {
   std::vector<SdfDescription> fields;
   std::vector<Object> objects;
   std::vector<std::string> warnings;  // one line each: features of model files that were ignored
-  double unit = 0.1;                  // of length, in metres
+  double unit = 0.1;                  // length of a scene unit in metres
   double frames_per_second = 24;
-  bool has_models = false;  // of files, with materials for the integrator
-  bool plays = false;       // a part changes with the frame by itself: a model's animation
+  bool has_models = false;  // has model files, whose materials were read for the integrator
+  bool plays = false;       // changes with the frame by itself, as a model's animation does
 };
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Halves edges until none is too long, then moves each point along its mean normal by the mean height there.
+// Halves edges until none is too long, then moves each point along its mean normal by its mean height.
 #include "scene/displace.h"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ class Middles {
   std::unordered_map<std::uint64_t, u32> made_;
 };
 
-/// Splits a triangle whose edges i to i + 1 are cut where `cut` is true.
+/// Splits a triangle at the edges, from corner i to i + 1, for which `cut` is true.
 void split(const Mesh& mesh, const glm::uvec3& triangle, const bool (&cut)[3], Middles& middles,
            std::vector<glm::uvec3>& out) {
   const int count = cut[0] + cut[1] + cut[2];
@@ -87,7 +87,7 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-/// Displaces a mesh as one object shows it.
+/// Displaces a mesh for one object that shows it.
 class Displacer {
  public:
   Displacer(const SceneDescription& scene, const Object& object, const Mesh& mesh)
@@ -100,7 +100,7 @@ class Displacer {
     Mesh mesh = mesh_;
     if (mesh.materials.empty()) mesh.materials.assign(mesh.triangles.size(), object_.material);
     const double edge = wanted_edge();
-    // Such a triangle has at most the area of an equilateral one.
+    // A refined triangle has at most the area of an equilateral one.
     const bool few = area_of(mesh) / (0.434 * edge * edge) < double{most_displaced_triangles};
     if (few) mesh = refine(std::move(mesh), edge, most_displaced_triangles);
     if (!few || mesh.triangles.size() > most_displaced_triangles)
@@ -125,7 +125,7 @@ class Displacer {
     return index < 0 ? nullptr : &scene_.materials[static_cast<std::size_t>(index)];
   }
 
-  /// The shortest edge that materials request; a texel or longer for those that request none.
+  /// The shortest edge that materials request; at least a texel for those that request none.
   double wanted_edge() const {
     double area = 0, texels = 0, asked = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -146,7 +146,7 @@ class Displacer {
                 double(image.width) * image.height;
     }
     if (!(area > 0)) return asked;
-    // Triangles with edges of at most this length are about 2.5 times as many as squares.
+    // Triangles with edges up to this length are about 2.5 times as many as squares.
     const double usual = std::sqrt(area * 2.5 / double{usual_displaced_triangles});
     return std::min(asked, texels > 0 ? std::max(std::sqrt(area / texels), usual) : usual);
   }
@@ -226,7 +226,7 @@ Mesh refine(Mesh mesh, double edge, std::size_t most) {
 }
 
 void displace_meshes(SceneDescription& scene) {
-  std::map<std::pair<int, int>, int> made;  // by mesh and the object's material
+  std::map<std::pair<int, int>, int> made;  // key: mesh and the object's material
   for (Object& object : scene.objects) {
     auto* shape = std::get_if<MeshShape>(&object.shape);
     bool wanted = displaces(scene, object.material);

@@ -14,8 +14,8 @@ inline constexpr std::size_t most_displaced_triangles = 16'000'000;
 /// coordinates, the heights do not come from an image, or there would be too many triangles.
 void displace_meshes(SceneDescription& scene);
 
-/// Bisects edges longer than `edge` until none is left. Each edge is split by its own length, so that
-/// triangles on both sides agree. Stops above `most` triangles.
+/// Bisects edges until none is longer than `edge`. Each edge is split by its own length, so that triangles on
+/// both sides agree. Stops above `most` triangles.
 Mesh refine(Mesh mesh, double edge, std::size_t most);
 
 }  // namespace sundog

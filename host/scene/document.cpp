@@ -1,5 +1,5 @@
-// Reads only camera, image, render, lights and surfaces again, which viewers change up to sixty times a
-// second; returns null for any other change.
+// Re-reads only camera, image, render, lights and surfaces, which viewers change up to sixty times a second;
+// returns null for any other change.
 #include "scene/document.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ bool same_section(const json& before, const json& after, std::string_view key) {
   return a == before.end() ? b == after.end() : b != after.end() && *a == *b;
 }
 
-/// Removes the objects of visible lights, one with its own material each, at the end of the scene (lamps.h).
+/// Removes the objects of visible lights, each with its own material, from the end of the scene (lamps.h).
 void drop_lamps(SceneDescription& scene) {
   while (!scene.objects.empty() && scene.objects.back().light >= 0) {
     scene.objects.pop_back();
@@ -81,7 +81,7 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
     focus_on_point(*changed);
   }
   changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
-  // Models' materials are for one of them.
+  // A model's materials were read for one kind of integrator.
   const auto own_materials = [](const SceneDescription& s) {
     return integrator_of(s.render.integrator).own_materials;
   };

@@ -1,4 +1,4 @@
-// Changes a scene as its JSON document was changed.
+// Updates a scene after its JSON document was edited, without reading everything again.
 #pragma once
 #include <memory>
 #include <nlohmann/json_fwd.hpp>

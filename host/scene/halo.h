@@ -1,4 +1,4 @@
-// Ice crystals in a sky, and the map of the light that they scatter. Plain values.
+// Ice crystals in a sky, and the map of the light that they scatter: plain values.
 #pragma once
 #include <vector>
 
@@ -17,14 +17,14 @@ struct HaloCrystals {
 
 struct HaloDescription {
   std::vector<HaloCrystals> crystals;
-  double optical_depth = 0.05;  // of the cloud, vertically, for scattered light
+  double optical_depth = 0.05;  // the cloud's, vertically, for scattered light
   double index = 0;             // refractive index for all colours; 0: that of ice
   int rays = 10'000'000;        // rays that hit crystals
   int size = 1024;              // cells per side of the map
 };
 
-/// Light scattered by crystals, by direction: the sphere as kernels/plain/halo/sky_map.cl maps it to a
-/// square.
+/// Light scattered by crystals, by direction: the sphere mapped to a square as in
+/// kernels/plain/halo/sky_map.cl.
 struct HaloMap {
   int side = 0;
   std::vector<float> cells;  // 3 each, row by row: red, green, blue per steradian; their integral is 1

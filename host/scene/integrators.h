@@ -9,19 +9,19 @@ struct Integrator {
   std::string_view name;    // as in options and scene files
   const char* entry;        // kernel file
   const char* kernel;       // takes the scene, camera media, film, weights, counters and a Launch
-  bool needs_camera_media;  // media that contain the camera
-  unsigned most_run;        // pixels per work-item at most, so that idle lanes take the next pixel
+  bool needs_camera_media;  // needs the media that contain the camera
+  unsigned most_run;        // maximum pixels per work-item; idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
-  int least_samples;        // of a pixel, before its noise is judged
-  // Abilities: they decide how scenes are compiled, kernels built and options refused.
-  bool branches;       // child rays wait on a stack, and each light is sent a ray
-  bool scatters;       // in media and fog
+  int least_samples;        // per pixel, before its noise is estimated
+  // Abilities, which decide how scenes are compiled, kernels built and options refused.
+  bool branches;       // child rays wait on a stack; each light gets a shadow ray
+  bool scatters;       // light scatters in media and fog
   bool own_materials;  // ModelOptions::for_paths, spectra, shadow catchers; no soft shadows of fields
   bool photons;        // caustics and guides
-  bool light_parts;    // AOVs of light by lobes and by groups of lights
+  bool light_parts;    // AOVs of light by lobes and by light groups
 };
 
-/// Paths end by roulette alone in scenes without max_depth, up to this cap.
+/// In scenes without max_depth, paths end by roulette alone, up to this cap.
 inline constexpr int depth_cap = 1024;
 
 inline constexpr std::array integrators{
@@ -59,14 +59,14 @@ inline constexpr auto integrator_names = [] {
   return names;
 }();
 
-/// The row of that name, or nullptr.
+/// The row with this name, or nullptr.
 constexpr const Integrator* find_integrator(std::string_view name) {
   for (const Integrator& integrator : integrators)
     if (integrator.name == name) return &integrator;
   return nullptr;
 }
 
-/// The row of that name, or the first.
+/// The row with this name, or the first row.
 constexpr const Integrator& integrator_of(std::string_view name) {
   const Integrator* row = find_integrator(name);
   return row ? *row : integrators.front();

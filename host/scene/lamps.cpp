@@ -1,5 +1,5 @@
 // Switches over the kinds of light: first the shapes of visible objects, then table rows, power and bounds,
-// last the objects with their materials.
+// finally the objects with their materials.
 #include "scene/lamps.h"
 
 #include <fmt/format.h>
@@ -74,8 +74,8 @@ void pack_disk(const NamedLight& named, Light& packed) {
   pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)) * std::numbers::pi, packed);
 }
 
-/// A sun of the given angular diameter with the directional light's irradiance: a surface that faces it sees
-/// a projected solid angle of pi sin^2 of half the angle.
+/// Packs a sun of the given angular diameter with the directional light's irradiance: a surface facing it
+/// sees a projected solid angle of pi sin^2 of half the angle.
 void pack_sun(const LightDescription& light, Light& packed) {
   const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
   const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
@@ -97,7 +97,7 @@ LampAxes lamp_axes(const LightDescription& light) {
   LampAxes axes;
   axes.normal = glm::normalize(light.direction);
   dvec3 side = glm::cross(light.up, axes.normal);
-  // An "up" parallel to the light's direction is no help: use z, or x for a light along z.
+  // If "up" is parallel to the light's direction, use z, or x for a light along z.
   if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
   if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
   side = glm::normalize(side);
@@ -113,7 +113,7 @@ double power_of_intensity(const LightDescription& light) {
   switch (light.type) {
     case LightType::point:
       return 4 * pi * pi;
-    case LightType::spot:  // the soft edge has the mean 1/2 over the cosine, its square 1/3
+    case LightType::spot:  // over the cosine, the soft edge has the mean 1/2, its square 1/3
       return 2 * pi * pi * (1 - inner + (inner - outer) * (light.square_edge ? 1.0 / 3 : 0.5));
     case LightType::rectangle:
       return pi * light.size.x * light.size.y;

@@ -1,4 +1,4 @@
-// Sorts the names; a group's number is its place from 1, and lights without a group have 0.
+// Sorts the names; a group's number is its place from 1, lights without a group have 0.
 #include "scene/light_groups.h"
 
 #include <algorithm>

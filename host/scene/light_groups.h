@@ -1,4 +1,4 @@
-// Groups of lights, by the names that lights, the environment and materials that shine give.
+// Light groups, named by lights, the environment and emissive materials.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace sundog {
 
-/// As many as a film has sums for; one is for lights in no group.
+/// Maximum number of groups: the sums that a film has, minus one for the lights in no group.
 inline constexpr std::size_t most_light_groups = LIGHT_PART_COUNT - 1;
 
-/// The names, sorted.
+/// The names of all groups, sorted.
 std::vector<std::string> light_groups(const SceneDescription& scene);
 
-/// The number of the group of that name among `groups`, from 1 on; 0: none has it.
+/// The number of the named group among `groups`, from 1; 0: not found.
 std::size_t number_of_group(const std::vector<std::string>& groups, const std::string& name);
 
 }  // namespace sundog

@@ -1,4 +1,5 @@
-// In order: the document of the file or around the model, settings, the frame's tracks, then the readers.
+// In this order: the document of the file or around the model, settings, the frame's tracks, then the
+// readers.
 #include "scene/load.h"
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ void apply_overrides(json& document, const fs::path& file, const std::vector<std
     }
 }
 
-/// Width over height of a document's image; 0 if missing or invalid (reading reports the error).
+/// Width / height of a document's image; 0 if missing or invalid (reading will report the error).
 double aspect_of(const json& document) {
   const auto size = [&](const char* pointer) {
     const json::json_pointer place(pointer);
@@ -44,7 +45,7 @@ double aspect_of(const json& document) {
   return height > 0 ? std::max(size("/image/width"), 0.0) / height : 0;
 }
 
-/// The document generated around a model. Its camera fits the overridden image size, and its ground the
+/// Generates the document around a model. Its camera fits the overridden image size, and its ground the
 /// overridden camera.
 json make_scene(const fs::path& file, const Model& model, const std::vector<std::string>& overrides,
                 bool plays = false) {
@@ -59,22 +60,23 @@ json make_scene(const fs::path& file, const Model& model, const std::vector<std:
   return document;
 }
 
-/// The integrator that a document names, or the default one; nullptr if invalid (reading reports the error).
+/// The integrator that a document names, or the default one; nullptr if invalid (reading will report it).
 const Integrator* integrator_in(const json& document) {
   const json::json_pointer place("/render/integrator");
   if (!document.contains(place)) return &integrators.front();
   return document[place].is_string() ? find_integrator(document[place].get<std::string>()) : nullptr;
 }
 
-/// A file's document before any frame of it, with the model that it was made up around.
+/// A file's document before any frame is applied, with the model around which it was generated, if any.
 struct SceneSource {
   fs::path file;
   json document;
   std::optional<Model> model = std::nullopt;
-  json played = {};  // of a model with animations: before settings
+  json played = {};  // for a model with animations: the document before settings
 };
 
-/// Reads the model and generates the document around it. Lights that are generated suit materials for paths.
+/// Reads the model and generates the document around it. Generated lights need materials read for paths, so
+/// the model may be read twice.
 void read_model(SceneSource& source, const std::vector<std::string>& overrides, bool outside_files) {
   const auto read = [&](std::optional<bool> for_paths) {
     source.model = load_model(source.file, {.outside_files = outside_files, .for_paths = for_paths});
@@ -116,14 +118,14 @@ SceneSource open_source(const fs::path& path, const std::vector<std::string>& ov
   return source;
 }
 
-/// Inputs and logs of reading a file's document.
+/// Inputs and logs of reading a document.
 struct Reading {
   const fs::path& file;
   const std::vector<std::string>& overrides;
   const LoadOptions& options;
   std::vector<std::string> warnings = {};
   FrameCache* cache = nullptr;
-  std::optional<double> seconds = std::nullopt;  // of the frame
+  std::optional<double> seconds = std::nullopt;  // the frame's time
   bool plays = false;
 
   JsonContext context() {
@@ -138,8 +140,8 @@ struct Reading {
   }
 };
 
-/// `read()`. The place of an error is in the document as settings and tracks changed it: says which of them
-/// had a part in it.
+/// Calls read(). An error's place is in the document as changed by settings and tracks, so the error names
+/// the track or setting that changed it.
 template <class Read>
 auto explained(const json& document, const Reading& reading, const Read& read) {
   try {
@@ -160,7 +162,7 @@ auto explained(const json& document, const Reading& reading, const Read& read) {
   }
 }
 
-/// The document around a model that is animated, with the model's camera and lights at the frame.
+/// The document around an animated model, with the model's camera and lights at the frame.
 json play_view(SceneSource& source, const Reading& reading) {
   if (source.played.is_null())
     source.played = make_scene(source.file, *source.model, reading.overrides, true);
@@ -177,13 +179,13 @@ json play_view(SceneSource& source, const Reading& reading) {
   return document;
 }
 
-/// The document before its tracks are applied.
+/// The document before tracks are applied.
 json unmoved_document(SceneSource& source, const Reading& reading) {
   const bool plays = reading.options.frame && source.model && source.model->pose;
   return plays ? play_view(source, reading) : source.document;
 }
 
-/// The document of the frame. A setting that a track would undo is refused.
+/// The frame's document. Refuses a setting that a track would undo.
 json document_at_frame(SceneSource& source, Reading& reading) {
   json document = unmoved_document(source, reading);
   if (!reading.options.frame) return document;
@@ -216,8 +218,8 @@ struct SceneFrames::State {
   std::vector<std::string> overrides;
   LoadOptions options;
   FrameCache cache = {};
-  json document = {};                               // of the last frame
-  std::shared_ptr<const SceneDescription> scene{};  // of that document; null: none was read
+  json document = {};                               // the last frame's
+  std::shared_ptr<const SceneDescription> scene{};  // read from that document; null: none was read
 };
 
 SceneFrames::SceneFrames(const fs::path& path, std::vector<std::string> overrides, LoadOptions options)
@@ -295,7 +297,7 @@ SceneDescription load_scene_document(const json& document, const fs::path& file,
   const std::vector<std::string> no_overrides;
   Reading reading{file, no_overrides, options};
   SceneDescription scene = read_document(document, reading, std::nullopt, made);
-  if (made.empty())  // those of programs are held already
+  if (made.empty())  // meshes of the calling program are already shared
     for (Mesh& mesh : scene.meshes) share_vertices(mesh);
   return scene;
 }

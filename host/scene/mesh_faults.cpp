@@ -1,5 +1,5 @@
-// Welds positions and counts each edge's directions; if all match, signs the volume of each connected part,
-// which may face inwards within a larger one.
+// Welds positions and counts each edge's directions; if all match, computes the signed volume of each
+// connected part. Parts may face inwards within a larger one.
 #include "scene/mesh_faults.h"
 
 #include <algorithm>
@@ -69,7 +69,7 @@ std::vector<Part> parts_of(const Mesh& mesh, std::span<const glm::uvec3> triangl
   return parts;
 }
 
-/// Only the largest parts are tested for hollows: there may be very many.
+/// Tests for hollows only in the largest parts, because there may be very many.
 std::size_t count_inside_out(std::vector<Part>& parts) {
   constexpr std::ptrdiff_t most = 100;
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.volume > b.volume; });

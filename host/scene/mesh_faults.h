@@ -8,10 +8,10 @@ namespace sundog {
 
 /// Coincident corners count as one; triangles without area are ignored.
 struct MeshFaults {
-  std::size_t open_edges = 0;    // with an odd number of triangles: the mesh is not closed
-  std::size_t turned_edges = 0;  // between triangles of opposite orientation
+  std::size_t open_edges = 0;    // edges of an odd number of triangles: the mesh is not closed
+  std::size_t turned_edges = 0;  // edges between triangles of opposite orientation
   std::size_t parts = 0;         // connected components; counted, like inside_out, only without edge faults
-  std::size_t inside_out = 0;    // parts that face inwards and are not a hollow of another (by bounding box)
+  std::size_t inside_out = 0;    // inward-facing parts that are no hollow of another (by bounding box)
 };
 
 MeshFaults find_faults(const Mesh& mesh);

@@ -1,5 +1,5 @@
-// A camera frames the model; a key light and a sky suit its brightest material; a ground meets the
-// background.
+// Frames the model with a camera, sets a key light and a sky for its brightest material, and adds a ground
+// that blends with the background.
 #include "scene/model_scene.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ json to_json(const LightDescription& light) {
     if (light.range > 0) result["range"] = light.range;
   }
   if (light.type == LightType::spot) {
-    // glTF allows cones of a full hemisphere.
+    // glTF allows a spot's cone to be a full hemisphere.
     result["outer_angle"] = std::min(light.outer_angle, 89.99);
     result["inner_angle"] = std::min(light.inner_angle, 89.99);
     result["square_edge"] = light.square_edge;
@@ -49,7 +49,7 @@ json to_json(const LightDescription& light) {
 
 double greatest(const dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-/// The greatest reflectance of the model's materials for paths, where they face a light.
+/// The greatest reflectance of the model's materials facing a light, as read for paths.
 double brightness_of(const Model& model) {
   double vertex_color = 0, brightest = 0;
   for (const Mesh& mesh : model.meshes)
@@ -74,8 +74,8 @@ double brightness_of(const Model& model) {
 struct MadeUpLights {
   dvec3 direction;
   double key = 0, sky = 0;  // intensities
-  dvec3 bottom, top;        // of the sky
-  /// The light that a white ground returns.
+  dvec3 bottom, top;        // colours of the sky
+  /// The light reflected by a white ground.
   dvec3 on_ground() const {
     const dvec3 above =
         glm::mix(bottom, top, 5.0 / 6);  // its mean over the hemisphere, weighted by the cosine
@@ -83,8 +83,8 @@ struct MadeUpLights {
   }
 };
 
-/// The model's brightest material, facing the key light and the zenith, gets 0.75, and more by what lies
-/// around it. Dark models get at most half as much light again as grey ones.
+/// Exposes the model's brightest material to 0.75 where it faces the key light and the zenith; light from
+/// surrounding objects adds to that. Treats dark materials as at least 0.5 bright, which limits their lights.
 MadeUpLights expose(const Model& model, const Camera& camera, const ImageSettings& image) {
   const dvec3 forward = glm::normalize(camera.target - camera.position);
   const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -118,14 +118,14 @@ json background(const ImageSettings& image, double share) {
 }
 
 /// Adds a matte plane just below the model for its shadow. Lit, it matches the background at the horizon, so
-/// no edge shows. Not for a camera from below.
+/// no edge shows. Adds none for a camera below it.
 void add_ground(json& document, const SceneBounds& bounds, const Camera& camera, const ImageSettings& image,
                 const MadeUpLights& lights) {
   const double height = bounds.lower.y - 1e-3 * glm::length(bounds.upper - bounds.lower);
   if (camera.position.y <= height || lights.direction.y >= 0) return;
   const dvec3 horizon = 0.5 * (image.background_bottom + image.background_top);
   const dvec3 wanted = horizon / lights.on_ground();
-  // It returns no more light than white paint does: under weak lights the background is darker instead.
+  // The ground reflects no more light than white paint; under weak lights the background is darkened instead.
   const double share = std::min(1.0, 0.8 / greatest(wanted));
   document["materials"]["ground"] = {{"color", to_json(share * wanted)}, {"diffuse", 1}};
   document["image"]["background"] = background(image, share);
@@ -170,7 +170,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
       {"objects", {{{"type", "model"}, {"file", file.filename().string()}, {"conserve", true}}}}};
   if (model.lights.empty()) {
     document["environment"] = soft_sky(made_up);
-    // The key light in a shiny material would leave bright dots on what is matte.
+    // Limits samples: the key light reflected by shiny materials would leave bright dots on matte surfaces.
     document["render"] = {{"integrator", "path"}, {"samples", 64}, {"max_component", 4}};
   }
   set_view(document, model);

@@ -1,4 +1,4 @@
-// Packs a vector for tables: three floats and a fourth value.
+// Packs a vector and a fourth value into a float4 for the scene's tables.
 #pragma once
 #include <glm/glm.hpp>
 

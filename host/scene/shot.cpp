@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-/// The row of a matrix that takes a point p to axis . (p - origin).
+/// A matrix row that maps a point p to dot(axis, p - origin).
 glm::dvec4 row(const dvec3& axis, const dvec3& origin) { return {axis, -glm::dot(axis, origin)}; }
 
 }  // namespace
@@ -25,8 +25,7 @@ Shot shot_of(const SceneDescription& scene, std::optional<double> frame) {
                near = camera.near > 0 ? camera.near : 1;
   Shot shot;
   shot.world_to_camera = glm::transpose(glm::dmat4(x, y, z, w));
-  // Readers discard NDC's z; 1 - near / z makes the matrix one that can be inverted.
-  // Parallel rays have no such division.
+  // Readers discard NDC's z; 1 - near / z makes the matrix invertible. Parallel rays need no division.
   const glm::dvec4 divisor = parallel ? w : z, middle = 0.5 * divisor;
   shot.world_to_ndc = glm::transpose(
       glm::dmat4(middle + x / width, middle - y / height, parallel ? z : z - near * w, divisor));

@@ -1,4 +1,4 @@
-// The camera of a scene as a picture's file states it.
+// A scene's camera, as image files store it.
 #pragma once
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// The camera as the shutter opens; `frame` of a film.
+/// The camera when the shutter opens; `frame`: the frame's number in an animation.
 Shot shot_of(const SceneDescription& scene, std::optional<double> frame = std::nullopt);
 
 }  // namespace sundog

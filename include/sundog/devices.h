@@ -12,14 +12,14 @@ inline namespace v0 {
 
 /// An OpenCL device as its driver reports it. Returned by devices() and choose_devices(); copies refer to the
 /// same device. A driver cannot be interrupted: when a render is stopped, a thread in a driver's compiler
-/// runs on. The process waits for such threads at its exit, up to a minute, then detaches them.
+/// keeps running. The process waits for such threads at its exit, up to a minute, then detaches them.
 struct Device {
   std::string label{};              ///< "0:1 Portable Computing Language / cpu-..."
   int platform = 0;                 ///< as `clinfo -l` numbers them, from 0
   int index = -1;                   ///< in its platform, from 0; -1: a platform without devices
-  std::string platform_name{};      ///< as the platform reports it
-  std::string name{};               ///< as the device reports it
-  std::string vendor{};             ///< as the device reports it
+  std::string platform_name{};      ///< reported by the platform
+  std::string name{};               ///< reported by the device
+  std::string vendor{};             ///< reported by the device
   std::string driver{};             ///< the driver's version
   std::string type{};               ///< "cpu", "gpu", "accelerator", "custom"
   unsigned compute_units = 0;       ///< of the sub-device, if it is one
@@ -32,11 +32,11 @@ struct Device {
   std::shared_ptr<const Handle> handle{};  ///< internal; null: not made by this library
 };
 
-/// Returns every device, and an entry for each platform without any; a device that fails has a `problem`.
-/// Thread-safe; the first call loads the drivers (a second). Throws Error (internal) for lack of memory only.
+/// Returns every device, and an entry for each platform without devices; a device that fails has a `problem`.
+/// Thread-safe; the first call loads the drivers (about 1 s). Throws Error (internal) only if out of memory.
 SUNDOG_API std::vector<Device> devices();
 
-/// Returns the devices that match `specs`, each once; without specs, the one estimated fastest. A spec is
+/// Returns the devices that match `specs`, each once; without specs, the device estimated fastest. A spec is
 /// "P:D" (indices), "cpu", "gpu", "accelerator", "all", part of "platform/device" (case-insensitive), or
 /// "pocl", "nvidia", "intel", "amd"; suffix "/N" selects a sub-device of N units; "!SPEC" excludes devices
 /// ("!SPEC?": if there are any). Throws Error: device if a spec matches or excludes nothing, usage for a
@@ -50,8 +50,8 @@ SUNDOG_API unsigned threads_left_behind();
 /// Returns the same number for any devices, since the threads belong to the process.
 inline unsigned threads_left_behind(const std::vector<Device>&) { return threads_left_behind(); }
 
-/// Waits for these threads now, up to a minute, then detaches them. Call it before exit() where a process may
-/// end within its first compilation: a driver's compiler creates static objects as it runs, and exit()
+/// Waits for these threads now, up to a minute, then detaches them. Call it before exit() if the process may
+/// end during its first compilation: a driver's compiler creates static objects as it runs, and exit()
 /// destroys the newest first. Thread-safe.
 SUNDOG_API void wait_for_threads() noexcept;
 

@@ -18,7 +18,7 @@ enum class ErrorKind {
   internal  ///< anything else, such as lack of memory
 };
 
-/// Details of an Error beside its message; each may be empty.
+/// Details of an Error besides its message; each may be empty.
 struct ErrorFacts {
   std::string file{};    ///< the file at fault
   std::string place{};   ///< in that file: a JSON pointer, "line 12" or "byte 80"

@@ -11,7 +11,7 @@
 namespace sundog {
 inline namespace v0 {
 
-/// Maps linear colours to display colours, for files of 8 bits a channel.
+/// Maps linear colours to display colours, for files of 8 bits per channel.
 struct ToneMap {
   std::string curve = "none";  ///< "none", "reinhard", "aces", "agx"
   double exposure = 0;         ///< in stops, -32..32: each stop doubles the brightness
@@ -29,16 +29,16 @@ class SUNDOG_API Image {
 
   int width() const noexcept;     ///< in pixels; 0: empty
   int height() const noexcept;    ///< in pixels; 0: empty
-  int channels() const noexcept;  ///< floats a pixel: 1, 3 or 4
-  /// width() * height() * channels() floats, row 0 at the top. Valid as long as any Image shares them.
+  int channels() const noexcept;  ///< floats per pixel: 1, 3 or 4
+  /// width() * height() * channels() floats, row 0 at the top. Valid while any Image shares them.
   std::span<const float> pixels() const noexcept;
 
-  /// Returns the image as a display shows it, still linear. Throws Error (usage) for values out of range.
+  /// Returns the tone-mapped image, still linear. Throws Error (usage) for values out of range.
   Image tone_mapped(const ToneMap& map) const;
 
   /// Reads .png, .jpg, .exr, .hdr or .pfm, recognised by content, as four channels. Throws Error (scene).
   static Image load(const std::filesystem::path& file);
-  /// Writes .png, .jpg (8 bits a channel, sRGB), .exr (half floats), .hdr or .pfm, by the file's extension.
+  /// Writes .png, .jpg (8 bits per channel, sRGB), .exr (half floats), .hdr or .pfm, by the file's extension.
   /// The write is atomic. Throws Error: usage for another extension or fewer than three channels, io.
   void save(const std::filesystem::path& file) const;
   /// Returns the bytes that save() writes for this extension ("png"). Throws Error (usage).

@@ -30,11 +30,12 @@ struct WorkGroup {
 
 /// Options of a render. None changes a bit of a finished picture.
 struct RenderOptions {
-  /// Devices to render on together; empty: the one estimated fastest.
+  /// Devices to render on together; empty: the device estimated fastest.
   std::vector<Device> devices{};
-  /// More images: "depth", "normal", "position", "albedo", "object", "material", "geometric_normal", "uv",
-  /// "march_steps", "samples", "variance" (scenes rendered in passes), "crypto_object", "crypto_material";
-  /// with the integrator path the parts of light that sum to the image: "diffuse_direct", "diffuse_indirect",
+  /// Additional images: "depth", "normal", "position", "albedo", "object", "material", "geometric_normal",
+  /// "uv", "march_steps", "samples", "variance" (scenes rendered in passes), "crypto_object",
+  /// "crypto_material"; with the path integrator, the components that sum to the image: "diffuse_direct",
+  /// "diffuse_indirect",
   /// "glossy_direct", "glossy_indirect", "transmission_direct", "transmission_indirect", "volume_direct",
   /// "volume_indirect", "emission", "sky" (docs/guide/aovs.md).
   std::vector<std::string> aovs{};
@@ -47,7 +48,7 @@ struct RenderOptions {
   std::function<void(const Progress&)> on_progress{};
   /// Receives the picture so far, every `picture_seconds`; threads and exceptions as for on_progress.
   std::function<void(const Image&)> on_picture{};
-  double picture_seconds = 1;  ///< between two calls of on_picture, at least 0
+  double picture_seconds = 1;  ///< interval between calls of on_picture, at least 0
 };
 
 /// One device's part in a render.
@@ -55,10 +56,10 @@ struct DeviceFigures {
   std::string label{};       ///< Device::label
   std::uint64_t tiles = 0;   ///< tiles that it rendered
   std::uint64_t pixels = 0;  ///< pixels that it rendered
-  double share = 0;          ///< of the picture's pixels, 0..1
+  double share = 0;          ///< fraction of the picture's pixels, 0..1
   double busy_seconds = 0;   ///< time spent rendering tiles
-  double kernel_ms = 0;      ///< of all kernels, by the device's clock, or the host's if it has none
-  bool retired = false;      ///< it failed too often
+  double kernel_ms = 0;      ///< time in all kernels, by the device's clock, or the host's if it has none
+  bool retired = false;      ///< it failed too often or hangs, and gets no more tiles
   std::vector<std::string> messages{};  ///< its failures and warnings
 };
 
@@ -68,10 +69,10 @@ struct Figures {
   std::uint64_t reflection = 0;          ///< reflected rays
   std::uint64_t refraction = 0;          ///< refracted rays
   std::uint64_t shadow = 0;              ///< rays to lights
-  std::uint64_t march_steps = 0;         ///< along distance fields
+  std::uint64_t march_steps = 0;         ///< steps along distance fields
   std::uint64_t dropped_samples = 0;     ///< samples that were not finite
-  double compile_seconds = 0;            ///< compiling the scene's tables
-  double build_seconds = 0;              ///< building kernels
+  double compile_seconds = 0;            ///< time to compile the scene's tables
+  double build_seconds = 0;              ///< time to build kernels
   double render_seconds = 0;             ///< from the first tile to the last
   bool cached = false;                   ///< no kernel had to be compiled
   double efficiency = 1;                 ///< work completed divided by the devices' capacity, 0..1
@@ -85,7 +86,7 @@ class SUNDOG_API Film {
 
   int width() const noexcept;   ///< in pixels
   int height() const noexcept;  ///< in pixels
-  /// False: stopped, or out of time; missing pixels are 0 in all channels.
+  /// False if the render was stopped or ran out of time; missing pixels are 0 in all channels.
   bool complete() const noexcept;
   /// Linear RGBA; alpha is coverage, 0 where only the background shows.
   Image image() const;
@@ -96,7 +97,7 @@ class SUNDOG_API Film {
   Image aov(const std::string& name) const;
   /// Names that aov() accepts.
   std::vector<std::string> aovs() const;
-  /// Statistics; valid as long as the film.
+  /// Statistics; valid as long as the film lives.
   const Figures& figures() const noexcept;
   /// Warnings about the scene, the view and the devices, one line each.
   const std::vector<std::string>& warnings() const noexcept;
@@ -113,9 +114,9 @@ class SUNDOG_API Film {
 };
 
 /// Renders and waits. Thread-safe. Throws Error: scene; usage for an unknown AOV or an invalid device; device
-/// when every device failed; build when the kernels build on none; internal for a frame that exceeds the
+/// when every device failed; build when the kernels build on no device; internal for a frame that exceeds the
 /// memory. Exceptions of callbacks pass through. A stopped render does not wait for a driver that compiles:
-/// the devices own that thread, or the process if none were given.
+/// the devices own that thread, or the process if no devices were given.
 SUNDOG_API Film render(const Scene& scene, const RenderOptions& options = {});
 
 }  // namespace v0

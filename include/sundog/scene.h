@@ -1,4 +1,4 @@
-// Scenes: read from a file or from text, or built in code.
+// Scenes, read from a file or from text, or built in code.
 //
 // Every scene is a JSON document (docs/reference/scene-reference.md lists each key with unit, range and
 // default). The structs below cover the common keys; set() reaches all of them.
@@ -33,19 +33,19 @@ struct Camera {
   Vec3 target{0, 0, 0};    ///< a point in the centre of the picture
   Vec3 up{0, 1, 0};        ///< direction that points up in the picture
   double fov = 45;         ///< vertical angle of view in degrees, (0, 180)
-  double lens_radius = 0;  ///< of the aperture, in scene units; above 0, only objects at `focus` are sharp
-  double focus = 0;        ///< focus distance along the view; 0: that of the target
+  double lens_radius = 0;  ///< aperture radius in scene units; above 0, only objects at `focus` are sharp
+  double focus = 0;        ///< focus distance along the view; 0: the target's distance
 };
 
 /// "phong": shares of ambient, diffuse, reflected and transmitted light. "dielectric" (glass, water): the
 /// Fresnel equations set the shares; requires `ior`.
 struct Material {
   std::string type = "phong";  ///< "phong" or "dielectric"
-  Vec3 color{1, 1, 1};  ///< of the ambient and diffuse terms, from 0; white: not written to the document
+  Vec3 color{1, 1, 1};         ///< ambient and diffuse colour, from 0; white: not written to the document
   std::optional<double> ambient{};       ///< ka, from 0; default 0.1 (dielectric: 0)
   std::optional<double> diffuse{};       ///< kd, from 0; default 0.8 (dielectric: 0)
   double specular = 0;                   ///< ks, from 0
-  double exponent = 32;                  ///< of the highlight, from 1
+  double exponent = 32;                  ///< the highlight's exponent, from 1
   std::optional<double> reflection{};    ///< kr, 0..1; default 0 (dielectric: 1)
   std::optional<double> transmission{};  ///< kt, 0..1; default 0 (dielectric: 1)
   double roughness = 0;                  ///< 0..1, of reflection and transmission
@@ -64,7 +64,7 @@ struct Light {
   double radius = 0.5;         ///< disk, sphere: in scene units, above 0
   std::array<double, 2> size{1, 1};  ///< rectangle: width, height in scene units, above 0
   int samples = 1;                   ///< area lights: shadow rays from each surface point, 1..1024
-  /// More numeric keys of scene files, such as {"inner_angle", 10} for a spot; applied last.
+  /// Other numeric keys of scene files, such as {"inner_angle", 10} for a spot; applied last.
   std::map<std::string, double> more{};
 };
 
@@ -94,14 +94,14 @@ struct Formula {
   Vec3 high{1.5, 1.5, 1.5};    ///< upper corner of the bounding box
 };
 
-/// Where an object stands and what it is made of.
+/// An object's position, material and name.
 struct Placement {
   std::string material{};     ///< a name given to add_material(); empty: "default", created if missing
   std::string name{};         ///< reported by Session::pick(); may be empty
   Mat4 transform = identity;  ///< from the object's to the world's coordinates; invertible
 };
 
-/// Options for reading a scene, and what an untrusted scene may do.
+/// Options for reading a scene, and permissions that untrusted scenes should not have.
 struct LoadOptions {
   std::optional<double> frame{};  ///< animation frame; none: the scene as written
   bool native_code = false;       ///< allow OpenCL C in scenes: only for files that you trust
@@ -123,8 +123,8 @@ class SUNDOG_API Scene {
   Scene& operator=(Scene&&) noexcept;  ///< as the move constructor
   ~Scene();
 
-  /// Reads a scene (.json) or a model of a format that `sundog render` takes; a model without a camera or
-  /// lights gets default ones. Throws Error (scene).
+  /// Reads a scene (.json) or a model in any format that `sundog render` accepts; a model without a camera or
+  /// lights gets defaults. Throws Error (scene).
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   /// Reads a scene from text; file names in it are relative to `folder`. Throws Error (scene).
   static Scene from_json(std::string_view text, const std::filesystem::path& folder = ".",
@@ -161,8 +161,8 @@ class SUNDOG_API Scene {
   /// Adds or replaces the named mesh, for add_instance(). Throws Error (usage) for spans of different
   /// lengths, indices out of range, non-finite numbers, or an empty mesh.
   Scene& add_mesh(const std::string& name, const MeshView& mesh);
-  /// Places a mesh of add_mesh() or of the document. This and the functions below throw Error (usage) if the
-  /// document's "objects" is not an array.
+  /// Places a mesh from add_mesh() or from the document. This and the functions below throw Error (usage) if
+  /// the document's "objects" is not an array.
   Scene& add_instance(const std::string& mesh, const Placement& placement);
   /// Adds a sphere; `radius` in the object's units, above 0.
   Scene& add_sphere(const Vec3& center, double radius, const Placement& placement);

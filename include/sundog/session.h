@@ -35,9 +35,9 @@ struct Snapshot {
   std::uint64_t generation = 0;             ///< the newest Session::start()
   std::uint64_t shown = 0;                  ///< the generation that `picture` shows; 0: none yet
   std::uint64_t revision = 0;               ///< grows with each change of any member
-  SessionState state = SessionState::idle;  ///< of the newest start()
-  std::string error{};                      ///< of a failed start(); else empty
-  double fraction = 0;                      ///< of the samples done, 0..1
+  SessionState state = SessionState::idle;  ///< state of the newest start()
+  std::string error{};                      ///< why a start() failed; else empty
+  double fraction = 0;                      ///< fraction of the samples that are done, 0..1
   unsigned samples = 0;                     ///< minimum over the pixels; 0 while the picture is coarse
   unsigned block = 1;  ///< edge in pixels of the blocks in a coarse picture; 1: full resolution
   double seconds = 0;  ///< since the start() of `shown`; once settled, its duration
@@ -53,10 +53,10 @@ struct Pick {
   double depth = 0;        ///< along the view; infinite if nothing is hit
 };
 
-/// Draws the newest scene in the background, in a thread per device and one that compiles. Thread-safe.
+/// Draws the newest scene in the background, with a thread per device and a compiling thread. Thread-safe.
 class SUNDOG_API Session {
  public:
-  /// Opens `devices`; none: the one estimated fastest. Throws Error (device).
+  /// Opens `devices`; empty: the device estimated fastest. Throws Error (device).
   explicit Session(const std::vector<Device>& devices = {});
   /// Stops drawing and waits for running launches (about 50 ms). A driver that hangs or compiles keeps its
   /// thread, which belongs to the devices, or to the process if the session chose them.
@@ -64,9 +64,9 @@ class SUNDOG_API Session {
   Session(Session&&) noexcept;             ///< afterwards `other` can only be destroyed or assigned to
   Session& operator=(Session&&) noexcept;  ///< stops what this session draws
 
-  /// Draws the scene as it is now, replacing the one before. Returns its generation once the scene is read;
-  /// snapshot() then gives the picture. Only parts that differ from the previous scene are compiled again.
-  /// Throws Error (scene; internal for a frame that exceeds the memory) and then keeps the previous scene.
+  /// Draws the scene as it is now, replacing the previous scene. Returns its generation once the scene is
+  /// read; snapshot() then gives the picture. Only changed parts are compiled again. Throws Error (scene;
+  /// internal for a frame that exceeds the memory); the previous scene then stays.
   std::uint64_t start(const Scene& scene, const SessionOptions& options = {});
   /// Stops drawing; the picture so far remains.
   void cancel();
@@ -77,7 +77,7 @@ class SUNDOG_API Session {
   Snapshot snapshot(bool with_picture = true) const;
   /// Waits until the newest generation is settled, stopped or failed.
   void wait() const;
-  /// Waits likewise, for at most `seconds`; returns false on timeout.
+  /// Like wait(), for at most `seconds`; returns false on timeout.
   bool wait_for(double seconds) const;
   /// Waits until Snapshot::revision differs from `revision`, for at most `seconds`; returns false on timeout.
   bool wait_for_change(std::uint64_t revision, double seconds) const;

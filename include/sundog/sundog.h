@@ -1,6 +1,6 @@
 /** @file
  * The C interface, for use from other languages: opaque handles, error codes, no exceptions. The C++ headers
- * beside it document each function in more detail.
+ * in this folder document each function in more detail.
  *
  * Functions return SUNDOG_OK or the kind of error, and store its message, file and place in `error`, their
  * last argument, which may be NULL. Results are stored through the arguments before it, which are unchanged
@@ -15,7 +15,7 @@
 /** Exports a symbol. */
 #define SUNDOG_C_API __attribute__((visibility("default")))
 
-/** No function throws. */
+/** Marks functions that do not throw. */
 #ifdef __cplusplus
 #define SUNDOG_NOEXCEPT noexcept
 extern "C" {
@@ -51,13 +51,13 @@ SUNDOG_C_API const char* sundog_version(void) SUNDOG_NOEXCEPT;
 
 /* --- errors ------------------------------------------------------------------------------------------- */
 
-/** A handle for any number of calls, one after another; NULL if out of memory. */
+/** Returns an error handle, which consecutive calls may share; NULL if out of memory. */
 SUNDOG_C_API sundog_error* sundog_error_new(void) SUNDOG_NOEXCEPT;
 /** The message, one line; empty before the first failure and for NULL. Valid until the next failure. */
 SUNDOG_C_API const char* sundog_error_line(const sundog_error* error) SUNDOG_NOEXCEPT;
-/** The file at fault; empty if none. Valid likewise. */
+/** The file at fault; empty if none. Valid until the next failure. */
 SUNDOG_C_API const char* sundog_error_file(const sundog_error* error) SUNDOG_NOEXCEPT;
-/** The place in it: a JSON pointer, or "line 12". Valid likewise. */
+/** The place in that file: a JSON pointer, or "line 12". Valid until the next failure. */
 SUNDOG_C_API const char* sundog_error_place(const sundog_error* error) SUNDOG_NOEXCEPT;
 /** Frees a handle; accepts NULL. */
 SUNDOG_C_API void sundog_error_free(sundog_error* error) SUNDOG_NOEXCEPT;
@@ -78,7 +78,7 @@ SUNDOG_C_API sundog_status sundog_scene_set(sundog_scene* scene, const char* poi
                                             sundog_error* error) SUNDOG_NOEXCEPT;
 /** Adds or replaces a mesh that objects {"type": "mesh", "mesh": NAME} place. `positions` are x, y, z each;
  * `triangles` three indices each, counterclockwise seen from outside; `normals` (x, y, z) and `uvs` (u, v)
- * NULL or one a vertex. The numbers are copied. */
+ * NULL or one per vertex. The numbers are copied. */
 SUNDOG_C_API sundog_status sundog_scene_add_mesh(sundog_scene* scene, const char* name,
                                                  const float* positions, size_t vertex_count,
                                                  const uint32_t* triangles, size_t triangle_count,
@@ -103,17 +103,20 @@ SUNDOG_C_API void sundog_scene_free(sundog_scene* scene) SUNDOG_NOEXCEPT;
 
 /** Lists every device, including unusable ones. */
 SUNDOG_C_API sundog_status sundog_devices_list(sundog_devices** devices, sundog_error* error) SUNDOG_NOEXCEPT;
-/** Selects devices by comma-separated specs ("cpu", "0:1", ...); NULL: the one estimated fastest. */
+/** Selects devices by comma-separated specs ("cpu", "0:1", ...); NULL: the device estimated fastest. */
 SUNDOG_C_API sundog_status sundog_devices_choose(const char* specs, sundog_devices** devices,
                                                  sundog_error* error) SUNDOG_NOEXCEPT;
 /** Number of devices; 0 for NULL. */
 SUNDOG_C_API size_t sundog_devices_count(const sundog_devices* devices) SUNDOG_NOEXCEPT;
-/** A device's label. Valid as long as `devices`; NULL for an index out of range. */
+/** A device's label. Valid until `devices` is freed; NULL for an index out of range. */
 SUNDOG_C_API const char* sundog_devices_label(const sundog_devices* devices, size_t index) SUNDOG_NOEXCEPT;
-/** Why the device is unusable; empty if usable. Valid likewise. */
+/** Why the device is unusable, or empty. Valid until `devices` is freed; NULL for an index out of range. */
 SUNDOG_C_API const char* sundog_devices_problem(const sundog_devices* devices, size_t index) SUNDOG_NOEXCEPT;
 /** Frees a handle; accepts NULL. */
 SUNDOG_C_API void sundog_devices_free(sundog_devices* devices) SUNDOG_NOEXCEPT;
+
+/** Waits, for at most a minute, for threads that a stopped render or session has left in a driver. */
+SUNDOG_C_API void sundog_wait_for_threads(void) SUNDOG_NOEXCEPT;
 
 /* --- renders ------------------------------------------------------------------------------------------ */
 
@@ -123,7 +126,7 @@ typedef int (*sundog_progress)(uint64_t pixels_done, uint64_t pixels_total, doub
 
 /** Options of a render; all zero: the defaults. */
 typedef struct sundog_options {
-  const sundog_devices* devices; /**< NULL: the one estimated fastest */
+  const sundog_devices* devices; /**< NULL: the device estimated fastest */
   const char* aovs;              /**< separated by commas: "depth,normal"; NULL: none */
   unsigned work_group_x;         /**< 0: the default */
   unsigned work_group_y;         /**< 0: 1 */
@@ -139,10 +142,10 @@ SUNDOG_C_API sundog_status sundog_render(const sundog_scene* scene, const sundog
                                          sundog_film** film, sundog_error* error) SUNDOG_NOEXCEPT;
 /** 1: every pixel has all its samples; 0: stopped, out of time, or NULL. */
 SUNDOG_C_API int sundog_film_complete(const sundog_film* film) SUNDOG_NOEXCEPT;
-/** A warning about the render, counted from 0: one line. Valid as long as the film; NULL: there is none. */
+/** A warning about the render, one line; `index` from 0. Valid until the film is freed; NULL: no more. */
 SUNDOG_C_API const char* sundog_film_warning(const sundog_film* film, size_t index) SUNDOG_NOEXCEPT;
 /** The picture (`aov` NULL: linear RGBA) or an AOV: width * height * channels floats, row 0 at the top. Valid
- * as long as the film; any argument after `pixels` may be NULL. */
+ * until the film is freed; any argument after `pixels` may be NULL. */
 SUNDOG_C_API sundog_status sundog_film_pixels(const sundog_film* film, const char* aov, const float** pixels,
                                               int* width, int* height, int* channels,
                                               sundog_error* error) SUNDOG_NOEXCEPT;
@@ -168,7 +171,7 @@ typedef enum sundog_state {
 /** Opens devices. A session is thread-safe, except that it must not be freed during a call. */
 SUNDOG_C_API sundog_status sundog_session_open(const sundog_devices* devices, sundog_session** session,
                                                sundog_error* error) SUNDOG_NOEXCEPT;
-/** Draws the scene as it is now, replacing the one before. Returns once it is read. */
+/** Draws the scene as it is now, replacing the previous scene. Returns once the scene is read. */
 SUNDOG_C_API sundog_status sundog_session_start(sundog_session* session, const sundog_scene* scene,
                                                 sundog_error* error) SUNDOG_NOEXCEPT;
 /** Stops drawing; the picture so far remains. */

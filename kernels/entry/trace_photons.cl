@@ -2,6 +2,26 @@
 #define HAS_LANDINGS 1
 #include "lib/core/counters.cl"
 #include "lib/pathtracer/steps.cl"
+
+static inline LaneSamples sample_of_photon(const Scene* scene, const PhotonLaunch* launch, MASK place) {
+  const MASK number = (int)launch->first + place;
+  const LaneSamples at = {(MASK)((int)(launch->map + 1u)), ~(number / (int)SOBOL_SAMPLES),
+                          number % (int)SOBOL_SAMPLES, scene->info->seed};
+  return at;
+}
+
+#if HAS_SCATTERING
+static inline void keep_beam(__global float4* landed, MASK beam, REAL3 o, REAL length, REAL3 d,
+                             MASK slice_and_sent, REAL3 flux, MASK lanes) {
+  EACH_LANE(i, lanes) {
+    __global float4* rows = landed + MASK_LANE(beam, i);
+    rows[0] = (float4)(get3(&o, i), REAL_LANE(length, i));
+    rows[1] = (float4)(get3(&d, i), (float)MASK_LANE(slice_and_sent, i));
+    rows[2] = (float4)(get3(&flux, i), 1.0f);
+  }
+}
+#endif
+
 #include "plain/pathtracer/photon.cl"
 
 // Photon `first` and those after it, one a lane.
@@ -10,43 +30,47 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
                              __global u32* restrict cells) {
   u32 counts[COUNTERS];
   for (u32 i = 0; i < COUNTERS; ++i) counts[i] = 0;
-  LaneSamples at;
-  at.seed = scene->info->seed;
-  MASK lanes = NO_LANES;
+  MASK lanes = NO_LANES, places = NO_LANES;
   for (u32 i = 0; i < BATCH; ++i) {
-    const u32 number = first + i;
-    MASK_LANE(at.x, i) = (int)(launch->map + 1u);
-    MASK_LANE(at.y, i) = (int)(~(number / SOBOL_SAMPLES));
-    MASK_LANE(at.sample, i) = (int)(number % SOBOL_SAMPLES);
-    if (number < launch->last) MASK_LANE(lanes, i) = -1;
+    MASK_LANE(places, i) = (int)(first - launch->first + i);
+    if (first + i < launch->last) MASK_LANE(lanes, i) = -1;
   }
-  EACH_LANE(i, lanes) cells[first - launch->first + i] = NO_PHOTON;
+  EACH_LANE(i, lanes) cells[MASK_LANE(places, i)] = NO_PHOTON;
 #if HAS_SCATTERING
-  __global float4* beams = landed + 2u * (launch->last - launch->first) + 3u * (first - launch->first);
-  EACH_LANE(i, lanes) beams[3u * i + 2u] = (float4)(0.0f);  // no light
+  const MASK beams = row_of_beam(launch, places, lanes);
+  EACH_LANE(i, lanes) landed[MASK_LANE(beams, i) + 2] = (float4)(0.0f);  // no light
 #endif
+  const LaneSamples at = sample_of_photon(scene, launch, places);
   PhotonStarts starts;
   const MASK started = lanes & start_photon(scene, launch->targets, launch->count, &at, &starts, lanes);
-  // Touching faces take enough of the stack.
-  EITHER(HAS_TOUCHING, Photons kept; Photons* const photons = &kept;, KEEP_IN_MEMORY(Photons, photons);)
-  *photons = begun_photon(scene, &at, &starts, started);
+#if HAS_TOUCHING  // whose faces take enough of the stack
+  Photons kept;
+  SceneRays way;
+  Photons* const photons = &kept;
+  SceneRays* const rays = &way;
+#else
+  KEEP_IN_MEMORY(Photons, photons);
+  KEEP_IN_MEMORY(SceneRays, rays);
+#endif
+  *photons = begun_photon(scene, places, &at, &starts, started);
   const CameraRays begun = endless_ray(scene->info, starts.o, starts.d, starts.time, started);
   const MediaStack outside = {0, 0};
-  SceneRays rays = scene_rays(&begun, outside);
-  EACH_LANE(i, started) set_media(&rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
+  *rays = scene_rays(&begun, outside);
+  EACH_LANE(i, started) set_media(rays, i, read_media(light_media + 2 * MASK_LANE(starts.light, i)));
   for (lanes = started; any_lane(lanes);) {
     Landings landings CLEARED_ON_GPUS;
     start_marching(counts);
-    const MASK going = lanes & step_photon(scene, photons, &rays, &landings, counts, lanes);
+    const MASK going = lanes & step_photon(scene, launch, photons, rays, &landings, landed, counts, lanes);
     EACH_LANE(i, lanes & landings.is) {
-      const u32 to = first - launch->first + i;
+      // From memory: made from `first`, the addresses would stay in registers around the loop.
+      const int to = MASK_LANE(photons->place, i);
       const float3 flux = get3(&landings.flux, i);
       const float3 p = still_point(scene, (u32)MASK_LANE(landings.instance, i), get3(&landings.p, i),
                                    REAL_LANE(starts.time, i));
       const float2 wi = pack_direction(get3(&landings.wi, i));
       const u32 slice = photon_slice(REAL_LANE(starts.time, i));
-      landed[2u * to] = (float4)(p, with_count(wi.x, slice));
-      landed[2u * to + 1u] = (float4)(flux, with_count(wi.y, (u32)MASK_LANE(landings.sent_on, i)));
+      landed[2 * to] = (float4)(p, with_count(wi.x, slice));
+      landed[2 * to + 1] = (float4)(flux, with_count(wi.y, (u32)MASK_LANE(landings.sent_on, i)));
       const float3 zero = (p + flux) * 0.0f;  // NaN where one is not finite
       if (zero.x + zero.y + zero.z == 0.0f)
         cells[to] = photon_cell(photon_cube(p, launch->inverse_edge), slice) & (NO_PHOTON >> 1);
@@ -54,13 +78,12 @@ NEVER_INLINE void trace_item(const Scene* scene, __global const u32* restrict li
     lanes = going;
   }
 #if HAS_SCATTERING
-  EACH_LANE(i, started & MASK_OF(photons->beam.length > 0.0f)) {
+  const MASK ends = row_of_beam(launch, photons->place, started);
+  EACH_LANE(i, started) {
+    __global float4* last = landed + MASK_LANE(ends, i) + 2;
     const float light = REAL_LANE(photons->beam.scattered, i);
-    const u32 slice = photon_slice(REAL_LANE(starts.time, i));
-    const u32 slice_and_sent = slice + PHOTON_SLICES * (u32)MASK_LANE(photons->beam.sent_on, i);
-    beams[3u * i] = (float4)(get3(&photons->beam.o, i), REAL_LANE(photons->beam.length, i));
-    beams[3u * i + 1u] = (float4)(get3(&photons->beam.d, i), (float)slice_and_sent);
-    beams[3u * i + 2u] = (float4)(get3(&photons->beam.flux, i) * light, light);
+    // So far w says whether there is a beam.
+    if (last->w > 0.0f) *last = (float4)(last->xyz * light, light);
   }
 #endif
 }

@@ -13,7 +13,7 @@ import ctypes as _ctypes
 import pathlib as _pathlib
 
 try:
-    # Drivers are loaded by the system's own loader, which all modules of a process share.
+    # The system's OpenCL loader loads the drivers; all modules of a process share it.
     _ctypes.CDLL("libOpenCL.so.1", mode=_ctypes.RTLD_GLOBAL)
 except OSError as _error:
     raise ImportError(
@@ -66,7 +66,7 @@ def view(scene, parameters=None, devices=None):
     return View(scene, parameters, devices)
 
 
-_atexit.register(_end)  # while what the drivers' threads use is still there
+_atexit.register(_end)  # while the objects that the drivers' threads use still exist
 __version__ = version()
 __all__ = [
     "Device",

@@ -1,4 +1,4 @@
-"""A scene in a notebook: a picture to turn, with sliders. Needs anywidget (`pip install anywidget`)."""
+"""Shows a scene in a notebook: a picture that can be turned, with sliders. Needs anywidget (`pip install anywidget`)."""
 
 import math
 import pathlib
@@ -11,11 +11,11 @@ import traitlets
 
 from ._sundog import Error, Scene, Session
 
-_steepest = math.radians(89)  # elevation of the camera above the target
+_steepest = math.radians(89)  # greatest elevation of the camera above the target
 
 
 def _turned(camera, across, up, nearer):
-    """The position after a turn about the target by these angles; `nearer` divides the distance."""
+    """The camera's position after a turn about its target by these angles; `nearer` divides the distance."""
     target, axis = np.array(camera["target"], float), np.array(camera.get("up", [0, 1, 0]), float)
     axis /= np.linalg.norm(axis)
     way = np.array(camera["position"], float) - target
@@ -26,7 +26,7 @@ def _turned(camera, across, up, nearer):
     elevation = math.asin(max(-1.0, min(1.0, height / distance))) + up
     elevation = max(-_steepest, min(_steepest, elevation))
     length = np.linalg.norm(flat)
-    if length < 1e-9 * distance:  # straight above: any way down will do
+    if length < 1e-9 * distance:  # straight above the target: any direction will do
         flat = np.cross(axis, [1, 0, 0] if abs(axis[0]) < 0.9 else [0, 1, 0])
         length = np.linalg.norm(flat)
     new = math.cos(elevation) * flat / length + math.sin(elevation) * axis
@@ -58,7 +58,7 @@ class View(anywidget.AnyWidget):
 
     def __init__(self, scene, parameters=None, devices=None):
         self._lock, self._closed = threading.Lock(), threading.Event()
-        self._session = None  # as long as there may be an error
+        self._session = None  # for close(), if an error follows
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene(scene)
         if "/camera/position" not in self._scene or "/camera/target" not in self._scene:
             raise ValueError("sundog.view: the scene's camera wants a position and a target to be turned about")
@@ -70,7 +70,7 @@ class View(anywidget.AnyWidget):
         super().__init__(width=size[0], height=size[1], parameters=sliders)
         self.on_msg(self._heard)
         self._session.start(self._scene)
-        # No daemon: the interpreter would end it within the session.
+        # Not a daemon thread: the interpreter would kill it inside the session.
         threading.Thread(target=_send_pictures, args=(weakref.ref(self), self._session)).start()
 
     @property
@@ -81,7 +81,7 @@ class View(anywidget.AnyWidget):
 
     @property
     def pixels(self):
-        """The settled picture: (height, width, 4) linear floats; waits for it."""
+        """Waits for the settled picture: (height, width, 4) linear floats."""
         return self._session.finish().pixels
 
     def set(self, pointer, value):
@@ -89,7 +89,7 @@ class View(anywidget.AnyWidget):
         self.hear({"set": {pointer: value}})
 
     def hear(self, message):
-        """A message of the page: "set": {pointer: value}, "turn": [radians across, up], "nearer": ratio."""
+        """Handles a message from the page: "set": {pointer: value}, "turn": [radians across, up], "nearer": ratio."""
         across, up = message.get("turn", (0, 0))
         with self._lock:
             scene = self._scene.copy()
@@ -103,7 +103,7 @@ class View(anywidget.AnyWidget):
     def _heard(self, _, message, buffers):
         try:
             self.hear(message)
-        except (Error, ValueError) as error:  # which the page shows
+        except (Error, ValueError) as error:  # the page shows it
             self.send({"text": str(error)}, buffers=[])
 
     def close(self):
@@ -116,6 +116,6 @@ class View(anywidget.AnyWidget):
         image = snapshot.image
         if snapshot.error:
             self.send({"text": snapshot.error}, buffers=[])
-        elif image.width > 0:  # there is one
+        elif image.width > 0:  # a picture exists
             text = f"{snapshot.samples} samples a pixel, {snapshot.seconds:.2f} s"
             self.send({"text": text}, buffers=[image._repr_png_()])

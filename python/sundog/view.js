@@ -1,4 +1,4 @@
-// The page's side of sundog.view(): shows pictures, sends turns and the sliders' values.
+// The page's part of sundog.view(): shows pictures, and sends turns and the sliders' values.
 function render({ model, el }) {
   const picture = document.createElement("img");
   const text = document.createElement("div");
@@ -26,7 +26,7 @@ function render({ model, el }) {
   }
   el.append(text);
 
-  // At most one message a frame; turns add up meanwhile.
+  // Sends at most one message per frame; turns in between add up.
   let waiting = null;
   function queue(message) {
     if (!waiting) requestAnimationFrame(() => { model.send(waiting); waiting = null; });
@@ -53,7 +53,7 @@ function render({ model, el }) {
     picture.src = url;
   };
   model.on("msg:custom", show);
-  model.send({ turn: [0, 0] });  // the first picture may have come before this page
+  model.send({ turn: [0, 0] });  // requests a picture, as the first may have been sent before this page existed
   return () => model.off("msg:custom", show);
 }
 export default { render };

@@ -158,6 +158,12 @@ assert session.wait(60) and session.snapshot().state == "settled"
 assert np.array_equal(session.finish().pixels, pixels)
 assert session.pick(16, 12).object == "the triangle"
 assert error_of(lambda: session.start({"objects": 3})).kind == "scene"
+for wrong in ([3], [None], b"cpu"):
+    try:
+        sundog.render(small(), devices=wrong)
+        raise AssertionError("no TypeError")
+    except TypeError as error:
+        assert "wanted a sundog.Device" in str(error)
 
 
 # The arrays of an animation are let go of by the session's threads, also while the session ends.
@@ -218,6 +224,20 @@ threading.Thread(target=sundog.render, args=(scene,), kwargs=options, daemon=Tru
 begun.wait()
 """
 subprocess.run([sys.executable, "-c", endless, device or ""], check=True, timeout=60)
+# So does one that writes an image, or waits for changes.
+for busy in ("film.save(sys.argv[1])", "session.wait_for_change(session.snapshot(False).revision, 0.01)"):
+    program = f"""
+import sundog, sys, threading
+film = sundog.render({{"objects": [], "image": {{"width": 1500, "height": 1000}}}}, devices=sys.argv[2] or None)
+session, begun = sundog.Session(sys.argv[2] or None), threading.Event()
+def work():
+    while True:
+        begun.set()
+        {busy}
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+"""
+    subprocess.run([sys.executable, "-c", program, "busy.exr", device or ""], check=True, timeout=60)
 
 # Scenes of the package, and a live view of one, as its page would move it.
 assert "hollow_ice" in sundog.examples()

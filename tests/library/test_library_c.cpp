@@ -258,6 +258,7 @@ TEST_CASE("every function of C reports its errors") {
   CHECK(sundog_film_save(nullptr, "a.png", nullptr) == SUNDOG_USAGE);
   CHECK(sundog_film_complete(nullptr) == 0);
   CHECK(sundog_film_warning(nullptr, 0) == nullptr);
+  sundog_wait_for_threads();
   CHECK(sundog_scene_load_frame("/none/such.json", 3, &scene, failure.error) == SUNDOG_SCENE);
   CHECK(sundog_session_open(nullptr, nullptr, nullptr) == SUNDOG_USAGE);
   CHECK(sundog_session_start(nullptr, nullptr, nullptr) == SUNDOG_USAGE);

@@ -73,7 +73,7 @@ std::string BackgroundProgram::line_with(const std::string& part, double seconds
 
 bool BackgroundProgram::runs() const { return child_ > 0 && ::waitpid(child_, nullptr, WNOHANG) == 0; }
 
-/// Its process group: a browser has children of its own.
+/// Ends the whole process group, because a browser has children of its own.
 void BackgroundProgram::end() {
   if (child_ <= 0) return;
   ::kill(-child_, SIGTERM);
@@ -82,6 +82,6 @@ void BackgroundProgram::end() {
     if (seconds_since(start) > 5) ::kill(-child_, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  ::kill(-child_, SIGKILL);  // what the first process has left
+  ::kill(-child_, SIGKILL);  // children that the first process left
   child_ = -1;
 }

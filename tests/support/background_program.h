@@ -7,16 +7,16 @@
 
 class BackgroundProgram {
  public:
-  /// Starts it; its stderr is the test's own. `environment` comes on top of the test's.
+  /// Starts the program in `folder`; its stderr is the test's own. `environment` is added to the test's.
   BackgroundProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder = {},
                     const std::map<std::string, std::string>& environment = {});
-  /// Ends it by SIGTERM, after five seconds by SIGKILL.
+  /// Ends the program by SIGTERM, after five seconds by SIGKILL.
   ~BackgroundProgram();
   BackgroundProgram(const BackgroundProgram&) = delete;
   BackgroundProgram& operator=(const BackgroundProgram&) = delete;
 
-  /// The first line of its output that contains `part`. Throws std::runtime_error when it ends, or `seconds`
-  /// pass, without one.
+  /// The next line of its output that contains `part`. Throws std::runtime_error if the program ends or
+  /// `seconds` pass without one.
   std::string line_with(const std::string& part, double seconds = 30);
   bool runs() const;
   void end();

@@ -78,7 +78,7 @@ Browser::~Browser() {
   try {
     command("DELETE", "");
   } catch (const std::exception&) {
-    driver_.end();  // it takes the browser along
+    driver_.end();  // ends the browser too
   }
 }
 
@@ -106,7 +106,7 @@ void Browser::type(const std::string& text, int gap) {
   perform({{{"type", "key"}, {"id", "keys"}, {"actions", steps}}});
 }
 
-/// The size of the page, not of the window around it.
+/// Sets the size of the page, not of the window around it.
 void Browser::resize(int width, int height) {
   for (int tries = 0; tries < 2; ++tries) {
     const json rest =

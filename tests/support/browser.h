@@ -7,12 +7,12 @@
 #include "background_program.h"
 #include "temporary_folder.h"
 
-/// Bytes as a script's argument.
+/// Encodes bytes for a script's argument.
 std::string to_base64(const std::string& bytes);
 
 class Browser {
  public:
-  /// Starts chromedriver and Chromium. Throws std::runtime_error that names the packages where they are
+  /// Starts chromedriver and Chromium. Throws std::runtime_error, which names the packages if they are
   /// missing.
   Browser(int width, int height);
   ~Browser();
@@ -22,31 +22,33 @@ class Browser {
   void open(const std::string& url) { command("POST", "/url", {{"url", url}}); }
   void reload() { command("POST", "/refresh", nlohmann::json::object()); }
   void resize(int width, int height);
-  /// Runs the body of an async function in the page; its value. What it throws becomes std::runtime_error.
+  /// Runs the body of an async function in the page and returns its value. Throws std::runtime_error for what
+  /// the script throws.
   nlohmann::json run(const std::string& script, const nlohmann::json& arguments = nlohmann::json::array());
-  /// Waits until the script's value is true.
+  /// Waits until the script returns true. Throws std::runtime_error after `seconds`.
   void wait_until(const std::string& script, double seconds = 120);
-  /// Moves the mouse over the page, in its pixels: down at the first point, up at the last; one point is a
+  /// Moves the mouse over the page, in page pixels: down at the first point, up at the last. One point is a
   /// click.
   void drag(const std::vector<std::pair<int, int>>& points, const std::string& modifier = "");
   void double_click(int x, int y);
-  /// Fingers on the page at once, each along its points (all as many): down at the first, up at the last.
+  /// Moves several fingers at once, each along its points: down at the first, up at the last. All have
+  /// equally many points.
   void touch(const std::vector<std::vector<std::pair<int, int>>>& fingers);
   /// The colour scheme that the browser reports as its user's preference.
   void prefer_dark(bool dark);
-  /// Types keys at what has the focus; "\uE00C" and the like are WebDriver's special keys.
+  /// Presses keys together in the focused element; "\uE00C" and the like are WebDriver's special keys.
   void keys(const std::vector<std::string>& keys);
-  /// Types one character after the other at what has the focus, with so many milliseconds between them.
+  /// Types one character after the other into the focused element, `gap` milliseconds apart.
   void type(const std::string& text, int gap);
-  /// Opens another tab and goes there; tabs are counted from 0.
+  /// Opens a URL in a new tab and switches to it. Tabs count from 0.
   void open_tab(const std::string& url);
   void use_tab(std::size_t index);
   std::size_t tabs();
-  /// A PNG of what is seen.
+  /// The visible page as PNG.
   std::string screenshot();
   /// Errors that the page has logged so far.
   std::vector<std::string> errors();
-  /// Where downloads go.
+  /// The folder of downloads.
   const TemporaryFolder& downloads() const { return downloads_; }
 
  private:

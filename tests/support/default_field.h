@@ -1,11 +1,11 @@
-// A formula of the list as a field.
+// Makes a field from a formula of the list.
 #pragma once
 #include "formula/list.h"
 #include "formula/lower.h"
 
 namespace sundog {
 
-/// A formula with default parameters, iterations, bailout and interval.
+/// The formula as a field with its default parameters, iterations, bailout and bounds.
 inline SdfDescription default_field(const FormulaDefinition& d) {
   SdfDescription field;
   field.name = d.name;

@@ -16,9 +16,9 @@
 
 void prepare_opencl_environment(bool every_driver) {
   if (every_driver) setenv("RUSTICL_ENABLE", "llvmpipe", 0);
-  // llvmpipe without LLVM's optimiser compiles a third faster, and draws the same bits.
+  // Without LLVM's optimiser, llvmpipe compiles a third faster and draws the same bits.
   setenv("GALLIVM_PERF", "nopt", 0);
-  // Tests move XDG_CACHE_HOME about; Mesa's own cache stays where it is, for users who have such a folder.
+  // Tests change XDG_CACHE_HOME; Mesa's cache stays in the user's folder, if there is one.
   const char *xdg = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
   const std::string cache = xdg && *xdg ? xdg : home ? std::string(home) + "/.cache" : "";
   std::error_code error;
@@ -27,7 +27,7 @@ void prepare_opencl_environment(bool every_driver) {
 }
 
 const std::vector<sundog::DeviceInfo>& test_devices() {
-  // Never destroyed: at exit drivers have freed what the release of a context uses.
+  // Never destroyed: at exit, drivers have already freed data that the release of a context uses.
   static const auto& devices = *new const std::vector<sundog::DeviceInfo>([] {
     const char* listed = std::getenv("SUNDOG_TEST_DEVICES");
     std::istringstream in(listed ? listed : "all");

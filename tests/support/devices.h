@@ -1,4 +1,4 @@
-// The devices that tests run on, and a short way to run a device function there.
+// The devices that tests run on, and helpers that run kernels on them.
 #pragma once
 #include <span>
 #include <string>
@@ -8,25 +8,26 @@
 #include "device/device.h"
 #include "shared/types.h"
 
-/// Sets the drivers' variables, unless they are set. With `every_driver` RUSTICL_ENABLE=llvmpipe too, so that
-/// a second implementation is tested where Mesa is installed. To be called before the first OpenCL call.
+/// Sets the drivers' environment variables unless they are set. With `every_driver`, also
+/// RUSTICL_ENABLE=llvmpipe, so that a second implementation is tested if Mesa is installed. Must be called
+/// before the first OpenCL call.
 void prepare_opencl_environment(bool every_driver);
 
-/// Every usable device, or those of SUNDOG_TEST_DEVICES (a comma-separated list of --device SPECs). Fails the
-/// test when there is none.
+/// Every usable device, or those of SUNDOG_TEST_DEVICES (a comma-separated list of --device SPECs). Throws
+/// DeviceError if there is none.
 const std::vector<sundog::DeviceInfo>& test_devices();
 
-/// For what a picture shows: the first device, or every one that SUNDOG_TEST_DEVICES lists. Some drivers
-/// compile a frame's kernels for ten seconds; that they draw what the first does is a test of its own
-/// (frames/test_drivers_agree.cpp).
+/// The devices for tests of a picture's content: the first, or all that SUNDOG_TEST_DEVICES lists. Some
+/// drivers compile a frame's kernels for ten seconds; frames/test_drivers_agree.cpp tests that they draw what
+/// the first does.
 std::span<const sundog::DeviceInfo> picture_devices();
 
-/// How many calls of on_devices() this run of the test case had before. A test case runs once for each of its
-/// sections; main.cpp counts from 0 again with each run.
+/// The number of earlier calls of on_devices() in this run of the test case. A test case runs once for each
+/// of its sections; main.cpp resets the count at each run.
 int& calls_on_devices();
 
-/// Calls body(device's DeviceInfo) for each of the devices, in a section of its own. Catch2 enters a section
-/// of a name once, so each call of a loop has names of its own.
+/// Calls body(DeviceInfo) for each device, in a section of its own. Catch2 enters each section name once, so
+/// the number of the call is part of the name.
 void on_devices(std::span<const sundog::DeviceInfo> devices, const auto& body) {
   const int call = calls_on_devices()++;
   for (const sundog::DeviceInfo& device : devices) DYNAMIC_SECTION(device.label() << ", call " << call) {
@@ -36,16 +37,16 @@ void on_devices(std::span<const sundog::DeviceInfo> devices, const auto& body) {
 void on_every_device(const auto& body) { on_devices(test_devices(), body); }
 void on_picture_devices(const auto& body) { on_devices(picture_devices(), body); }
 
-/// Definitions of every shape and feature, for kernels that are tested by themselves.
+/// Definitions of every shape and feature, for tests of single kernels.
 sundog::KernelDefines all_features();
 
-/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`, with all features but those
-/// that `defines` sets otherwise.
+/// Builds kernels from text, which may `#include "lib/..."` and `"shared/..."`, with all features except
+/// where `defines` overrides them.
 sundog::Program build_text(sundog::Device& device, const std::string& text,
                            const sundog::KernelDefines& defines = {});
 
 /// Runs `kernel void run(global const In* in, global Out* out, u32 count)` of `text` over `inputs`, one
-/// work-item an input.
+/// work-item for each input.
 template <class Out, class In>
 std::vector<Out> run_text(sundog::Device& device, const std::string& text, const std::vector<In>& inputs,
                           const sundog::KernelDefines& defines = {}) {

@@ -1,10 +1,10 @@
-// A scene in each way to trace rays through it: sixteen together, alone, and with the compact tracer.
+// Runs a test with each way of tracing rays: sixteen together, one at a time, and with the compact tracer.
 #pragma once
 #include "bench/rays/ray_tracer.h"
 #include "catch.h"
 #include "devices.h"
 
-/// Calls test(compiled scene, tracer, coherent) for each way to trace on each device.
+/// Calls test(compiled scene, tracer, coherent) for each way of tracing on each device.
 void for_each_tracer(const sundog::SceneDescription& description, const auto& test) {
   using namespace sundog;
   struct Way {

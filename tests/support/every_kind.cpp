@@ -1,4 +1,4 @@
-// Makes one solid and one light of each kind, from the lists of kernels/shared.
+// Makes a solid and a light of each kind, from the lists in kernels/shared.
 #include "every_kind.h"
 
 #include <algorithm>

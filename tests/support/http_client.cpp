@@ -90,7 +90,7 @@ std::optional<std::string> TcpClient::read_until(const std::string& end) const {
 
 HttpReply http(const TcpClient& client, const std::string& request) {
   HttpReply reply;
-  client.send(request);  // a server that refuses early may close before all is sent, and its answer is there
+  client.send(request);  // may fail: a server that refuses early closes early, but has answered
   const auto head = client.read_until("\r\n\r\n");
   if (!head) return reply;
   reply.head = *head;

@@ -1,4 +1,4 @@
-// HTTP and WebSocket over a plain socket, as odd as a test wants them: nothing is made right on the way.
+// HTTP and WebSocket over a plain socket. Sends bytes unchanged, so tests can send malformed requests.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,13 +12,13 @@ class TcpClient {
   TcpClient(const TcpClient&) = delete;
   TcpClient& operator=(const TcpClient&) = delete;
 
-  /// False: the other side has closed.
+  /// False if the other side has closed.
   bool send(const std::string& bytes) const;
-  /// Exactly so many bytes; none when the other side has closed, or time is up.
+  /// Exactly `size` bytes; nothing if the other side has closed or time is up.
   std::optional<std::string> read(std::size_t size) const;
-  /// Up to and with `end`.
+  /// Bytes up to and including `end`.
   std::optional<std::string> read_until(const std::string& end) const;
-  /// A small window: an other side that writes much must soon wait.
+  /// A connection with a small receive window, so that a server that writes much must soon wait.
   static TcpClient with_small_window(int port);
 
  private:
@@ -26,29 +26,29 @@ class TcpClient {
 };
 
 struct HttpReply {
-  int status = 0;  // 0: none came
+  int status = 0;  // 0: no reply
   std::string head, body;
 };
 
 /// Sends these bytes and reads one reply.
 HttpReply http(int port, const std::string& request);
-/// Sends the request over a connection that stays.
+/// Sends the request over an open connection.
 HttpReply http(const TcpClient& client, const std::string& request);
 
-/// A request of the ordinary form; `more` are whole header lines, each with "\r\n".
+/// A well-formed request; `more` are whole header lines, each with "\r\n".
 std::string http_request(int port, const std::string& method, const std::string& path,
                          const std::string& more = "", const std::string& body = "");
 
 /// A WebSocket's client.
 class WebSocketClient {
  public:
-  /// Shakes hands; `origin` empty: none is sent. status() is 101 when it succeeded.
+  /// Performs the handshake. An empty `origin` is not sent. status() is 101 on success.
   WebSocketClient(int port, const std::string& origin = "", bool small_window = false);
   int status() const { return status_; }
   void send(const std::string& text) const;
-  /// The next message's payload; none when the socket is closed. Pings are answered.
+  /// The next message's payload; nothing if the socket is closed. Answers pings.
   std::optional<std::string> receive();
-  /// The next text message that contains `part`; pictures are acknowledged.
+  /// The next text message that contains `part`. Acknowledges pictures.
   std::optional<std::string> receive_with(const std::string& part);
   bool last_was_binary() const { return binary_; }
   int close_code() const { return close_code_; }

@@ -1,4 +1,4 @@
-// A scene that has light of every part (kernels/shared/light_parts.h).
+// A scene with light of every part (kernels/shared/light_parts.h).
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 inline const std::vector<std::string> light_part_names = {LIGHT_PARTS(NAME_OF_PART)};
 #undef NAME_OF_PART
 
-/// Six boards in a row before a bright background, a ball of smoke above them, and a frosted pane below.
+/// Six boards in a row in front of a bright background, a ball of smoke above them and a frosted pane below.
 inline constexpr const char* light_boards = R"({
   "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "fov": 40},
   "image": {"width": 32, "height": 24, "background": [0.2, 0.4, 0.8]},

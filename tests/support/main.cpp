@@ -1,4 +1,4 @@
-// The tests' main(): Catch2's own, after a word on the optional assets.
+// The tests' main(): prepares the drivers, reports missing assets, and runs Catch2.
 #ifndef SUNDOG_CATCH2_V3
 #define CATCH_CONFIG_RUNNER
 #endif
@@ -24,7 +24,7 @@ using ListenerBase = Catch::EventListenerBase;
 using ListenerBase = Catch::TestEventListenerBase;
 #endif
 
-/// Each run of a test case is a section around those within.
+/// Resets calls_on_devices() at each run of a test case, which Catch2 reports as an outermost section.
 struct CountCallsAnew : ListenerBase {
   using ListenerBase::ListenerBase;
   void testCaseStarting(const Catch::TestCaseInfo& info) override {
@@ -48,8 +48,8 @@ CATCH_REGISTER_LISTENER(CountCallsAnew)
 }  // namespace
 
 int main(int argc, char** argv) {
-  // With llvmpipe each process that lists devices takes a fifth of a second more. Only these two programs
-  // compute with it; those of the command line start a thousand processes, which do not.
+  // With llvmpipe, each process that lists devices takes a fifth of a second longer. Only these two programs
+  // use it; the tests of the command line start a thousand processes, which do not.
   const std::string program = std::filesystem::path(argv[0]).filename();
   prepare_opencl_environment(program == "device_tests" || program == "library_tests");
   if (const auto assets = assets_directory(); assets.empty())
@@ -57,8 +57,8 @@ int main(int argc, char** argv) {
   const int status = Catch::Session().run(argc, argv);
   scenes::close_sessions();
 #ifdef __SANITIZE_ADDRESS__
-  // Before the end of the process: drivers keep some memory as long as it lives (PoCL a compiler for each
-  // device) and only free the table that leads to it.
+  // Checks before the process ends: drivers keep some memory until then (PoCL a compiler for each device),
+  // and at exit free only the table that refers to it.
   __lsan_do_leak_check();
 #endif
   return status;

@@ -56,7 +56,7 @@ Stream open_terminal() {
   for (const auto& [name, value] : options.environment)
     value.empty() ? ::unsetenv(name.c_str()) : ::setenv(name.c_str(), value.c_str(), 1);
   if (options.file_limit > 0) {
-    std::signal(SIGXFSZ, SIG_IGN);  // so that the write fails as on a full disk
+    std::signal(SIGXFSZ, SIG_IGN);  // so that a write fails as on a full disk
     const rlimit limit{options.file_limit, options.file_limit};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
@@ -67,7 +67,7 @@ Stream open_terminal() {
   ::_exit(127);
 }
 
-/// Reads what there is; false at the stream's end.
+/// Reads available bytes; false at the stream's end.
 bool read_some(int descriptor, std::string& text) {
   std::array<char, 4096> buffer;
   const ssize_t size = ::read(descriptor, buffer.data(), buffer.size());

@@ -44,20 +44,22 @@ int add(SceneDescription& scene, const MaterialDescription& material) {
   return static_cast<int>(scene.materials.size()) - 1;
 }
 
-/// Whether many scenes of tests have the same general kernels: what these have is in most of them.
+/// Whether the scene's general kernels are those of most test scenes: it has no rare features.
 bool shares_kernels(const CompiledScene& scene) {
   const SceneFeatures& has = scene.features;
   return scene.field_source.empty() && scene.pattern_source.empty() && !has.maps && !has.fog && !has.lens &&
          !has.camera_motion && !has.object_motion && !has.dispersion && !has.layers;
 }
 
-/// One for each of test_devices(), in that order. They stay open, so that a process loads each kernel once.
+/// A session for each of test_devices(), in that order. Sessions stay open, so that a process loads each
+/// kernel once.
 std::vector<std::unique_ptr<RenderSession>>& open_sessions() {
   static std::vector<std::unique_ptr<RenderSession>> sessions;
   return sessions;
 }
 
-/// The session of one of test_devices(); null for others: sub-devices, and those with settings of their own.
+/// The session of one of test_devices(); null for other devices: sub-devices, and devices with another
+/// environment.
 RenderSession* session_on(const DeviceInfo& device) {
   const std::vector<DeviceInfo>& devices = test_devices();
   const auto same = [&](const DeviceInfo& one) {
@@ -132,7 +134,7 @@ glm::dvec3 pixel_on(const DeviceInfo& device, const SceneDescription& scene) {
     return glm::dvec3(result.image.data.at(0), result.image.data.at(1), result.image.data.at(2));
   };
   const glm::dvec3 color = pixel(scene);
-  if (device.native_vector_width > 1) {  // others run the compact tracer anyway
+  if (device.native_vector_width > 1) {  // other devices use the compact tracer anyway
     SceneDescription compact = scene;
     compact.render.tracer = Tracer::compact;
     const glm::dvec3 other = pixel(compact);

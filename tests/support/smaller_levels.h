@@ -1,4 +1,4 @@
-// All smaller levels of an image, as images.
+// Makes all smaller mip levels of an image.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// All levels after `image`.
+/// All levels below `image`, down to 1x1.
 inline std::vector<StoredImage> smaller_levels(const StoredImage& image, SampleUse use) {
   std::vector<StoredImage> levels;
   for (int width = image.width, height = image.height; width > 1 || height > 1;) {

@@ -1,8 +1,9 @@
-// For kernels of tests: the surface of one material, as textures leave it.
+// Text for tests' kernels: the surface of one material without textures.
 #pragma once
 #include <string>
 
-/// Bsdfs make_surface(materials, n, before, after): its normal is n, between two media.
+/// Defines Bsdfs make_surface(materials, n, before, after): the first material, with normal n, between two
+/// media.
 inline const std::string surface_text = R"(
 #include "lib/shade/bsdf.cl"
 #include "plain/shade/lobes.cl"

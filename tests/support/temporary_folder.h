@@ -1,4 +1,4 @@
-// A folder for a test's files, removed with what is in it at the end of the scope.
+// A folder for a test's files, removed with its contents at the end of the scope.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,9 +13,9 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-  /// How many files and folders lie in it.
+  /// The number of files and folders in it.
   std::size_t entries() const;
-  /// Writes `text` to the file `name` in it (folders are made) and returns its path.
+  /// Writes `text` to the file `name` in the folder, creates parent folders, and returns the file's path.
   std::filesystem::path write(std::string_view name, std::string_view text) const;
 
  private:

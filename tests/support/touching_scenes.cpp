@@ -29,7 +29,7 @@ std::vector<Quad> faces_of_cube() {
   return faces;
 }
 
-/// The cube with n x n squares a face, cut along the one diagonal or the other.
+/// The cube with n x n squares on each face, cut along one diagonal or, with `other`, the other.
 Mesh cube_of_squares(int n, bool other) {
   Mesh mesh;
   mesh.name = "cube";
@@ -46,7 +46,7 @@ Mesh cube_of_squares(int n, bool other) {
   return mesh;
 }
 
-/// One of each solid, and two that touch: far off, for the kernels' sake.
+/// Adds one of each solid and two that touch, far away, so that all scenes need the same kernels.
 void add_bystanders(SceneDescription& scene) {
   scene.meshes = {cube_of_squares(1, false), cube_of_squares(3, true)};
   const int material = scenes::add_glow(scene, {0, 0, 0});

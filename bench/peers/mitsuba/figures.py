@@ -1,4 +1,5 @@
-"""Figures of pictures: means of regions in standard errors of their difference, errors against a reference, samples for a given error."""
+"""Statistics of pictures: differences of regions in standard errors, errors against a reference, samples for
+an error."""
 import math
 import os
 
@@ -10,7 +11,8 @@ ERROR = 0.02  # root mean square, linear, clipped to 0..1
 
 
 class Picture:
-    """The mean of parts of independent samples, and the variance of each of its pixels by how the parts differ. `samples`: of all parts."""
+    """The mean of parts with independent samples, and each pixel's variance from the parts. `samples`: of all
+    parts."""
 
     def __init__(self, parts, samples):
         self.parts, self.samples, self.mean = parts, samples, parts.mean(0)
@@ -18,7 +20,8 @@ class Picture:
 
 
 def stored_picture(folder, name, samples, make):
-    """The Picture of the parts that `make` gives, or that an earlier run kept in the folder; None is no folder."""
+    """The Picture of the parts that an earlier run kept in the folder, or else of make(). `folder` may be
+    None."""
     path = folder and os.path.join(folder, f"{name}-{samples}.npy")
     if path and os.path.exists(path):
         return Picture(np.load(path).astype(float), samples)
@@ -30,14 +33,14 @@ def stored_picture(folder, name, samples, make):
 
 
 def region_means(values):
-    """Means of the whole and of GRID x GRID regions, row by row, per channel."""
+    """Means of the whole picture, then of GRID x GRID regions, row by row, per channel."""
     step = values.shape[0] // GRID
     cells = [values[y:y + step, x:x + step] for y in range(0, GRID * step, step) for x in range(0, GRID * step, step)]
     return np.array([cell.mean((0, 1)) for cell in [values] + cells])
 
 
 def region_errors(picture):
-    """Standard errors of region_means(): pixels are independent."""
+    """Standard errors of region_means(), as pixels are independent."""
     step = picture.mean.shape[0] // GRID
     pixels = np.array([picture.mean.shape[0] * picture.mean.shape[1]] + [step * step] * (GRID * GRID))[:, None]
     return np.sqrt(region_means(picture.variance) / pixels)
@@ -49,7 +52,7 @@ def beyond(z):
 
 
 def chance_of(count, trials, p):
-    """That at least `count` of so many independent trials succeed."""
+    """The chance that at least `count` of `trials` independent trials of chance p succeed."""
     return 1 - sum(math.comb(trials, k) * p**k * (1 - p)**(trials - k) for k in range(count))
 
 
@@ -92,13 +95,13 @@ def clipped(image):
 
 
 def clipped_noise(picture):
-    """The mean square error of the clipped mean, by its parts: clipping makes that of each smaller."""
+    """The mean square error of the clipped mean, from the clipped parts, as clipping reduces their noise."""
     parts = clipped(picture.parts)
     return float((parts.var(0, ddof=1) / len(parts)).mean())
 
 
 class Reference:
-    """The mean of Pictures, by their samples; its noise is taken off errors in squares."""
+    """The mean of Pictures, weighted by samples. Its noise is subtracted from squared errors."""
 
     def __init__(self, *pictures):
         self.samples = sum(p.samples for p in pictures)
@@ -109,7 +112,8 @@ class Reference:
         return {"samples": self.samples, "noise": math.sqrt(self.noise)}
 
     def error_of(self, image, contained=0):
-        """`contained`: so many samples of the reference are those of the picture, and are taken out of it."""
+        """The picture's root mean square error. `contained`: number of its samples that the reference
+        contains; they are removed from it."""
         left = self.samples - contained
         against = (self.samples * self.image - contained * image) / left
         square = float(((clipped(image) - clipped(against))**2).mean())
@@ -117,8 +121,8 @@ class Reference:
 
 
 def samples_for_error(points):
-    """The samples that give ERROR, and whether that lies outside of what was measured: on the line through the logarithms of the two points
-    (samples, error) about it, or of the two nearest ones."""
+    """The samples that give ERROR, and whether they lie outside of the measured range: from a line through
+    the logarithms of the two points (samples, error) around it, or else of the two nearest."""
     points = sorted(points)
     at = next((i for i in range(1, len(points)) if points[i][1] <= ERROR), len(points) - 1)
     (n0, e0), (n1, e1) = points[at - 1], points[at]

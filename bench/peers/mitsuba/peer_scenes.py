@@ -1,7 +1,9 @@
-"""The scenes that sundog and its peers among path tracers render: every number once, and the scene file that sundog reads.
+"""The scenes that sundog and its peers among path tracers render, each number stated once, and sundog's scene
+files.
 
-y up, right-handed, linear Rec.709, 256x256 pixels, box filter of one pixel, paths of up to 32 surfaces. Walls and the ground are boxes whose inner
-faces are the scenes' quads, spheres are exact, in both programs. The sky is a picture, 512x256, -z in its middle and +x right of it.
+y up, right-handed, linear Rec.709, 256x256 pixels, box filter of one pixel, paths of up to 32 surfaces. In
+both programs, walls and the ground are boxes whose inner faces are the scenes' quads, and spheres are exact.
+The sky is a picture of 512x256 pixels with -z in its middle and +x right of it.
 """
 import math
 import os
@@ -11,29 +13,29 @@ import numpy as np
 
 SIZE, DEPTH = 256, 32
 NAMES = ("cornell", "glass", "environment", "textured", "textured_flat", "ice")
-TEXTURED = ("textured", "textured_flat")  # with normals at the vertices, and without
+TEXTURED = ("textured", "textured_flat")  # with vertex normals, and without
 UNDER_SKY = ("environment", *TEXTURED)
 BARREL = os.path.join("scenes", "metal_barrel")  # in the folder of assets
 BARREL_SCALE = 1.2 / 90.21511
 
 COLORS = {"white": [0.725, 0.71, 0.68], "red": [0.63, 0.065, 0.05], "green": [0.14, 0.45, 0.091], "ground": [0.4, 0.4, 0.4],
           "clay": [0.6, 0.25, 0.15]}
-# index inside and outside, absorption inside and outside
+# Index of refraction inside and outside, absorption inside and outside.
 INTERFACES = {"glass": (1.5, 1.0, None, None), "shell": (1.5, 1.0, [0.4, 0.15, 0.1], None), "liquid": (1.33, 1.5, [0.5, 4.0, 5.0], [0.4, 0.15, 0.1])}
 MIRROR = [0.95, 0.95, 0.95]
-METAL, METAL_ALPHA = [0.9, 0.75, 0.5], 0.2  # GGX that scatters once, this colour at every angle
+METAL, METAL_ALPHA = [0.9, 0.75, 0.5], 0.2  # single-scattering GGX, this colour at every angle
 LAMP = {"center": [0, 1.99, 0], "size": [0.5, 0.4], "radiance": [17.0, 12.0, 4.0]}  # faces down, black behind
 
 
 def room():
-    """Boxes about the room x -1..1, y 0..2, z -1..1, which is open towards the camera."""
+    """Boxes around the room x -1..1, y 0..2, z -1..1, which is open towards the camera."""
     return [("box", {"min": [-1.1, -0.1, -1.1], "max": [1.1, 0, 1]}, "white"), ("box", {"min": [-1.1, 2, -1.1], "max": [1.1, 2.1, 1]}, "white"),
             ("box", {"min": [-1, 0, -1.1], "max": [1, 2, -1]}, "white"), ("box", {"min": [-1.1, 0, -1.1], "max": [-1, 2, 1]}, "red"),
             ("box", {"min": [1, 0, -1.1], "max": [1.1, 2, 1]}, "green")]
 
 
 def turned(center, half, degrees):
-    """About +y, counter-clockwise seen from above."""
+    """A box turned about +y, counter-clockwise seen from above."""
     return {"min": [-h for h in half], "max": half, "turn": degrees, "center": center}
 
 
@@ -59,14 +61,15 @@ def camera_of(name):
 
 
 def find_barrel():
-    """The folder of the barrel's model, or None: $SUNDOG_ASSETS, else ../shared/assets beside the source tree."""
+    """The folder of the barrel's model in $SUNDOG_ASSETS, or else in ../shared/assets beside the source tree;
+    or None."""
     tree = os.path.join(os.path.dirname(os.path.abspath(__file__)), *[".."] * 3)
     folder = os.path.join(os.environ.get("SUNDOG_ASSETS") or os.path.join(tree, "..", "shared", "assets"), BARREL)
     return folder if os.path.exists(os.path.join(folder, "mesh.obj")) else None
 
 
 def make_sky():
-    """A sky and a sun of 3x3 texels as RGBE bytes, whose mantissas are cut off."""
+    """A sky and a sun of 3x3 texels as RGBE bytes with truncated mantissas."""
     h, w = 256, 512
     y = np.cos((np.arange(h) + 0.5) / h * math.pi)[:, None] * np.ones((1, w))
     up = np.sqrt(np.clip(y, 0, 1))[..., None]
@@ -86,8 +89,9 @@ def write_sky(path, rgbe):
 
 
 def sky_between_edges(rgbe):
-    """Converts the sky for Mitsuba 3.9, whose first and last rows of texels lie on the poles; sundog's lie half a row below and above them.
-    Returns 2 n + 1 rows: the picture's n, and means between and around them, which blend linearly to sundog's radiance."""
+    """Converts the sky for Mitsuba 3.9, whose first and last rows of texels lie on the poles; sundog's lie
+    half a row inside of them. Returns 2 n + 1 rows: the picture's n, and means between and around them, so
+    that Mitsuba's linear interpolation gives sundog's radiance."""
     sky = rgbe[..., :3] * np.exp2(rgbe[..., 3:].astype(float) - 136)
     around = np.concatenate([sky[:1], sky, sky[-1:]])
     rows = np.empty((2 * len(sky) + 1,) + sky.shape[1:], np.float32)
@@ -96,14 +100,15 @@ def sky_between_edges(rgbe):
 
 
 def without_normals(line):
-    """A line of an OBJ file; none in place of a normal."""
+    """A line of an OBJ file without normals; empty for a normal itself."""
     if line.startswith("vn"):
         return ""
     return " ".join(corner.rsplit("/", 1)[0] for corner in line.split()) + "\n" if line.startswith("f ") else line
 
 
 def write_files(folder):
-    """Writes the files that scenes name: the sky, and the barrel's model where there is one. Returns the scenes that can be made."""
+    """Writes the files that scenes need: the sky, and the barrel's model if found. Returns the scenes that
+    can be rendered."""
     write_sky(os.path.join(folder, "sky.hdr"), make_sky())
     barrel = find_barrel()
     if not barrel:

@@ -1,5 +1,5 @@
-"""Renders of one of the scenes by sundog and by Mitsuba 3: a way is a program with one of its samplers, and a render gives the picture, linear RGB
-as height x width x 3, and its seconds without loading, compilation and upload.
+"""Renders a scene of peer_scenes.py with sundog or Mitsuba 3. render() returns the picture, linear RGB of
+height x width x 3, and its seconds without loading, compilation and upload.
 """
 import json
 import os
@@ -32,7 +32,8 @@ class Sundog:
             return read_pfm(out), json.load(file)["seconds"]["render"]
 
     def halves(self, total):
-        """Two parts of independent samples. sundog's sample i is the same in every picture, so the second half is what a whole adds to the first."""
+        """Two parts of independent samples. sundog's sample i is the same in every picture, so the second
+        half is the difference of the whole and the first half."""
         first, whole = (self.render("independent", n)[0] for n in (total // 2, total))
         return [first, 2 * whole - first]
 
@@ -42,13 +43,13 @@ def rgb(color):
 
 
 def absorbing(sigma):
-    """Mitsuba wants an RGB within 0..1; the rest is the scale."""
+    """An absorbing medium. Mitsuba wants an RGB in 0..1, so the greatest value becomes the scale."""
     return {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb([v / max(sigma) for v in sigma]), "scale": max(sigma)}
 
 
 def register_correlated_metal(mi):
-    """`correlated_metal`: Mitsuba's roughconductor with the masking and shadowing of both directions correlated by height (Heitz 2014,
-    "Understanding the Masking-Shadowing Function", equation 99), in place of its product of both.
+    """Registers `correlated_metal`: Mitsuba's roughconductor with height-correlated masking and shadowing
+    (Heitz 2014, "Understanding the Masking-Shadowing Function", equation 99) instead of the product of both.
     """
     import drjit as dr
 
@@ -130,15 +131,17 @@ def mitsuba_camera(mi, name, sampler):
 
 
 def mitsuba_sky(mi, folder, same_model):
-    """`same_model`: as sundog blends the picture. Else the file, as Mitsuba is used: its multijittered samples have an eighth less noise with it."""
+    """The sky. `same_model`: interpolated as in sundog. Otherwise the file, as users of Mitsuba have it: its
+    multijittered samples then have an eighth less noise."""
     picture = {"bitmap": mi.Bitmap(sky_between_edges(make_sky()))} if same_model else {"filename": os.path.join(folder, "sky.hdr")}
     return {"type": "envmap", "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], 180)} | picture
 
 
 def mitsuba_scene(mi, name, folder, sampler, same_model):
     T = mi.ScalarTransform4f
-    # Its volpath takes the length of a way by one channel's absorption: red, of which the liquid takes a tenth, then has rare samples that
-    # count hundreds of times, and neither its mean nor its error is known at 512 samples.
+    # Mitsuba's volpath samples distances by one channel's absorption. Red, of which the liquid absorbs a
+    # tenth, then gets rare samples with weights of hundreds, and 512 samples determine neither its mean nor
+    # its error.
     scene = {"type": "scene", "integrator": {"type": "volpathmis" if name == "ice" else "path", "max_depth": DEPTH + 1},
              "sensor": mitsuba_camera(mi, name, sampler)}
     if name in UNDER_SKY:
@@ -153,7 +156,7 @@ def mitsuba_scene(mi, name, folder, sampler, same_model):
 
 
 def load_mitsuba(variant):
-    """On one thread."""
+    """Loads Mitsuba with one thread."""
     import mitsuba as mi
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)
@@ -164,7 +167,8 @@ def load_mitsuba(variant):
 
 
 class Mitsuba:
-    """`same_model`: with the sky and the metal that sundog has, for means. Else Mitsuba's own, for errors and times."""
+    """A scene in Mitsuba. `same_model`: with sundog's models of sky and metal, for means; otherwise with
+    Mitsuba's own, for errors and times."""
 
     def __init__(self, name, folder, mi, same_model):
         self.name, self.folder, self.mi, self.same_model, self.scenes = name, folder, mi, same_model, {}

@@ -1,4 +1,4 @@
-// Compiles tinybvh's kernel files behind the declarations that they need; leaves out a kernel that fails.
+// Compiles tinybvh's kernel files after the declarations that they need; leaves out a kernel that fails.
 #include "tinybvh_peer.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ struct Ray { float4 O, D, rD, hit; };
 
 float reciprocal(float x) { return std::abs(x) > 1e-12f ? 1 / x : tinybvh_far; }
 
-/// One of its kernels, for nearest and for any hits; the latter is missing in some versions.
+/// One of tinybvh's kernels, for nearest hits and for any hit; some versions lack the latter.
 template <class... Tables>
 struct PeerKernels {
   using Type = Kernel<Buffer<Tables>..., Buffer<PeerRay>>;

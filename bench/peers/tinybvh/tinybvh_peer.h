@@ -1,4 +1,4 @@
-// tinybvh's OpenCL kernels as something that traces rays on a device, beside sundog's tracer.
+// Runs tinybvh's OpenCL kernels on a device, to compare them with sundog's tracer.
 #pragma once
 #include <functional>
 #include <string>
@@ -8,7 +8,7 @@
 #include "device/device.h"
 #include "tinybvh_tables.h"
 
-/// Its structs by the names that its kernels have.
+/// tinybvh's structs, under the names that its kernels use.
 namespace tinybvh_kernels {
 using sundog::float4;
 struct Ray {
@@ -23,7 +23,7 @@ namespace sundog {
 
 using TinyBvhRay = tinybvh_kernels::Ray;
 
-constexpr float tinybvh_far = 1e30f;  // the end of its rays
+constexpr float tinybvh_far = 1e30f;  // end of tinybvh's rays; as a hit's distance: no hit
 
 struct TinyBvhOptions {
   std::string folder, build = "-cl-fast-relaxed-math -cl-mad-enable";
@@ -31,11 +31,11 @@ struct TinyBvhOptions {
   unsigned group = 64;
 };
 
-/// In its form, the last one again until groups of that size are whole: its kernels compare their index with
-/// no count.
+/// Converts rays to tinybvh's layout and repeats the last one to fill the last work-group, because tinybvh's
+/// kernels do not check their index against a count.
 std::vector<TinyBvhRay> tinybvh_rays(const std::vector<Ray>& rays, unsigned group);
 
-/// Something that traces: rays to hits, in seconds.
+/// A tracer in the comparison: sundog's, or one of tinybvh's kernels.
 struct Contestant {
   std::string name;
   std::function<double(const RaySet&)> run;       // kernel seconds; 0: the driver gives no times
@@ -45,8 +45,8 @@ struct Contestant {
   std::vector<double> mrays;
 };
 
-/// The kernels that the checkout has and the driver builds; the others are reported on stderr. They trace the
-/// first `count` of `rays` as these are at the time of a run.
+/// The kernels that the checkout has and the driver builds; the others are reported on stderr. Each run reads
+/// `rays` and `count` anew and returns results for the first `count` rays.
 std::vector<Contestant> tinybvh_kernels_of(const TinyBvhOptions& options, Device& device,
                                            const TinyBvhTables& tables, Buffer<TinyBvhRay>& rays,
                                            const std::size_t& count);

@@ -1,8 +1,8 @@
 // tinybvh_rays MODEL... : traces the same rays with sundog's tracer and with the OpenCL kernels of tinybvh
 // (https://github.com/jbikker/tinybvh: two-wide after Aila and Laine, compressed eight-wide) on one device,
-// in turn, and prints millions of rays a second by kernel time (by the host's clock where the driver gives no
-// times) and their ratio by kind of ray. Its kernels know no ends of rays, so every ray here begins at 0 and
-// has none, for both: a shadow ray continues behind its light. Hits are compared before a time counts.
+// in turn, and prints millions of rays a second by kernel time (by the host's clock if the driver gives no
+// times) and their ratio by kind of ray. tinybvh's kernels do not bound rays, so both tracers get rays that
+// start at 0 and do not end: a shadow ray continues past its light. Differing hits are counted and printed.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Options : RayOptions {
   TinyBvhOptions peer;
 };
 
-/// Rays of all t from 0.
+/// The rays with t from 0 to tinybvh_far.
 RaySet without_ends(RaySet set) {
   for (Ray& ray : set.rays) {
     ray.ox += ray.t_min * ray.dx;
@@ -62,7 +62,7 @@ std::size_t count_mismatches(const RaySet& set, const Contestant& ours, const Co
   return count;
 }
 
-/// Millions of rays a second of one run, and notes whether it is by the kernel's own time.
+/// Millions of rays a second of one run; clears `by_events` if the driver gives no kernel time.
 double rate(Contestant& who, const RaySet& set, bool& by_events) {
   const Stopwatch clock;
   const double kernel = who.run(set), wall = clock.seconds();
@@ -108,7 +108,7 @@ nlohmann::json compare(const Options& options, const RaySet& set, std::vector<Co
   return result;
 }
 
-/// Three corners a triangle, in the world.
+/// Three corners for each triangle, in world space.
 std::vector<float4> corners_of(const SceneDescription& scene) {
   std::vector<float4> corners;
   for (const Mesh& mesh : scene.meshes)

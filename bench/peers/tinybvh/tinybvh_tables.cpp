@@ -17,7 +17,7 @@ std::vector<T> copy(const void* data, std::size_t count) {
   return values;
 }
 
-/// Versions after 1.6.8 keep each leaf's vertices in its order, earlier ones an order of triangles.
+/// Versions after 1.6.8 store the vertices in leaf order, earlier ones an index of triangles.
 template <class Bvh>
 void add_triangles(TinyBvhTables& tables, const Bvh& bvh, std::span<const float4> corners) {
   if constexpr (requires { bvh.orderedVerts.data; }) {

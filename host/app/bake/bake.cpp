@@ -1,5 +1,5 @@
-// In batches: a ray for each texel, from the cage inwards; then its hit's normal, height or, by more rays,
-// occlusion. Last, gaps and margins are filled.
+// Traces a ray per texel from the cage inwards, in batches, and stores the hit's normal, height or, with more
+// rays, occlusion. Finally fills gaps and margins.
 #include "app/bake/bake.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace sundog {
 namespace {
 
-/// Texels at a time, and rays of occlusion at a time.
+/// Texels and occlusion rays per batch.
 constexpr std::size_t texels_at_once = std::size_t{1} << 18, rays_at_once = std::size_t{1} << 20;
 
 Ray make_ray(const CompiledScene& scene, const dvec3& origin, const dvec3& direction, double length) {
@@ -21,7 +21,7 @@ Ray make_ray(const CompiledScene& scene, const dvec3& origin, const dvec3& direc
   return {o.x, o.y, o.z, 0.0f, d.x, d.y, d.z, static_cast<float>(length)};
 }
 
-/// The outward shading normal of a hit, in the world.
+/// The outward shading normal of a hit, in world space.
 dvec3 normal_at(const CompiledScene& scene, const Hit& hit) {
   const Instance& instance = scene.instances[hit.instance];
   glm::vec3 n(hit.ng_x, hit.ng_y, hit.ng_z);
@@ -52,7 +52,7 @@ double radical_inverse(u32 i) {
   return bits * 0x1p-32;
 }
 
-/// The i-th of `count` directions about `normal` by the cosine law, turned by a number of the texel's own.
+/// The i-th of `count` cosine-distributed directions around `normal`, shifted by random numbers of the texel.
 dvec3 cosine_direction(const dvec3& normal, u32 i, u32 count, u32 texel) {
   const double turn = hash(texel) * 0x1p-32, lift = hash(texel ^ 0x9E3779B9u) * 0x1p-32;
   const double u = std::fmod((i + 0.5) / count + lift, 1.0),
@@ -99,7 +99,7 @@ class Baker {
     return point_of(low_[at.triangle], at);
   }
 
-  /// From the cage inwards: of several surfaces the outermost counts.
+  /// Traces rays from the cage inwards, so the outermost surface counts.
   void bake_texels(const std::vector<std::size_t>& texels) {
     std::vector<Ray> rays;
     for (const std::size_t texel : texels) {
@@ -127,7 +127,7 @@ class Baker {
     if (settings_.kind == BakeKind::occlusion) bake_occlusion(met, places, normals);
   }
 
-  /// The normal in the frame that rendering gives it back in, whose axes need not be at right angles.
+  /// Stores the normal in the tangent frame that rendering uses, whose axes need not be orthogonal.
   void set_normal(std::size_t texel, const LowPoint& point, const dvec3& normal) {
     const glm::dmat3 frame(point.tangent, point.bitangent, point.normal);
     dvec3 local = std::abs(glm::determinant(frame)) > 1e-6 ? glm::inverse(frame) * normal : dvec3(0, 0, 1);
@@ -172,7 +172,7 @@ class Baker {
     }
   }
 
-  /// Where there is no value, and none near: the plain surface itself.
+  /// Fills missing texels with the plain surface's value; dilate() overwrites those near baked texels.
   void fill_missing() {
     for (std::size_t i = 0; i < filled_.size(); ++i) {
       if (filled_[i]) continue;
@@ -197,7 +197,7 @@ class Baker {
   std::vector<bool> filled_;
 };
 
-/// The sample `channel` of a pixel, and its place.
+/// The value of a pixel's channel.
 double get_sample(const StoredImage& image, std::size_t pixel, int channel) {
   const std::size_t at = pixel * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(channel);
   if (image.sample == StoredImage::Sample::byte) return image.data[at];
@@ -215,7 +215,7 @@ void set_sample(StoredImage& image, std::size_t pixel, int channel, double value
   std::memcpy(image.data.data() + 2 * at, &word, 2);
 }
 
-/// The neighbours of a pixel that have a value; the map repeats.
+/// The filled neighbours of a pixel; the map repeats.
 std::vector<std::size_t> filled_around(const StoredImage& image, const std::vector<bool>& filled, int x,
                                        int y) {
   std::vector<std::size_t> around;

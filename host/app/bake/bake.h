@@ -1,5 +1,4 @@
-// Maps of a detailed model for a plain one: rays from the plain model's surface to the detailed one, traced
-// on a device.
+// Bakes a map of a detailed model for a plain one: traces rays between their surfaces on a device.
 #pragma once
 #include <functional>
 
@@ -13,23 +12,23 @@ enum class BakeKind { normal, height, occlusion };
 
 struct BakeSettings {
   BakeKind kind = BakeKind::normal;
-  double cage = 0;   // how far before and behind the plain model's surface the detailed one is looked for
-  int samples = 64;  // rays of occlusion from each texel
+  double cage = 0;   // how far outside and inside the plain surface rays look for the detailed one
+  int samples = 64;  // occlusion rays per texel
 };
 
 struct BakedMap {
-  StoredImage image;               // normal: RGBA of 8 bits; height: grey of 16; occlusion: grey of 8
-  std::size_t missed = 0;          // covered texels whose rays met nothing
-  double lowest = 0, highest = 0;  // of the heights, in the world
+  StoredImage image;               // normal: 8-bit RGBA; height: 16-bit grey; occlusion: 8-bit grey
+  std::size_t missed = 0;          // covered texels whose rays hit nothing
+  double lowest = 0, highest = 0;  // range of heights, in world units
 };
 
-/// `high` is compiled from the detailed model. `progress` hears how much of the texels is done.
+/// `high` is compiled from the detailed model. `progress` receives the number of texels done so far.
 BakedMap bake(const CompiledScene& high, RayTracer& tracer, const std::vector<LowTriangle>& low,
               const Coverage& coverage, const BakeSettings& settings,
               const std::function<void(std::size_t done)>& progress);
 
-/// Gives texels without a value the mean of neighbours that have one, ring by ring, `rings` times, so that
-/// filters find no seam at the edges of islands.
+/// Fills texels without a value with the mean of their filled neighbours, ring by ring, `rings` times, so
+/// that texture filters show no seams at the edges of UV islands.
 void dilate(StoredImage& image, std::vector<bool>& filled, int rings);
 
 }  // namespace sundog

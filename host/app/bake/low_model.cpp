@@ -1,5 +1,5 @@
-// Draws the triangles into the texture's square, which repeats: each texel keeps a triangle and its place
-// there.
+// Rasterises the triangles into the texture's square, which repeats: each texel stores its triangle and the
+// position in it.
 #include "app/bake/low_model.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ dvec3 unit(const dvec3& v) {
   return length > 0 ? v / length : v;
 }
 
-/// Triangles keep their shape, whatever they look like.
+/// Removes all that does not affect geometry.
 void forget_materials(SceneDescription& scene) {
   scene.materials.clear();
   scene.images.clear();
@@ -57,7 +57,7 @@ void add_triangles(const Object& object, const Mesh& mesh, std::vector<LowTriang
 
 double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// The texels whose middles lie in a triangle.
+/// Assigns the texels whose centres lie in a triangle.
 void cover_triangle(const LowTriangle& triangle, u32 index, Coverage& out) {
   glm::dvec2 at[3];
   const glm::dvec2 lowest =
@@ -75,7 +75,7 @@ void cover_triangle(const LowTriangle& triangle, u32 index, Coverage& out) {
   if (area == 0) return;
   const auto low = glm::ceil(glm::min(at[0], glm::min(at[1], at[2])) - 1e-9),
              high = glm::floor(glm::max(at[0], glm::max(at[1], at[2])) + 1e-9);
-  const double most = 4 * size;  // a triangle that repeats the map shows it often enough
+  const double most = 4 * size;  // four repetitions of the map are enough
   for (double y = low.y; y <= std::min(high.y, low.y + most); ++y)
     for (double x = low.x; x <= std::min(high.x, low.x + most); ++x) {
       const glm::dvec2 p = glm::dvec2(x, y) - at[0];
@@ -85,7 +85,7 @@ void cover_triangle(const LowTriangle& triangle, u32 index, Coverage& out) {
         return static_cast<std::size_t>(i - std::floor(i / size) * size);
       };
       Texel& texel = out.texels[wrapped(y) * static_cast<std::size_t>(out.size) + wrapped(x)];
-      // Middles on a common edge are in both triangles.
+      // Centres on a common edge lie in both triangles, so they do not count as shared.
       const bool inside = b > 1e-6 && c > 1e-6 && b + c < 1 - 1e-6;
       if (texel.triangle != Texel::nowhere) {
         out.shared += inside;

@@ -1,5 +1,5 @@
-// `sundog bake`: a map of a detailed model for a plain one. In: two models, or scenes. Out: a PNG whose
-// texels are those of the plain model's texture coordinates.
+// `sundog bake`: bakes a map of a detailed model for a plain one. Reads two models or scenes; writes a PNG
+// that the plain model's texture coordinates address.
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ BakeKind parse_kind(const std::string& text) {
   throw UsageError(fmt::format("--kind '{}': wanted normal, height or occlusion", text));
 }
 
-/// A tenth of the plain model's size: the diagonal of its box.
+/// A tenth of the diagonal of the plain model's bounding box.
 double usual_cage(const std::vector<LowTriangle>& triangles) {
   dvec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
   for (const LowTriangle& triangle : triangles)

@@ -1,6 +1,5 @@
-// `sundog check`: a doctor's report of drivers, caches and devices. This process makes no OpenCL call: every
-// driver and every device is looked at by a child of its own, so that one that crashes or hangs is a line of
-// the report.
+// `sundog check`: a health report on drivers, caches and devices. This process makes no OpenCL call: a child
+// process checks each driver and device, so that a crash or hang becomes a line of the report.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,7 +34,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Whether files can be made in the folder, or the folder itself in the nearest one above it.
+/// Whether files can be created in the folder or, if it does not exist, in its nearest existing parent.
 bool can_write(fs::path folder) {
   std::error_code none;
   while (!folder.empty() && !fs::exists(folder, none) && folder.has_parent_path())
@@ -59,7 +58,7 @@ std::string text_of(const json& object, const char* key) {
   return object.contains(key) && object.at(key).is_string() ? object.at(key).get<std::string>() : "";
 }
 
-/// Problem and advice, as lines below what they belong to.
+/// A row's problem and advice, as indented lines.
 std::string problem_text(const json& row) {
   std::string text;
   for (const char* key : {"problem", "advice"})
@@ -88,7 +87,7 @@ std::string device_text(const json& device) {
   return text + problem_text(device);
 }
 
-/// The binary cache and the tuning results: folder, files, bytes, whether it can be written.
+/// For the binary cache and the tuning results: folder, number of files, bytes, and whether it is writable.
 json cache_figures() {
   const fs::path cache = program_environment()->cache;
   const char* setting = std::getenv("SUNDOG_KERNEL_CACHE");
@@ -97,7 +96,7 @@ json cache_figures() {
   return json::array({kernels, folder_figures("tuning", cache.empty() ? cache : cache / "tuning")});
 }
 
-/// The report for people, from the one for programs.
+/// The report as text, from its JSON.
 std::string check_text(const json& report) {
   std::string text = fmt::format("sundog {}, built by {}\n\nDrivers ({})\n", text_of(report, "sundog"),
                                  text_of(report, "compiler"), text_of(report, "vendors"));
@@ -123,7 +122,7 @@ std::string check_text(const json& report) {
 
 struct CheckOptions {
   std::vector<std::string> devices;
-  std::string worker;  // "P:D" or "P:D/N": this is the child that looks at one device
+  std::string worker;  // "P:D" or "P:D/N": this is the child that checks this device
   int timeout = 600;
   bool json = false;
 };
@@ -142,7 +141,7 @@ json check_json(const SelfCheck& check) {
           {"log", check.log.empty() ? json(nullptr) : json(check.log)}};
 }
 
-/// A line at once: what follows may end the process.
+/// Prints a line and flushes it, because what follows may crash the process.
 void print_line(const std::string& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);
@@ -162,7 +161,7 @@ std::string end_text(const ChildResult& child, double seconds) {
   return fmt::format("ended with status {}", child.status);
 }
 
-/// The platforms and devices of a list as `sundog devices --json` gives it; `problem` when there is none.
+/// The devices that `sundog devices --json` lists in a child process; stores a `problem` if it fails.
 json listed_devices(const std::vector<std::string>& variables, double seconds, std::string& problem) {
   std::string text;
   const ChildResult child = run_self({"devices", "--json"}, variables, seconds,
@@ -173,7 +172,7 @@ json listed_devices(const std::vector<std::string>& variables, double seconds, s
   return json::array();
 }
 
-/// Adds "advice" to each row; it depends on whether another row works. `unasked`: the caller left rows out.
+/// Adds "advice" to each row, which depends on whether another row works. `unasked`: some rows were left out.
 void add_advice(json& rows, bool unasked, const auto& advice_on, const auto& is_sound) {
   const Others others = std::ranges::any_of(rows, is_sound) ? Others::sound
                         : unasked                           ? Others::unasked
@@ -185,7 +184,7 @@ void add_advice(json& rows, bool unasked, const auto& advice_on, const auto& is_
   }
 }
 
-/// Reports on stderr what is looked at, when it begins and how it ended: some drivers take minutes.
+/// Reports on stderr that a check begins and how it ended, because some drivers take minutes.
 json told(const std::string& what, const std::function<json()>& look, const auto& result_text) {
   tell(fmt::format("checking {}\n", what));
   const Stopwatch clock;
@@ -217,7 +216,7 @@ json check_driver(const fs::path& file, double seconds) {
           {"problem", problem.empty() ? json(nullptr) : json(problem)}};
 }
 
-/// Each .icd file alone.
+/// Checks each .icd file by itself.
 json check_drivers(const fs::path& folder, double seconds) {
   json drivers = json::array();
   std::vector<fs::path> files;
@@ -247,7 +246,7 @@ json check_one(const std::string& index, double seconds) {
   return check_json(failed);
 }
 
-/// The row as a DeviceInfo, as far as pick_devices() reads one.
+/// The row as a DeviceInfo, with the members that pick_devices() reads.
 DeviceInfo as_device(const json& row) {
   DeviceInfo device;
   device.platform = row.at("platform");
@@ -264,7 +263,7 @@ DeviceInfo as_device(const json& row) {
   return device;
 }
 
-/// The rows that are asked for, all without --device; of a sub-device "sub_units" too.
+/// The requested rows (all without --device); adds "sub_units" for a sub-device.
 json wanted_rows(const json& rows, const std::vector<std::string>& specs) {
   if (specs.empty()) return rows;
   std::vector<DeviceInfo> all;
@@ -284,7 +283,7 @@ std::string spec_of(const json& row) {
   return row.contains("sub_units") ? fmt::format("{}/{}", index, row.at("sub_units").get<unsigned>()) : index;
 }
 
-/// `unasked`: there are devices beside these rows.
+/// `unasked`: there are usable devices besides these rows.
 json check_devices(const json& rows, bool unasked, const CheckOptions& options) {
   json devices = json::array();
   for (const json& row : rows) {

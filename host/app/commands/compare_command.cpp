@@ -1,4 +1,5 @@
-// `sundog compare A B`: the figures, a picture of the differences, and a status for scripts.
+// `sundog compare A B`: compares two images. Prints statistics, writes a picture of the differences, and
+// returns a status for scripts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct CompareCommand {
   bool json = false;
 };
 
-/// JSON has no infinity.
+/// Replaces non-finite numbers, which JSON lacks, by null.
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json to_json(const ImageDifference& d) {
@@ -41,10 +42,10 @@ json to_json(const ImageDifference& d) {
           {"non_finite", d.non_finite}};
 }
 
-/// Further layers of two EXR files.
+/// Differences between the additional layers of two EXR files.
 struct ComparedLayers {
   std::map<std::string, ImageDifference> both;
-  std::vector<std::string> other;  // that one file lacks, or has with other channels
+  std::vector<std::string> other;  // layers that one file lacks, or has with other channels
 };
 
 ComparedLayers compare_layers(const CompareCommand& command) {

@@ -1,4 +1,4 @@
-// `sundog compile P:D`: compiles a program for the process that started it. Not for people.
+// `sundog compile P:D`: compiles a program for the sundog process that started it. Not for users.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -20,8 +20,8 @@ namespace {
 int compile_for(const std::string& place) {
   if (place.empty() || ::isatty(STDOUT_FILENO))
     throw UsageError("compile is not a command for people: sundog starts it");
-  // Ctrl-C and a hang-up go to all of a terminal's processes; the one that started this decides. What it may
-  // leave behind when it ends at once is of no use to anyone.
+  // Ctrl-C and a hang-up reach all processes of a terminal; the parent decides. If the parent ends, the
+  // result is of no use, so this process is killed.
   hold_back({SIGINT, SIGHUP});
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   serve_compile(program_environment(), place, STDIN_FILENO, STDOUT_FILENO);

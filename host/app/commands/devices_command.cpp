@@ -1,4 +1,4 @@
-// `sundog devices`: every platform and device, with what each can do.
+// `sundog devices`: lists every platform and device with its capabilities.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-// The extensions that a kernel or a launch may want, without their common prefix's noise in the table.
+// The extensions that matter to kernels and launches; others are left out of the table.
 constexpr std::array telling_extensions = {
     "cl_khr_fp16",       "cl_khr_fp64",           "cl_khr_int64_base_atomics", "cl_khr_subgroups",
     "cl_khr_il_program", "cl_khr_priority_hints", "cl_khr_device_uuid",        "cl_khr_pci_bus_info"};
@@ -46,7 +46,7 @@ std::string bytes_text(std::uint64_t bytes) {
   return fmt::format("{:.0f} KiB", value / 1024);
 }
 
-/// The row that a render without --device would take; null when there is none.
+/// The row of the device that a render without --device would use; null if there is none.
 const DeviceInfo* default_device(const std::vector<DeviceInfo>& rows) {
   try {
     const DeviceInfo chosen = select_devices(rows, {}).front();
@@ -133,7 +133,7 @@ void print_table(const std::vector<DeviceInfo>& rows, const DeviceInfo* chosen) 
   }
 }
 
-/// Prints a table, or an object of schema 1. A list where nothing is usable is what was asked for, too.
+/// Prints a table, or a JSON object of schema 1. A list without usable devices is no error.
 int list(bool as_json) {
   const std::vector<DeviceInfo> rows = list_devices();
   const DeviceInfo* chosen = default_device(rows);

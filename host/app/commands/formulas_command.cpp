@@ -1,5 +1,5 @@
-// Prints a list, or JSON: "formulas" with each surface's source, text, limits, interval and parameters,
-// "operations" that combine fields, and "functions" of the language.
+// `sundog formulas`: prints a list, or JSON: "formulas" with each surface's source, text, limits, interval
+// and parameters, "operations" that combine fields, and "functions" of the language.
 #include "app/commands/formulas_command.h"
 #include "base/arguments.h"
 

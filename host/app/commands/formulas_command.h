@@ -1,11 +1,11 @@
-// `sundog formulas`: the surfaces that a scene can name, what they are put together with, and the language of
-// a user's own.
+// `sundog formulas`: lists the surfaces that a scene can name, the operations that combine them, and the
+// functions of the formula language.
 #pragma once
 #include <string>
 
 namespace sundog {
 
-/// The list as an object of schema 1.
+/// The list as a JSON object of schema 1.
 std::string formulas_json();
 
 }  // namespace sundog

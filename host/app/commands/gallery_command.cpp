@@ -1,6 +1,5 @@
-// `sundog gallery`: scenes as pictures on one page. In: a folder to write to, and scenes, or none: those that
-// come with sundog. Out: a PNG for each, and index.html, written anew after each picture, so that an
-// interrupt leaves a whole page.
+// `sundog gallery`: renders scenes (by default those that come with sundog) to pictures on one page. Writes a
+// PNG for each into a folder, and index.html after each picture, so that an interrupt leaves a complete page.
 
 #include <fmt/format.h>
 
@@ -58,7 +57,7 @@ std::vector<std::string> shipped_scenes() {
 
 std::string stem(const std::string& scene) { return fs::path(scene).stem().string(); }
 
-/// Two scenes of one name would be one picture.
+/// Throws UsageError for two scenes of the same name, whose pictures would be the same file.
 void check_names(const std::vector<std::string>& scenes) {
   std::set<std::string> names;
   for (const std::string& scene : scenes)
@@ -89,7 +88,7 @@ std::string command_of(const GalleryOptions& options, const std::string& scene) 
   return text;
 }
 
-/// The page and all pictures.
+/// The files of the page and of all pictures.
 std::vector<std::string> output_files(const GalleryOptions& options) {
   const fs::path folder = options.folder;
   std::vector<std::string> files = {(folder / "index.html").string()};

@@ -1,5 +1,5 @@
-// `sundog halo`: the sky's map of a halo as a picture. In: a scene's halo, or a usual one. Out: a picture of
-// the sky, and figures.
+// `sundog halo`: traces the halo of a scene, or a common display, on a device. Writes a picture of the sky
+// and prints statistics.
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ struct HaloOptions {
   bool sky = false, json = false, quiet = false, outside_files = false;
 };
 
-/// Plates with some columns and crystals that lie any way: a common display.
+/// A common display: plates, some columns, and randomly oriented crystals.
 EnvironmentDescription usual_halo() {
   EnvironmentDescription e;
   e.type = EnvironmentType::halo;
@@ -69,8 +69,9 @@ EnvironmentDescription halo_of(const HaloOptions& options) {
   return e;
 }
 
-/// Towards a pixel: x towards the sun, z up. Equirectangular: its middle is the sun's azimuth, the top row
-/// the zenith. Fisheye: the zenith in the middle, the sun below it, the horizon a circle (equal angles).
+/// The direction of a pixel: x towards the sun, z up. Equirectangular: the sun's azimuth is in the middle,
+/// the zenith in the top row. Fisheye (equal angles): the zenith is in the centre, the sun below it, the
+/// horizon a circle.
 dvec3 direction_of(bool fisheye, int width, int height, int x, int y) {
   double zenith = pi * (y + 0.5) / height, azimuth = 2 * pi * (x + 0.5) / width - pi;
   if (fisheye) {
@@ -81,7 +82,7 @@ dvec3 direction_of(bool fisheye, int width, int height, int x, int y) {
   return {std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)};
 }
 
-/// The picture of the environment that a scene has, along a direction.
+/// Looks up the radiance of a scene's environment by direction.
 class SkyPicture {
  public:
   SkyPicture(EnvironmentDescription e, const HaloMap& map) {

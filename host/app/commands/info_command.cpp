@@ -1,4 +1,4 @@
-// `sundog info SCENE`: what it holds, without a device.
+// `sundog info SCENE`: prints a scene's contents and sizes; uses no device.
 #include <fmt/format.h>
 
 #include <memory>
@@ -77,7 +77,7 @@ void print_text(const json& figures) {
     fmt::print("bounds     {} to {}\n", point_text(bounds["min"]), point_text(bounds["max"]));
 }
 
-/// An error at a place that an option changed is the command line's.
+/// Compiles the scene; an error at a place that an option changed becomes a UsageError.
 CompiledScene compile_overridden(const SceneDescription& scene, const InfoCommand& command) {
   try {
     return compile(scene);

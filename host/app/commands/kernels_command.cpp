@@ -1,4 +1,5 @@
-// `sundog kernels`: lists the plain kernel files, or prints one in lanes, or what varies in it and why.
+// `sundog kernels`: lists the plain kernel files, prints one converted to lanes or why its values vary, or
+// writes a scene's programs.
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ struct KernelsCommand {
   std::string scene, gpu, out;
 };
 
-/// A kernel's path as it is, a file's below plain/.
+/// The path of an embedded plain kernel unchanged; a user's file gets a path below plain/.
 std::string plain_path(const std::string& file) {
   if (spmd::is_plain(file)) return file;
   return "plain/" + std::filesystem::path(file).filename().string();
@@ -58,8 +59,8 @@ std::string made_text(const KernelsCommand& c) {
   return (c.lanes > 0 ? fmt::format("#define LANES {}\n", c.lanes) : "") + lanes.text(path, c.lines);
 }
 
-/// Writes the scene's programs as a GPU's compiler receives them; no device is needed. Returns their files
-/// and options, a line each.
+/// Writes the scene's programs as a GPU's compiler would receive them, without a device. Returns a line for
+/// each: its file and build options.
 std::string write_programs(const KernelsCommand& c) {
   const DeviceInfo device = typical_gpu(c.gpu);
   const HostEnvironment& environment = value_of(program_environment());

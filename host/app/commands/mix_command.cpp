@@ -1,4 +1,4 @@
-// `sundog mix FILE.exr --light NAME=FACTOR,#COLOUR... -o OUT`: another balance of a picture's light groups.
+// `sundog mix FILE.exr --light NAME=FACTOR,#COLOUR... -o OUT`: rebalances a picture's light groups.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -28,7 +28,7 @@ struct MixCommand : PictureOptions {
 
 constexpr std::string_view prefix = "light_";
 
-/// The factors of the picture's groups, 1 where none is typed.
+/// The factor of each of the picture's groups; 1 unless typed.
 std::map<std::string, glm::vec3> factors_of(const MixCommand& command, const AovImages& aovs) {
   std::map<std::string, glm::vec3> factors;
   for (const auto& [name, image] : aovs)
@@ -50,7 +50,7 @@ std::map<std::string, glm::vec3> factors_of(const MixCommand& command, const Aov
   return factors;
 }
 
-/// The sum of the groups' light, each times its factor; with 4 channels and the alpha of `image`.
+/// The sum of the groups' light, each times its factor; with 4 channels, includes the alpha of `image`.
 Image sum_of(const std::map<std::string, glm::vec3>& factors, const AovImages& aovs, const Image& image,
              int channel_count) {
   Image sum(image.width, image.height, channel_count);
@@ -73,7 +73,7 @@ double total(const Image& image) {
   return sum;
 }
 
-/// A group may be missing, or the colours are those of another space.
+/// Throws UsageError unless the groups add up to the image: one may be missing, or the colour space another.
 void check_sum(const MixCommand& command, const AovImages& aovs, const Image& image) {
   std::map<std::string, glm::vec3> whole;
   for (const auto& [name, light] : aovs)

@@ -1,4 +1,4 @@
-// Each rank lists its devices and the SPECs choose among them; then each device of a machine goes to one
+// Collects the devices of each rank, selects among them by SPECs, and assigns each device of a machine to one
 // rank.
 #include "app/job/job.h"
 
@@ -21,7 +21,7 @@
 namespace sundog {
 namespace {
 
-// The longest that a rank may take to list its devices.
+// Seconds that a rank may take to list its devices.
 constexpr double patience_with_drivers = 60;
 
 struct Listed {
@@ -29,7 +29,7 @@ struct Listed {
   unsigned cores = 0;
 };
 
-/// A rank's answer to the order to list its devices.
+/// Waits for a rank's list of devices. Throws DeviceError.
 Listed list_of(Channel& channel, const std::string& name) {
   const Stopwatch waited;
   while (waited.seconds() < patience_with_drivers) {
@@ -47,7 +47,7 @@ Listed list_of(Channel& channel, const std::string& name) {
       fmt::format("{}: its drivers have not listed their devices for {} s", name, patience_with_drivers));
 }
 
-/// Without SPECs: the fastest device and those like it, so that each rank of a machine finds one.
+/// Selects by SPECs; without any, takes the fastest device and others like it, for the ranks of a machine.
 std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::vector<std::string>& specs,
                                std::vector<std::string>& warnings) {
   std::vector<DeviceInfo> chosen = select_devices(all, specs, &warnings);
@@ -60,13 +60,12 @@ std::vector<DeviceInfo> choose(const std::vector<DeviceInfo>& all, const std::ve
   return chosen;
 }
 
-/// Collects the devices that the command chooses on each rank. Warns of ranks without any if another has
-/// some.
+/// Collects the devices that the command selects on each rank. Warns about ranks without any.
 class Choice {
  public:
   explicit Choice(Mailbox& job) : job_(job), ranks_(static_cast<std::size_t>(job.size())) {}
 
-  /// `list` gives what the rank has, or throws DeviceError.
+  /// `list` returns the rank's devices, or throws DeviceError.
   template <class List>
   void add(int rank, const std::vector<std::string>& specs, const List& list) {
     try {
@@ -102,7 +101,7 @@ class Choice {
   std::vector<std::string> warnings_;
 };
 
-/// Ranks of one machine share its cores.
+/// An index for the cores that the device shares (the first rank of its machine); -1 if it shares none.
 int processor_of(const Mailbox& job, const DeviceInfo& device) {
   if (!device.shares_cores()) return -1;
   int first = 0;
@@ -110,7 +109,7 @@ int processor_of(const Mailbox& job, const DeviceInfo& device) {
   return first;
 }
 
-/// Without --isolate a rank itself keeps its devices from frame to frame.
+/// Plans a worker on another rank. Without --isolate, that rank itself keeps its devices between frames.
 WorkerPlan plan_rank(Mailbox& job, const RenderCommand& command, const DeviceInfo& device, std::uint64_t hash,
                      const KeptChannels& workers) {
   nlohmann::json settings = remote_settings(command, device);

@@ -1,5 +1,4 @@
-// A render that mpirun has started as several processes: rank 0 has the frame, the others serve their devices
-// to it.
+// A render by several processes under mpirun: rank 0 renders, the other ranks serve their devices to it.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,21 +11,21 @@
 
 namespace sundog {
 
-/// This process's rank by the launcher's variables; -1: no launcher of several processes started it.
+/// This process's rank from the launcher's variables; -1 if it is not one of several processes.
 int job_rank();
 
-/// Joins the other processes; none when there are none. Throws UsageError where that is not possible.
+/// Connects to the other processes; null if there are none. Throws UsageError if that is not possible.
 std::unique_ptr<Mailbox> join_job();
 
-/// Serves this process's devices to rank 0, and ends the process when the job is over.
+/// Serves this process's devices to rank 0; ends the process at the end of the job.
 [[noreturn]] void serve_job(std::unique_ptr<Mailbox> job);
 
-/// For rank 0: the devices that the command means on every rank, each device of a machine once. Without any
-/// --device: each machine's fastest, and those of the same name. Throws DeviceError where no rank has any;
-/// single ranks without are warned of.
+/// For rank 0: the devices that the command selects on every rank, each device of a machine once. Without
+/// --device: each rank's fastest device and others of the same name. Warns about ranks without devices;
+/// throws DeviceError if no rank has any.
 std::vector<DeviceInfo> job_devices(Mailbox& job, const RenderCommand& command);
 
-/// For rank 0: how each of them is reached. Ranks that are gone are left out while others are there.
+/// For rank 0: plans how to reach each device. Leaves out ranks that are gone; throws DeviceError if all are.
 std::vector<WorkerPlan> plan_job(Mailbox& job, const RenderCommand& command,
                                  const std::vector<DeviceInfo>& devices,
                                  const std::shared_ptr<const CompiledScene>& scene,

@@ -1,5 +1,5 @@
-// How a process joins the others that mpirun has started: the launcher's variables, and MPI as a shared
-// library that nothing else of sundog needs.
+// Connects a process to the others that mpirun started: reads the launcher's variables, and loads MPI through
+// a shared library that nothing else in sundog needs.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <sched.h>
@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* library = "sundog_mpi.so";
 
-/// The variable's number; -1 where it is not set.
+/// The variable's number; -1 if not set.
 int number_of(const char* variable) {
   const char* text = std::getenv(variable);
   return text && *text ? std::atoi(text) : -1;
 }
 
-/// Open MPI's variables come first; PMI and PMIx are those of other launchers, Slurm's among them.
+/// The first variable that is set. Open MPI's come first; PMI and PMIx are for other launchers such as Slurm.
 int first_number(std::initializer_list<const char*> variables) {
   for (const char* variable : variables)
     if (const int number = number_of(variable); number >= 0) return number;
@@ -37,8 +37,8 @@ int first_number(std::initializer_list<const char*> variables) {
 /// The number of processes; -1: unknown.
 int job_size() { return first_number({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}); }
 
-/// Open MPI binds each process to a core or a socket unless told what to bind to: made for programs of one
-/// thread. A device has all the cores that the launcher itself had. What the user has asked for stays.
+/// Undoes Open MPI's default binding of each process to a core or socket, meant for single-threaded programs:
+/// gives this process the launcher's cores. Keeps a binding that the user requested.
 void undo_default_binding() {
   const bool bound = std::getenv("OMPI_MCA_orte_bound_at_launch") != nullptr;
   const bool asked_for = std::getenv("OMPI_MCA_hwloc_base_binding_policy") != nullptr;
@@ -48,7 +48,7 @@ void undo_default_binding() {
     ::sched_setaffinity(0, sizeof launcher, &launcher);
 }
 
-/// Beside the program, or where it is installed.
+/// The library beside the program, or in its installation folder; empty if missing.
 fs::path find_library() {
   const fs::path folder = program_file().parent_path();
   for (const char* where : {"", SUNDOG_LIBRARY_FOLDER})
@@ -65,7 +65,7 @@ OpenTransport* load_transport() {
         fmt::format("started by mpirun, but this sundog was built without MPI: install Open MPI (Debian: "
                     "libopenmpi-dev openmpi-bin) and build it again{}",
                     instead));
-  // Open MPI's own parts look for it among the global symbols.
+  // Open MPI's plugins look for its symbols among the global ones.
   void* loaded = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   void* symbol = loaded ? ::dlsym(loaded, open_transport_name) : nullptr;
   if (!symbol)

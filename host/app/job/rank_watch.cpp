@@ -1,4 +1,4 @@
-// Looks every 10 ms, once the job is interrupted, for ranks that say nothing.
+// Looks for silent ranks every 10 ms once the job is interrupted.
 #include "app/job/rank_watch.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 namespace sundog {
 namespace {
 
-// A rank that says nothing for so long when the job is interrupted has died: mpirun interrupts the others a
-// second later, and each says four times a second that it lives.
+// A rank that is silent for this many seconds when the job is interrupted has died: mpirun interrupts the
+// others a second later, and each sends a sign of life four times a second.
 constexpr double suspicious_silence = 0.7;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Names the rank that has died, at once: mpirun kills the others a second after it has interrupted them, and
-// by then the picture need not be written.
+// Reports a dead rank at once: mpirun kills the other ranks a second after it has interrupted them, when the
+// picture may not be written yet.
 #pragma once
 #include <atomic>
 #include <set>
@@ -10,8 +10,8 @@
 
 namespace sundog {
 
-/// For rank 0. Once `stop` is set, warns on stderr about each rank that no longer responds. `kept_in` is
-/// where the frame's checkpoint goes; empty: nowhere. Without a job it does nothing.
+/// For rank 0. Once `stop` is set, warns on stderr about each rank that no longer responds. `kept_in`: the
+/// frame's checkpoint file; empty: none. Does nothing without a job.
 class RankWatch {
  public:
   RankWatch(Mailbox* job, const std::atomic<bool>& stop, std::string kept_in);

@@ -1,4 +1,5 @@
-// Settings in JSON name the scene and the frame; the devices of one process share what it has loaded.
+// Writes and reads settings as JSON, which names the scene and the frame. The devices of a process share the
+// scene that it has loaded.
 #include "app/job/remote_devices.h"
 
 #include <nlohmann/json.hpp>
@@ -24,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The device of that place and name on this side.
+/// This process's device with the same place and name. Throws DeviceError if it is missing.
 DeviceInfo find_device(const DeviceInfo& wanted) {
   for (DeviceInfo& device : list_devices())
     if (device.platform == wanted.platform && device.device == wanted.device && device.name == wanted.name) {
@@ -74,7 +75,7 @@ std::shared_ptr<const CompiledScene> load_frame(const json& settings, const std:
   return std::make_shared<const CompiledScene>(kept.compiler.compile(*read_frame(settings, *kept.frames)));
 }
 
-/// The devices of one process render the same scene: it is loaded once.
+/// Loads the scene once for all devices of this process.
 std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
   json of_scene;
   for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files"})
@@ -96,7 +97,7 @@ std::shared_ptr<KeptDevice> kept_device(const DeviceInfo& device, KeptOpen& kept
   return one;
 }
 
-/// A kept device for one frame: it is left open behind it.
+/// Lends a kept device to one frame, and leaves it open afterwards.
 class BorrowedWorker : public DeviceWorker {
  public:
   explicit BorrowedWorker(SceneWorker& worker) : worker_(worker) {}
@@ -115,7 +116,7 @@ class BorrowedWorker : public DeviceWorker {
   SceneWorker& worker_;
 };
 
-/// Keeps alive all that a worker refers to during a frame. The lock is last, so it is released first.
+/// Keeps alive what a worker refers to during a frame. The lock is the last member, so it is released first.
 struct ServedFrame {
   RenderOptions options;
   std::shared_ptr<const CompiledScene> scene;

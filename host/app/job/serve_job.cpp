@@ -19,7 +19,7 @@
 namespace sundog {
 namespace {
 
-// At the end of the job, a driver that is still at work gets so long to come back.
+// Seconds that a driver still at work at the end of the job gets to return.
 constexpr double closing_grace = 10;
 
 struct Service {
@@ -27,7 +27,7 @@ struct Service {
   std::atomic<int> channels{0}, hanging{0};
 };
 
-/// Gives the first message back to whoever reads the channel next, which tells what the channel is for.
+/// A channel whose first message, which says what the channel is for, is read ahead and then received again.
 class ReadAhead : public Channel {
  public:
   explicit ReadAhead(Channel& channel) : channel_(channel) {
@@ -44,7 +44,7 @@ class ReadAhead : public Channel {
   std::optional<Message> first_;
 };
 
-/// Until told to close; throws ChannelClosed when either end is gone.
+/// Passes messages on both ways until the job orders to close. Throws ChannelClosed if either end is gone.
 void pass_on(Channel& job, Channel& worker) {
   constexpr double look_again = 0.002;
   while (true) {
@@ -74,7 +74,7 @@ void serve_here(Channel& channel, Service& service) {
     try {
       channel.send({Message::failed, {{"what", what}, {"closed", true}, {"hangs", true}}, {}});
     } catch (const ChannelClosed&) {
-      // There is nobody left to tell.
+      // nobody is left to receive it
     }
   });
   serve_orders(
@@ -95,7 +95,7 @@ void serve(Channel& opened, Service& service) {
     else
       serve_here(channel, service);
   } catch (const ChannelClosed&) {
-    // Rank 0 is gone, or the job is over.
+    // rank 0 is gone, or the job is over
   }
 }
 

@@ -1,5 +1,4 @@
-// `sundog worker DESCRIPTOR NAME`: serves one device to the process that started it (--isolate). Not for
-// people.
+// `sundog worker DESCRIPTOR NAME`: serves one device to its parent process (--isolate). Not for users.
 #include <signal.h>
 #include <unistd.h>
 
@@ -21,28 +20,28 @@ namespace {
 
 int serve_device(int descriptor) {
   if (descriptor < 3) throw UsageError("worker is not a command for people: --isolate starts it");
-  // Ctrl-C and a hang-up go to all of a terminal's processes; the one that has the frame decides.
+  // Ctrl-C and a hang-up reach all processes of a terminal; the process that renders the frame decides.
   hold_back({SIGINT, SIGHUP});
   SocketChannel channel(descriptor);
   Orders orders(channel, [] { ::_exit(exit_failure); });
   const auto on_hang = [&](const std::string& what) {
     channel.send({Message::failed, {{"what", what}}, {}});
-    ::_exit(exit_device);  // only the driver's thread could end it in good order
+    ::_exit(exit_device);  // only the driver's thread could clean up
   };
   const auto beat = [&, since = Stopwatch()]() mutable {
     if (since.seconds() < beat_seconds) return;
     since = Stopwatch();
     try {
       channel.send({Message::alive, {}, {}});
-    } catch (const ChannelClosed&) {  // which `orders` sees as well
+    } catch (const ChannelClosed&) {  // `orders` handles it
     }
   };
-  KeptOpen kept;  // from frame to frame of an animation
+  KeptOpen kept;  // for all frames of an animation
   HangWatch watch(on_hang, beat);
   serve_orders(
       channel, orders,
       [&](const nlohmann::json& settings) {
-        watch.look_at({});  // which held the device of the frame before
+        watch.look_at({});  // releases the device of the previous frame
         OpenedWorker opened = open_worker(settings, settings.at("frame").is_number() ? &kept : nullptr);
         watch.look_at(opened);
         return opened;

@@ -1,5 +1,5 @@
-// Commands in one style: each has a file with its add_NAME(), which declares the options and, where a command
-// line names it, says what runs.
+// The list of commands. Each command has a file with add_NAME(), which declares its options and, if the
+// command line names it, sets the function to run.
 #pragma once
 #include <functional>
 
@@ -12,17 +12,16 @@ class Arguments;
 /// A command line, ready to run.
 struct Command {
   std::function<int()> run;  // returns the exit status; errors are exceptions
-  /// Whether the process's first thread runs it. Else it has a thread of its own: drivers that work in the
-  /// caller's thread need more stack than the first one has.
+  /// Whether the process's first thread runs it. If not, a new thread does: drivers that work in the caller's
+  /// thread need more stack than the first thread has.
   bool in_first_thread = false;
-  bool stops_on_signal = false;  // it has a StopOnSignal: no thread is to end by the signals themselves
+  bool stops_on_signal = false;  // it creates a StopOnSignal: all threads block the signals
 };
 
-/// Declares a command below `root`, and makes it `chosen` where it is named.
+/// Declares a command below `root`; stores it in `chosen` if the command line names it.
 using AddCommand = void(Arguments& root, Command& chosen);
 
-/// X(name) for each command, in the order of help; the last two are not for people: other processes of sundog
-/// start them.
+/// X(name) for each command, in the order of help. Only sundog itself starts the last two.
 #define SUNDOG_COMMANDS(X) \
   X(render)                \
   X(devices)               \

@@ -13,7 +13,7 @@
 namespace sundog {
 namespace {
 
-/// A command, and the place of what follows its name.
+/// A command, and the index of the argument after its name.
 struct NamedCommand {
   const CommandWords* words;
   int next;
@@ -45,7 +45,7 @@ const OptionWords* find_option(const CommandWords& command, const std::string& n
   return found == command.options.end() ? nullptr : &*found;
 }
 
-/// Never null: throws when there is none.
+/// The option; never null. Throws UsageError if it is unknown.
 const OptionWords* option_named(const CommandWords& command, const std::string& name) {
   if (const OptionWords* option = find_option(command, name)) return option;
   std::vector<std::string> known;
@@ -57,9 +57,8 @@ const OptionWords* option_named(const CommandWords& command, const std::string& 
       fmt::format("unknown option {}{}{} {}", name, mend.empty() ? "" : ": ", mend, see_help(command)));
 }
 
-/// Whether the next word is the value of the option that this one ends with. Words are "--name",
-/// "--name=value",
-/// "-n", "-nvalue" or flags in one, "-qv".
+/// The option whose value must be the next word; null if there is none. `word` is "--name", "--name=value",
+/// "-n", "-nvalue", or several flags in one ("-qv").
 const OptionWords* option_without_value(const CommandWords& command, const std::string& word) {
   if (word.starts_with("--")) {
     const std::size_t equals = word.find('=');
@@ -72,15 +71,16 @@ const OptionWords* option_without_value(const CommandWords& command, const std::
   return nullptr;
 }
 
-/// The library asks for what is missing before it names an option that it does not know, and takes whatever
-/// follows an option for its value: with a forgotten value, that is the next option. (What really begins like
-/// one goes as --stats=-o.)
+/// Throws UsageError for unknown options and missing values. CLI11 reports missing arguments before unknown
+/// options, and takes the next option for a forgotten value. (A value that looks like an option can be given
+/// as
+/// --stats=-o.)
 void check_options(const NamedCommand& command, int argc, const char* const* argv) {
   for (int i = command.next; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--") return;
     if (word.size() < 2 || word[0] != '-') continue;
-    // An empty text is what "$SAMPLES" is where no such variable is set.
+    // An empty text results from "$SAMPLES" if the variable is not set.
     const auto refuse_empty = [&](std::string_view name, const OptionWords& option) {
       throw UsageError(fmt::format("{} wants a value ({}), found an empty text {}", name, option.type,
                                    see_help(*command.words)));

@@ -1,4 +1,4 @@
-// Lists devices, reads SUNDOG_DEVICE, and prints the warnings of a choice.
+// Lists devices, reads SUNDOG_DEVICE, and prints the warnings of a selection.
 #include "app/options/devices.h"
 
 #include <fmt/format.h>

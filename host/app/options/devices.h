@@ -1,4 +1,4 @@
-// The devices of this process, and those that a command's options choose.
+// Lists this process's devices, and selects those that a command's options name.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,18 +7,18 @@
 
 namespace sundog {
 
-/// The devices of this process.
+/// All devices that this process sees.
 std::vector<DeviceInfo> list_devices();
 
-/// SPECs of SUNDOG_DEVICE, separated by commas.
+/// The SPECs in SUNDOG_DEVICE, which commas separate.
 std::vector<std::string> devices_of_environment();
 
-/// The devices of `all` that `specs` mean (select_devices); without any, those of SUNDOG_DEVICE. Warns on
-/// stderr of exclusions that match nothing; with `verbose`, says on stdout which device is the default and
-/// why, where there are no specs. Throws DeviceError, UsageError.
+/// The devices of `all` that `specs` select (select_devices()), or SUNDOG_DEVICE if `specs` is empty. Prints
+/// warnings to stderr. If neither is given and `verbose`, prints the default device and the reason to stdout.
+/// Throws DeviceError, UsageError.
 std::vector<DeviceInfo> pick_devices(const std::vector<DeviceInfo>& all, std::vector<std::string> specs,
                                      bool verbose = false);
-/// Of those of this process.
+/// pick_devices() from the devices of this process.
 std::vector<DeviceInfo> pick_devices(const std::vector<std::string>& specs, bool verbose = false);
 
 }  // namespace sundog

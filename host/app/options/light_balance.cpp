@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-/// A colour as web pages write it, linear.
+/// The linear colour of "#RRGGBB" (sRGB).
 std::optional<glm::vec3> parse_color(const std::string& text) {
   if (text.size() != 7 || text[0] != '#' ||
       text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)

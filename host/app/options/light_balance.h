@@ -1,4 +1,4 @@
-// Factors of light groups, as `mix --light` and the viewer's page write them.
+// Parses the factors of light groups, as typed for `mix --light` and sent by the viewer's page.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace sundog {
 
-/// The group and its factor, linear: NAME=FACTOR, NAME=#RRGGBB or NAME=FACTOR,#RRGGBB, with a factor of 0 to
-/// 1e6. Throws UsageError.
+/// Parses NAME=FACTOR, NAME=#RRGGBB or NAME=FACTOR,#RRGGBB (FACTOR 0..1e6). Returns the group's name and
+/// linear factor. Throws UsageError.
 std::pair<std::string, glm::vec3> parse_light(const std::string& typed);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Short ways to declare options, the same in every command.
+// Helpers that declare options alike in every command.
 #pragma once
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ Option* value(Arguments* app, const char* name, const char* type, T& target, con
   return app->add_option(name, target, help)->type_name(type);
 }
 
-/// An option that may be given several times, each time with one value.
+/// Declares an option that may be repeated, with one value each time.
 inline void values(Arguments* app, const char* name, const char* type, std::vector<std::string>& target,
                    const std::string& help) {
   value(app, name, type, target, help + "; repeatable")->one_value_each();

@@ -1,4 +1,4 @@
-// Reads sizes, numbers, splits and work-groups from the command line's text.
+// Parses numbers, sizes, splits and work-groups, and checks them against the schema's limits.
 #include "app/options/option_values.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ std::optional<T> number(std::string_view text, T low, T high) {
   return value && *value >= low && *value <= high ? value : std::nullopt;  // NaN is refused
 }
 
-/// "WxH", each from 1 to the greatest size; none when the text is anything else.
+/// Parses "WxH", each from 1 to most_edge; none for other text.
 std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   const std::size_t cross = text.find('x');
   if (cross == std::string_view::npos) return {};
@@ -33,7 +33,7 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
-/// The options that are numbers of a ToneMap.
+/// An option that sets a number in a ToneMap.
 struct ToneOption {
   const char *option, *key;
   std::string PictureOptions::* typed;
@@ -47,7 +47,7 @@ constexpr ToneOption tone_options[] = {
     {"--vignette", "vignette", &PictureOptions::vignette, &ToneMap::vignette},
     {"--bloom", "bloom", &PictureOptions::bloom, &ToneMap::bloom}};
 
-/// The schema's limits of a number in a section of a scene.
+/// The schema's limits for a number in a section of a scene.
 Range limits_of(const char* section, const char* key, SchemaRule::Type type) {
   return schema_rule(section)->keys.at(key).rule->as(type)->range;
 }

@@ -1,4 +1,4 @@
-// The values of options: from their text, or a UsageError that names the option, what was wanted and what was
+// Parses the values of options. Errors are UsageErrors that name the option, what was wanted and what was
 // found.
 #pragma once
 #include <string>
@@ -42,15 +42,15 @@ double parse_amount(const char* option, const std::string& text, double most = 1
 /// "WxH", each from 1 to the greatest edge, as overrides of a scene's image size.
 std::vector<std::string> parse_image_size(const std::string& text);
 
-/// The options of a picture's colours as overrides of a scene.
+/// The options for a picture's colours, as overrides of a scene.
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture);
-/// The options of a picture's colours, for a picture without a scene.
+/// The options for a picture's colours, for a picture without a scene.
 ToneMap parse_tone_map(const PictureOptions& picture);
 
-/// Refuses what is not of the form JSON_POINTER=VALUE.
+/// Throws UsageError unless the setting has the form JSON_POINTER=VALUE.
 void check_override(const std::string& setting);
 
-/// A word of a command line as a shell reads it: in quotes where it needs them.
+/// Quotes a word for a shell if necessary.
 std::string shell_word(std::string_view word);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Compares files by device and inode, and by resolved path too; outputs may share a pipe or a device.
+// Compares files by device and inode and by resolved path. Outputs may share a pipe or device.
 #include "app/options/output_files.h"
 
 #include <fmt/format.h>
@@ -22,23 +22,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Links followed as far as there are files.
+/// The absolute path, with links resolved as far as files exist.
 fs::path place(const std::string& name) {
   std::error_code failed;
   const fs::path whole = fs::weakly_canonical(name, failed);
   return failed ? fs::path(name) : whole;
 }
 
-/// Which file that name leads to; none where there is none.
+/// The identity of the file with that name; none if it does not exist.
 std::optional<FileIdentity> identity(const std::string& name) {
   struct stat found{};
   if (name.empty() || ::stat(name.c_str(), &found) != 0) return std::nullopt;
   return FileIdentity{found.st_dev, found.st_ino};
 }
 
-constexpr double greatest_depth = 1e30;  // that --far takes
+constexpr double greatest_depth = 1e30;  // limit of --far
 
-/// Devices and pipes: nothing in them is written over.
+/// Whether the file is a device or pipe, where nothing can be overwritten.
 bool holds_nothing(const std::string& name) {
   std::error_code failed;
   return fs::exists(name, failed) && !fs::is_regular_file(name, failed);
@@ -99,7 +99,7 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
     if (const auto found = identity(input); found && !is_standard_stream(input))
       read.push_back({input, *found});
   check_not_read(outputs, read);
-  for (const std::string& output : outputs)  // of files that are not there yet, too
+  for (const std::string& output : outputs)  // also for files that do not exist yet
     for (const std::string& input : inputs)
       if (!output.empty() && !is_standard_stream(input) && !holds_nothing(output) &&
           place(output) == place(input))

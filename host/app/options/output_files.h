@@ -9,34 +9,33 @@
 
 namespace sundog {
 
-/// The name that the picture's format is read from: that of the file, or "picture.png" for the standard
-/// output.
+/// The file name whose extension is the picture's format; e.g. "picture.png" for the standard output.
 std::string format_name(const PictureOptions& picture);
 
-/// Whether its colours are rounded to 8 bits by chance.
+/// Whether the picture is dithered to 8 bits.
 inline bool dithers(const PictureOptions& picture) { return !picture.no_dither && picture.bits == 8; }
 
-/// How that file is written.
+/// The options with which the picture's file is written.
 FileOptions file_options(const PictureOptions& picture);
 
-/// Warns of colours that an EXR of halves cuts off.
+/// Warns about colours that an EXR of half floats clips.
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
 
-/// The AOVs that a frame makes: those asked for, and those that the denoiser wants.
+/// The AOVs that a frame renders: the requested ones, and those that the denoiser needs.
 std::vector<std::string> made_aovs(const RenderCommand& command);
 
-/// Replaces infinite depths by those of --far. Throws UsageError where there are no depths.
+/// Replaces infinite depths by --far. Throws UsageError if the AOV depth is missing.
 void end_depth(const PictureOptions& picture, AovImages& aovs);
 
-/// Throws UsageError where the picture's name is of no format, or its format cannot hold what is asked, or
-/// the standard output is a terminal; IoError where the file could not be written.
+/// Throws UsageError if the picture's name has no known format, its format does not support an option, or the
+/// standard output is a terminal; IoError if the file could not be written.
 void check_picture(const PictureOptions& picture, bool with_aovs);
 
-/// Throws UsageError where two of the outputs are one file, or an output is a file that is read, under this
-/// name or by a link. Empty names are none; "-" is the standard output, or input.
+/// Throws UsageError if two outputs are the same file, or an output is an input file, by name or by a link.
+/// Ignores empty names; "-" is the standard output or input.
 void check_output_files(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-/// Throws UsageError where an output is a file that was read meanwhile: a texture, a model, a file of theirs.
+/// Throws UsageError if an output is one of the files that were read, such as textures and models.
 void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
 
 /// Returns load(). Throws UsageError if it read one of the outputs.

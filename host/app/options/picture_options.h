@@ -1,4 +1,4 @@
-// Options of the commands that write a picture.
+// Options common to the commands that write a picture.
 #pragma once
 #include "app/options/options.h"
 
@@ -6,10 +6,10 @@ namespace sundog {
 
 class Arguments;
 
-/// --out, --format, --tone-map and so on.
+/// Declares --out, --format, --tone-map and so on.
 void add_picture(Arguments* app, PictureOptions& picture);
 
-/// Throws UsageError for a --format that is unknown or out of place; sets its default.
+/// Throws UsageError for a --format that is unknown or given without `-o -`; sets its default.
 void check_format(PictureOptions& picture);
 
 }  // namespace sundog

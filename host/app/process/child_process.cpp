@@ -1,4 +1,4 @@
-// Reads a child's lines until it ends; kills it when its time is over.
+// Reads a child's lines until it ends; kills it on timeout.
 #include "app/process/child_process.h"
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@
 namespace sundog {
 namespace {
 
-/// Hands on the whole lines of `text`.
+/// Passes on the complete lines of `text` and removes them.
 void take_lines(std::string& text, const std::function<void(const std::string&)>& on_line) {
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
     on_line(text.substr(0, end));
@@ -26,7 +26,7 @@ void take_lines(std::string& text, const std::function<void(const std::string&)>
   }
 }
 
-/// Reads lines to the end of the stream or of the time; false: the time was over.
+/// Reads lines to the end of the stream; returns false on timeout.
 bool read_lines(int stream, double seconds, const std::function<void(const std::string&)>& on_line) {
   const Stopwatch clock;
   std::string text;

@@ -1,4 +1,4 @@
-// Reads the variables once, and gives the layers below the means to start and end processes.
+// Reads the variables once, and gives the layers below functions that start and end processes.
 #include "app/process/environment.h"
 
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 namespace sundog {
 namespace {
 
-/// Faults on demand that end or stop the process (base/faults.h).
+/// Performs an injected fault that ends or stops the process (base/faults.h).
 void end_process(const std::string& kind) {
   if (kind == "crash") std::abort();
   std::raise(kind == "kill" ? SIGKILL : SIGSTOP);

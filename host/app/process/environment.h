@@ -1,4 +1,4 @@
-// Makes the HostEnvironment (base/environment.h) that this program passes to the layers below.
+// Creates the HostEnvironment (base/environment.h) that this program passes to the layers below.
 #pragma once
 #include <memory>
 
@@ -8,15 +8,14 @@
 
 namespace sundog {
 
-/// Read at the first call, which a command makes before it has threads. Throws UsageError for SUNDOG_FAULTS
-/// that are none.
+/// Read at the first call, before a command starts threads. Throws UsageError for a malformed SUNDOG_FAULTS.
 const EnvironmentPtr& program_environment();
 
-/// The threads that drivers have not let go of. While there are any, the process ends by _exit(): what static
-/// destructors and drivers' exit handlers take down is in use.
+/// The threads left in drivers. While there are any, the process must end by _exit(), because static
+/// destructors and drivers' exit handlers would destroy what these threads use.
 const std::shared_ptr<DriverThreads>& driver_threads();
 
-/// The options, with the standard input for a scene named "-".
+/// Adds the standard input, for a scene named "-", and the environment's faults to the options.
 LoadOptions with_streams(LoadOptions options);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Maps each exception type to its exit status, and names the option that mends the error.
+// Maps each exception type to its exit status, and names the option that avoids the error.
 #include "app/process/exit_status.h"
 
 #include <fmt/format.h>
@@ -21,14 +21,14 @@
 namespace sundog {
 namespace {
 
-/// Prints the error in one line without control characters, whatever a file or a library put into it.
+/// Prints the error in one line, and replaces control characters that a file or library put into it.
 void write_message(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace_if(message, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   tell(fmt::format("sundog: {}\n", message));
 }
 
-/// The end of a message: the option by which the user mends the error.
+/// The end of a message: the option that avoids the error.
 std::string option_for(Remedy remedy) {
   switch (remedy) {
     case Remedy::none:
@@ -43,7 +43,7 @@ std::string option_for(Remedy remedy) {
   return "";
 }
 
-/// The end of a message about memory, where the process may not have all of the machine's.
+/// The end of a message about memory: the process's limit on address space, if any.
 std::string memory_limit() {
   rlimit space = {};
   if (::getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return "";
@@ -51,7 +51,7 @@ std::string memory_limit() {
                      space.rlim_cur >> 20);
 }
 
-/// The end of a message by which a thread could not be started.
+/// The end of a message: advice, if the message means that a thread could not be started.
 std::string thread_limit(std::string_view message) {
   if (message.find(std::strerror(EAGAIN)) == std::string_view::npos) return "";
   return ": no thread can be started: raise the limits on them (`ulimit -u`, or the container's) and on "

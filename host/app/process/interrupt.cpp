@@ -1,4 +1,4 @@
-// Signals are blocked, and one thread waits for them as long as the process lives.
+// Blocks the signals, and starts one thread that waits for them until the process ends.
 #include "app/process/interrupt.h"
 
 #include <fmt/format.h>
@@ -16,14 +16,14 @@
 namespace sundog {
 namespace {
 
-constexpr double at_once = 0.3;  // seconds
+constexpr double at_once = 0.3;  // seconds within which two signals count as one
 
 enum class Answer { ask, end, end_silently };
 
-/// Lives as long as the process does, and so does the thread that waits for signals.
+/// State of the thread that waits for signals. Both live as long as the process.
 struct Waiting {
   std::atomic<bool> stop_asked = false, was_continued = false;
-  std::mutex mutex;  // for what follows
+  std::mutex mutex;  // guards the members below
   Answer answer = Answer::ask;
   std::string why;
 };
@@ -40,15 +40,15 @@ sigset_t set_of(std::initializer_list<int> signals) {
   return set;
 }
 
-/// As nohup leaves SIGHUP.
+/// Whether the signal is ignored, as SIGHUP is under nohup.
 bool is_ignored(int signal) {
   struct sigaction action{};
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// A terminal that is closed may send SIGHUP twice, by itself and by its shell, a limit on processor time
-/// SIGXCPU once a second, and who ends a whole group of processes SIGTERM to this one and to the one that
-/// passes it on: that is not a second wish.
+/// Acts on a signal. `repeats`: it may repeat the previous one, so it does not count as a second request: a
+/// closing terminal and its shell both send SIGHUP, a limit on processor time sends SIGXCPU every second, and
+/// a SIGTERM to a process group may also be passed on by the parent.
 void answer_stop(Waiting& state, bool repeats) {
   const std::lock_guard lock(state.mutex);
   if (state.answer == Answer::end) tell(fmt::format("sundog: interrupted: {}\n", state.why));
@@ -86,7 +86,7 @@ void hold_back(std::initializer_list<int> signals) {
 
 StopOnSignal::StopOnSignal() {
   hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
-  ::signal(SIGPIPE, SIG_IGN);  // nobody may read the messages any more
+  ::signal(SIGPIPE, SIG_IGN);  // the reader of the messages may leave
   waiting().stop_asked = waiting().was_continued = false;
   asks();
   static std::once_flag begun;

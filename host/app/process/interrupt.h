@@ -1,5 +1,5 @@
-// Ctrl-C: the first one asks the render to stop, the second ends the program. A terminal that is closed asks
-// too, and a limit on processor time. And SIGCONT, which mpirun sends a second before it ends a process.
+// Handles signals. The first Ctrl-C asks the render to stop, the second ends the program. A closed terminal
+// and a limit on processor time also ask it to stop. mpirun sends SIGCONT a second before it ends a process.
 #pragma once
 #include <atomic>
 #include <initializer_list>
@@ -7,11 +7,11 @@
 
 namespace sundog {
 
-/// While it lives, SIGINT, SIGTERM, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP, whichever thread
-/// they are meant for, go to a thread that waits for them: a driver's compiler (LLVM's) puts handlers of its
-/// own in the place of a program's, which remove the files that it is writing, so that it fails with a
-/// message of its own. Made before any other thread, which would not inherit that they are held back. One at
-/// a time. From then on a reader of messages who leaves ends nothing by SIGPIPE.
+/// During its lifetime, a dedicated thread receives SIGINT, SIGTERM, SIGXCPU and (unless ignored, as under
+/// nohup) SIGHUP. Signal handlers would not do: a driver's compiler (LLVM) replaces them by its own, which
+/// remove the files that it is writing, so that it fails with a message of its own. Create before any other
+/// thread, so that all inherit the blocked signals; only one at a time. From then on the process ignores
+/// SIGPIPE, so that it continues if nobody reads its messages any more.
 class StopOnSignal {
  public:
   StopOnSignal();
@@ -19,10 +19,9 @@ class StopOnSignal {
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
-  /// From here on a signal sets the flag, and a second one ends the program with status 130. So it is at
-  /// first.
+  /// From now on (and initially) a signal sets the flag, and a second one ends the program with status 130.
   void asks() const;
-  /// From here on a signal ends the program at once with status 130: "sundog: interrupted: " and `why`.
+  /// From now on a signal prints "sundog: interrupted: " and `why`, and ends the program with status 130.
   void ends_all(const std::string& why) const;
 
   const std::atomic<bool>& flag() const;
@@ -30,8 +29,8 @@ class StopOnSignal {
   std::atomic<bool>& continued() const;
 };
 
-/// For a process that another of this program has started, which decides what a signal means: a terminal
-/// sends Ctrl-C to both. Before any other thread is made.
+/// Blocks signals in this process. For example, a terminal sends Ctrl-C to a worker too, but its parent
+/// decides what to do. Call before starting threads.
 void hold_back(std::initializer_list<int> signals);
 
 }  // namespace sundog

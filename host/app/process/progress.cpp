@@ -37,8 +37,7 @@ std::string duration_text(double seconds) {
 }
 
 std::string bar_line(double fraction, const std::string& text, int columns) {
-  const int bar =
-      std::min(40, columns - static_cast<int>(text.size()) - 3);  // two brackets, and the cursor's place
+  const int bar = std::min(40, columns - static_cast<int>(text.size()) - 3);  // two brackets and the cursor
   if (bar < 4) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
   const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * bar);
   return fmt::format("[{:#<{}}{:.<{}}]{}", "", filled, "", bar - filled, text);

@@ -1,4 +1,4 @@
-// The progress bar: one line on the terminal, with rate and time left, erased at the end.
+// Draws a progress bar: one line on the terminal, with rate and time left, erased at the end.
 #pragma once
 #include <string>
 
@@ -7,32 +7,32 @@
 
 namespace sundog {
 
-/// The frames of an animation, of which one is rendered now.
+/// Progress through the frames of an animation.
 struct RunProgress {
-  std::size_t over = 0, total = 1;  // frames that are behind it, and all
-  std::size_t rendered = 0;         // of those behind it, in `seconds`
+  std::size_t over = 0, total = 1;  // frames finished or skipped; all frames
+  std::size_t rendered = 0;         // frames rendered so far, in `seconds`
   double seconds = 0;
 
-  /// Until the last frame is done, when this one takes `all` seconds, of which `left` are to come.
+  /// Estimated seconds until the last frame is done, if this one takes `all` seconds and has `left` to go.
   double seconds_left(double all, double left) const;
 };
 
-/// The bar's text, at most `columns` wide. `since` is the first progress of this run: a resumed render begins
-/// with pixels that cost it nothing. The time left is that of all frames.
+/// The bar's text, at most `columns` wide. `since`: progress when this run began, which excludes pixels
+/// resumed from a checkpoint from the rate. The time left covers all frames.
 std::string progress_line(const RenderProgress& now, const RenderProgress& since, int columns,
                           const RunProgress& run);
 
 /// "34 s", "2 min 05 s".
 std::string duration_text(double seconds);
 
-/// "[####......]" with `text` behind it, at most `columns` wide: the bar takes what room there is.
+/// "[####......]" followed by `text`, at most `columns` wide; the bar shrinks to fit.
 std::string bar_line(double fraction, const std::string& text, int columns);
 
-/// True where a line on stderr can be drawn over.
+/// Whether stderr is a terminal on which a line can be redrawn.
 bool stderr_is_terminal();
 int terminal_columns();
 
-/// Draws on stderr at most ten times a second, and only when that is a terminal.
+/// Draws on stderr, at most ten times a second, if it is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(bool wanted, const RunProgress& run = {});
@@ -41,7 +41,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void update(const RenderProgress& progress);
-  /// Takes the line off the terminal.
+  /// Erases the line from the terminal.
   void erase();
 
  private:

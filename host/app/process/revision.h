@@ -3,7 +3,7 @@
 
 namespace sundog {
 
-/// The git commit, "... with changes" where files differed from it; "unknown" outside git.
+/// The git commit, followed by "with changes" if files differed from it; "unknown" outside git.
 const char* build_revision();
 
 }  // namespace sundog

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// How many there are by name.
+/// The number of elements by name.
 json count_names(const auto& list, const auto& name_of) {
   std::map<std::string, int> counts;
   for (const auto& each : list) ++counts[std::string(name_of(each))];
@@ -59,7 +59,7 @@ json bounds(const CompiledScene& flat) {
   return {{"min", corners[0]}, {"max", corners[1]}};
 }
 
-/// The intervals of the fields, each as far as it is cut and placed.
+/// The bounds of each distance field in world space: its interval, cut by its sphere.
 json field_bounds(const SceneDescription& scene) {
   json list = json::array();
   for (const Object& object : scene.objects) {
@@ -88,7 +88,7 @@ json field_bounds(const SceneDescription& scene) {
   return list;
 }
 
-/// Both together.
+/// The union of the box and the fields' bounds.
 json whole_bounds(json box, const json& fields) {
   for (const json& field : fields)
     for (std::size_t axis = 0; axis < 3 && !box.is_null(); ++axis) {
@@ -99,7 +99,7 @@ json whole_bounds(json box, const json& fields) {
   return whole_bounds({{"min", fields[0]["min"]}, {"max", fields[0]["max"]}}, fields);
 }
 
-/// Each with its size in the file and on a device, and what it takes there with its smaller levels.
+/// Each image with its size in the file and on a device, and its bytes there including mip levels.
 json images(const SceneDescription& scene) {
   json list = json::array();
   for (const ImageDescription& image : scene.images)

@@ -6,9 +6,8 @@
 
 namespace sundog {
 
-/// Counts of triangles (unique, and as placed by the objects), objects by shape, lights by type, materials,
-/// media; the BVH's figures; bytes of each table; the bounds of everything bounded (null when there is
-/// nothing).
+/// Number of triangles (unique, and as placed by objects), objects by shape, lights by type, materials and
+/// media; the BVH's statistics; bytes by kind of table; the bounds of all bounded objects (null: none).
 nlohmann::json scene_figures(const SceneDescription& scene, const CompiledScene& flat);
 
 }  // namespace sundog

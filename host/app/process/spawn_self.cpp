@@ -1,4 +1,4 @@
-// Calls posix_spawn() on /proc/self/exe; the new process holds no signals back.
+// Calls posix_spawn() on /proc/self/exe; the new process blocks no signals.
 #include "app/process/spawn_self.h"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-/// The environment, with the variables in place of those of the same name.
+/// The environment with `variables`, which replace others of the same name.
 std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
   std::vector<std::string> result = variables;
   for (char** entry = environ; *entry; ++entry) {
@@ -46,7 +46,7 @@ class SpawnedSelf : public StartedProgram {
     if (ended == process_)
       end_ = WIFSIGNALED(status) ? ProgramEnd{0, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
     else if (ended < 0 && errno != EINTR)
-      end_ = ProgramEnd{-1, 0};  // someone else has waited for it: who knows how it ended
+      end_ = ProgramEnd{-1, 0};  // other code has waited for it, so its status is unknown
     return end_;
   }
   void end() override {
@@ -60,7 +60,7 @@ class SpawnedSelf : public StartedProgram {
 
 constexpr const char* own_link = "/proc/self/exe";
 
-/// The path by which this program was started. It may be relative; no code changes the working directory.
+/// The path with which this program was started. It may be relative; no code changes the working directory.
 const char* started_file() {
   // NOLINTNEXTLINE(performance-no-int-to-ptr): an address
   return reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
@@ -88,7 +88,7 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
       ::posix_spawn_file_actions_addopen(&actions, one.there, "/dev/null", O_RDWR, 0);
     else
       ::posix_spawn_file_actions_adddup2(&actions, one.here, one.there);
-  // Signals that this process holds back are not held back by the new one.
+  // The new process must not inherit blocked signals.
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
   sigset_t none;

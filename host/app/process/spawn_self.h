@@ -11,12 +11,11 @@
 
 namespace sundog {
 
-/// This program's file, by its path; also where /proc is not mounted.
+/// The path of this program's file; works without /proc too.
 std::filesystem::path program_file();
 
-/// Starts this very program with `arguments` (without its own name); `variables` ("NAME=VALUE") are added to
-/// its environment, `descriptors` handed down; its stdin and stdout, unless they are among these, are
-/// nowhere. Throws IoError.
+/// Starts this program with `arguments` (without its name). Adds `variables` ("NAME=VALUE") to its
+/// environment and hands down `descriptors`; stdin and stdout not among these are /dev/null. Throws IoError.
 pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> descriptors,
                  const std::vector<std::string>& variables = {});
 
@@ -24,7 +23,7 @@ pid_t spawn_self(std::vector<std::string> arguments, std::vector<HandedDown> des
 std::unique_ptr<StartedProgram> start_self(std::vector<std::string> arguments,
                                            std::vector<HandedDown> descriptors);
 
-/// Waits until the process has ended; its status as waitpid gives it.
+/// Waits until the process has ended. Returns its status as waitpid() does.
 int wait_for_end(pid_t process);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Keeps the real standard output aside, and reads the standard input once.
+// Keeps a descriptor of the original standard output, and reads the standard input once.
 #include "app/process/standard_streams.h"
 
 #include <fcntl.h>
@@ -42,7 +42,7 @@ std::string read_standard_input() {
   }
 }
 
-/// A named pipe's reader that leaves early is an error, and no signal, while this is here.
+/// During its lifetime, a named pipe's reader that leaves early causes an error instead of a signal.
 class BrokenPipesAreErrors {
  public:
   BrokenPipesAreErrors() = default;
@@ -60,7 +60,7 @@ void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;
     output_is_closed |= stream == STDOUT_FILENO;
-    ::open("/dev/null", O_RDWR);  // takes the lowest number that is free
+    ::open("/dev/null", O_RDWR);  // takes the lowest free number
   }
 }
 

@@ -1,4 +1,4 @@
-// The standard streams where a command names a file: "-".
+// Reads the standard input and writes the standard output where a command names a file "-".
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -9,24 +9,24 @@ namespace sundog {
 
 class Faults;
 
-/// A standard stream that is closed becomes /dev/null, before a file of a driver takes its number and with it
-/// what is printed.
+/// Opens /dev/null for each standard stream that is closed, before a driver's file takes its number and
+/// receives what is printed.
 void open_standard_streams();
 
-/// Throws IoError where what was printed so far cannot be written.
+/// Throws IoError if anything printed so far could not be written.
 void flush_standard_output();
 
 bool is_standard_stream(const std::filesystem::path& path);
 
-/// The text of the standard input: it is read once, and kept. Throws UsageError where it is a terminal,
+/// The text of the standard input, which is read once and kept. Throws UsageError if it is a terminal,
 /// IoError.
 const std::string& standard_input();
 
-/// For a process whose input is elsewhere: the text that it stands for.
+/// Sets the text that standard_input() returns, for a worker whose parent has read it.
 void set_standard_input(std::string text);
 
-/// From now on all that is printed to stdout goes to stderr, and write_output() alone writes to what stdout
-/// was. A reader that leaves early makes write_output() fail, and no more ends the process.
+/// From now on, all text printed to stdout goes to stderr, and only write_output() writes to the original
+/// stdout. A reader that leaves early makes write_output() fail instead of ending the process.
 void claim_standard_output();
 
 /// write_file(); "-" is the claimed standard output. Throws IoError.

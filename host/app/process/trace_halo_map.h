@@ -1,4 +1,4 @@
-// A halo's map is traced by a device before its scene is compiled.
+// Traces a halo's map on a device, before its scene is compiled.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@ namespace sundog {
 struct TracedHalo {
   HaloMap map;
   std::uint64_t rays = 0;
-  double seconds = 0;  // of tracing, the kernel's compilation apart
-  std::string device;  // its label
+  double seconds = 0;  // time to trace, without compiling the kernel
+  std::string device;  // the device's label, or "host"
 };
 
-/// By the first of `devices` that can, else by the host: the map is the same. With a progress bar on stderr
-/// where that is a terminal; warns of devices that fail.
+/// Traces on the first of `devices` that works, else on the host; the map is the same. Draws a progress bar
+/// unless `quiet`; warns about devices that fail.
 TracedHalo trace_halo_map(const EnvironmentDescription& environment, const std::vector<DeviceInfo>& devices,
                           bool quiet);
 

@@ -1,4 +1,4 @@
-// Environment variables that drivers and sundog read, for reports.
+// Lists the environment variables that drivers and sundog read, for reports.
 #pragma once
 #include <string>
 #include <utility>
@@ -6,8 +6,8 @@
 
 namespace sundog {
 
-/// The variables that OpenCL's loader, drivers or sundog read, as they are set now, and the loader's list of
-/// drivers ("ICD FILE": the library that it names). In order.
+/// The set variables that OpenCL's loader, drivers or sundog read, and the loader's list of drivers ("ICD
+/// FILE" and the library that it names), sorted by name.
 std::vector<std::pair<std::string, std::string>> driver_variables();
 
 }  // namespace sundog

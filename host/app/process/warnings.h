@@ -1,4 +1,4 @@
-// Messages for people: on stderr, never on stdout.
+// Prints messages for users, on stderr, never on stdout.
 #pragma once
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// A terminal that is gone must not cost the frame: what nobody can read is no error.
+/// Prints to stderr. Ignores errors: a terminal that is gone must not cost the frame.
 inline void tell(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 inline void print_warnings(std::span<const std::string> warnings) {

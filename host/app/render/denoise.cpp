@@ -1,5 +1,5 @@
-// Loads the C interface by dlopen; versions 1.4 and 2 share all but two names. Cleans albedo and normal
-// first, then the colours with their help, and alpha like a colour.
+// Loads the library's C interface with dlopen(); versions 1.4 and 2 differ in two names. Denoises albedo and
+// normal first, then the colours with their help, and alpha like a colour.
 #include "app/render/denoise.h"
 
 #include <dlfcn.h>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* file_names[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1"};
 constexpr int cpu_device = 1, three_floats = 3;  // OIDN_DEVICE_TYPE_CPU, OIDN_FORMAT_FLOAT3
 
-/// Paths at which the library may be, best first.
+/// Possible paths of the library, best first.
 std::vector<std::string> candidates() {
   const char* named = std::getenv("SUNDOG_OIDN");
   if (!named || !*named) return {std::begin(file_names), std::end(file_names)};
@@ -65,7 +65,7 @@ struct Denoiser::Calls {
   void (*execute_filter)(Filter);
   void (*release_filter)(Filter);
 
-  /// Throws what the library reports.
+  /// Throws the error that the library reports, if any.
   void check(Device device) const {
     const char* message = nullptr;
     if (get_error(device, &message) != 0)
@@ -129,8 +129,7 @@ Image Denoiser::clean(std::initializer_list<Input> inputs, std::initializer_list
   return clean;
 }
 
-// Albedo and normal behind glass are noisy too, and their noise would stay in the picture: they are cleaned
-// first.
+// Albedo and normal are noisy behind glass, so they are denoised first; their noise would stay otherwise.
 void Denoiser::denoise(Image& image, const Image& albedo, const Image& normal) const {
   const auto channels = static_cast<std::size_t>(image.channels);
   const Image clean_albedo = clean({{"albedo", albedo}}, {}), clean_normal = clean({{"normal", normal}}, {});

@@ -1,4 +1,5 @@
-// `render --denoise`: Intel Open Image Denoise, loaded when it is asked for; sundog is not linked with it.
+// Denoises pictures for `render --denoise` with Intel Open Image Denoise, which is loaded on demand; sundog
+// does not link to it.
 #pragma once
 #include <initializer_list>
 #include <memory>
@@ -7,15 +8,15 @@
 
 namespace sundog {
 
-/// The library, open until the end of the process.
+/// The library; it stays loaded until the process ends.
 class Denoiser {
  public:
-  /// Loads the file or folder that SUNDOG_OIDN names, else the system's library, of version 2 or 1.4. Throws
-  /// UsageError that says where to get it.
+  /// Loads version 2 or 1.4 from the file or folder that SUNDOG_OIDN names, else from the system. Throws a
+  /// UsageError that says where to get the library.
   Denoiser();
 
-  /// Takes the noise from colours and alpha of `image` (3 or 4 channels, linear), by the first surfaces'
-  /// albedo and normal (3 channels, of the same size). Throws std::runtime_error with the library's words.
+  /// Denoises the colours and alpha of `image` (3 or 4 channels, linear), guided by the first surfaces'
+  /// albedo and normal (3 channels, same size). Throws std::runtime_error with the library's message.
   void denoise(Image& image, const Image& albedo, const Image& normal) const;
 
  private:
@@ -24,7 +25,7 @@ class Denoiser {
     const char* name;
     const Image& image;
   };
-  /// Returns the three channels of the first input without noise.
+  /// Returns the first three channels of the first input, denoised.
   Image clean(std::initializer_list<Input> inputs, std::initializer_list<const char*> flags) const;
   std::shared_ptr<const Calls> calls_;
 };

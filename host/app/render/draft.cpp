@@ -1,4 +1,4 @@
-// A thread renders the draft; the device's owner adopts it if it outlives the frame.
+// A thread renders the draft; the device's owner takes it over if it outlives the frame.
 #include "app/render/draft.h"
 
 #include <exception>
@@ -40,7 +40,7 @@ Draft::Draft(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& devic
       const RenderResult whole = render(scene, std::vector{device}, draft);
       if (whole.complete) draft.on_picture(whole.film);
     } catch (const std::exception&) {
-      // The frame reports what is wrong with its device.
+      // the frame reports its device's errors
     }
   });
 }

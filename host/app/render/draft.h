@@ -1,4 +1,4 @@
-// A draft that `render --write-every` shows while the frame's kernels are built.
+// Draws a draft that `render --write-every` shows while the frame's kernels are built.
 #pragma once
 #include <memory>
 
@@ -8,18 +8,18 @@
 
 namespace sundog {
 
-/// Draws a frame beside it, by kernels that all scenes share, if only those are in the device's cache, until
-/// the frame itself has pixels.
+/// Draws a draft of a frame in a thread, with kernels that all scenes share, until the frame itself has
+/// pixels. Does nothing unless the device's cache has these kernels and lacks the frame's.
 class Draft {
  public:
-  /// `options`: the frame's; what its on_picture gets is the draft's picture, pass by pass.
+  /// `options`: the frame's options, whose on_picture receives the draft's picture after each pass.
   Draft(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device, const RenderOptions& options);
-  /// Does not wait for the driver.
+  /// Stops the draft; does not wait for the driver.
   ~Draft();
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  /// The frame has pixels: the draft shows nothing from now on.
+  /// Call once the frame has pixels: stops the draft, which shows nothing from now on.
   void end();
   /// Number of pictures shown.
   unsigned pictures() const;

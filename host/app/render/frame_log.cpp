@@ -1,5 +1,5 @@
-// Appends a line of JSON per frame; locks of single bytes far behind the file's end stand for the frames, and
-// one more for appending.
+// Appends a line of JSON per frame. Locks on single bytes far beyond the file's end represent the frames, and
+// one more the right to append.
 #include "app/render/frame_log.h"
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t first_lock = std::int64_t{1} << 40, append_lock = first_lock - 1;
 
-/// Whether the byte could be locked, or unlocked; true where the file system has no locks.
+/// Locks or unlocks a byte. Returns false if another process holds the lock; true without support for locks.
 bool set_lock(int file, int command, short type, std::int64_t byte) {
   struct flock lock = {};
   lock.l_type = type;
@@ -71,7 +71,7 @@ FrameLog::FrameLog(std::string path) : path_(std::move(path)) {
   const std::size_t damaged = holds_bytes(path_) ? read() : 0;
   if (damaged > 0 && entries_.empty()) {
     const std::string aside = path_ + ".damaged";
-    std::error_code stays;  // then lines are appended to it
+    std::error_code stays;  // if renaming fails, lines are appended to the file
     fs::rename(path_, aside, stays);
     warnings_.push_back(
         fmt::format("{}: is no list of an animation's frames: it is now {}, and all frames are rendered "
@@ -115,7 +115,7 @@ FrameLock FrameLog::lock(int frame) const {
 
 bool FrameLog::done(const FramePicture& picture) {
   if (file_ < 0) return false;
-  read();  // another process may have made it meanwhile
+  read();  // another process may have finished the frame meanwhile
   const auto found = entries_.find(name_of(picture));
   if (found == entries_.end() || found->second.key != picture.key || !holds_bytes(picture.file)) return false;
   return bytes_in(picture.file) == found->second.bytes || is_picture(picture);
@@ -138,7 +138,7 @@ void FrameLog::add(int frame, const FramePicture& picture) {
   struct stat now = {};
   if (::fstat(file_, &now) == 0 && now.st_size > 0 && ::pread(file_, &last, 1, now.st_size - 1) == 1 &&
       last != '\n')
-    line.insert(0, "\n");  // after a line that a full disk has cut short
+    line.insert(0, "\n");  // a full disk has cut the last line short
   const ssize_t written = ::write(file_, line.data(), line.size());
   if (written != static_cast<ssize_t>(line.size()))
     throw IoError(fmt::format("{}: cannot be written: {}", path_, write_error(written < 0 ? errno : ENOSPC)));

@@ -1,4 +1,4 @@
-// Which frames of an animation are done, in a file that several processes may share.
+// Records which frames of an animation are done, in a file that several processes may share.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -8,32 +8,31 @@
 
 namespace sundog {
 
-/// A picture that a frame has made, and what it was made of.
+/// A frame's picture, and a hash of its inputs (`key`).
 struct FramePicture {
   std::string file, key;
   int width = 0, height = 0;
 };
 
-/// The right to render a frame, given back when it ends, also with its process.
+/// The exclusive right to render a frame; released by its destruction or the end of the process.
 using FrameLock = std::shared_ptr<const std::int64_t>;
 
-/// A line of JSON for each finished frame, appended; the last line of a picture counts. Without a path
-/// nothing is kept.
+/// Appends a line of JSON for each finished frame; a picture's last line counts. No path: records nothing.
 class FrameLog {
  public:
-  /// Throws IoError. A file that is no such list is renamed, with a warning.
+  /// Opens or creates the file; renames a file that is no such list, with a warning. Throws IoError.
   explicit FrameLog(std::string path);
   ~FrameLog();
   FrameLog(const FrameLog&) = delete;
   FrameLog& operator=(const FrameLog&) = delete;
 
-  /// Whether there is a path.
+  /// Whether there is a file.
   bool keeps() const { return file_ >= 0; }
-  /// Null while another process has the frame.
+  /// Locks a frame; null if another process has it.
   FrameLock lock(int frame) const;
-  /// Whether the frame was finished with that key, and its picture is still there and whole.
+  /// Whether the frame was finished with this key, and its picture still exists and is complete.
   bool done(const FramePicture& picture);
-  /// Before the frame is rendered anew: until it is finished its file may hold a part.
+  /// Call before rendering a frame again: marks it as unfinished, because its file may become incomplete.
   void begin(int frame, const FramePicture& picture);
   void add(int frame, const FramePicture& picture);
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -43,16 +42,16 @@ class FrameLog {
     std::string key;
     std::uintmax_t bytes = 0;
   };
-  /// Returns the number of lines that are none of a list.
+  /// Reads the file and returns the number of damaged lines.
   std::size_t read();
 
   std::string path_;
   int file_ = -1;
   std::vector<std::string> warnings_;
-  std::map<std::string, Entry> entries_;  // by the picture's name
+  std::map<std::string, Entry> entries_;  // by the picture's file name
 };
 
-/// Whether something is in that file.
+/// Whether the file exists and is not empty.
 bool holds_bytes(const std::string& file);
 
 }  // namespace sundog

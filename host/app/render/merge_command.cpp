@@ -1,4 +1,4 @@
-// `sundog merge PART... -o OUT`: the image from the parts that `render --tiles i/N` wrote.
+// `sundog merge PART... -o OUT`: joins the parts that `render --tiles I/N` wrote to an image.
 #include <fmt/format.h>
 
 #include <memory>

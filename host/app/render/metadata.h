@@ -1,4 +1,4 @@
-// `render --metadata`: what a picture is of, and what made it, as words in its file.
+// Makes the texts that `render --metadata` writes into a file: program, scene, settings, devices, time.
 #pragma once
 #include <ctime>
 
@@ -9,12 +9,12 @@
 
 namespace sundog {
 
-/// The time that --metadata writes: now, or SOURCE_DATE_EPOCH. Throws UsageError where that is no time.
+/// The time that --metadata writes: SOURCE_DATE_EPOCH (seconds since 1970) if set, else now. Throws
+/// UsageError for a malformed value.
 std::time_t time_of_picture();
 
-/// Program, scene, settings, devices and time, by the names that are usual in the command's format. The time
-/// is that of SOURCE_DATE_EPOCH (seconds since 1970), where it is set, so that files can be made again to the
-/// bit.
+/// Program, scene, settings, devices and time, under the names usual in the command's format. Uses
+/// time_of_picture(), so that files can be reproduced to the bit.
 ImageTexts metadata(const RenderCommand& command, const SceneDescription& scene, const RenderResult& result);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// `sundog render`: its options.
+// `sundog render`: declares its options and checks their values; render_scene() runs it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -28,7 +28,8 @@ struct TypedRender {
   bool subsample = false, caustics = false;
 };
 
-/// The options that only shorten a --set come first, so that a --set of the same value wins.
+/// The options as overrides of the scene. Those that abbreviate a --set come first, so that a --set of the
+/// same value wins.
 std::vector<std::string> collect_overrides(const TypedRender& typed) {
   std::vector<std::string> all;
   if (!typed.size.empty()) all = parse_image_size(typed.size);
@@ -50,7 +51,7 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
     all.push_back(fmt::format("/render/adaptive/threshold={}", parse_amount("--adaptive", typed.adaptive)));
   if (typed.subsample) all.push_back("/render/subsample/on=true");
   if (typed.command.transparent) all.push_back("/image/transparent=true");
-  // A render that may end early takes one sample of each pixel first.
+  // A render that may end early first takes one sample of each pixel.
   if (typed.adaptive.empty() && !typed.subsample && (!typed.time_limit.empty() || !typed.noise.empty()))
     all.push_back("/render/progressive=true");
   for (const std::string& setting : typed.command.overrides) {
@@ -62,7 +63,7 @@ std::vector<std::string> collect_overrides(const TypedRender& typed) {
 
 constexpr const char* light_parts = "light_parts";  // stands for all parts of light
 
-/// The AOVs, each once.
+/// The AOVs, each once, with "light_parts" expanded.
 std::vector<std::string> with_parts_named(const std::vector<std::string>& typed) {
   std::vector<std::string> all;
   const auto add = [&](const std::string& name) {

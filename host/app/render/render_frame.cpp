@@ -1,4 +1,4 @@
-// Loads, compiles, draws, saves and reports one frame, in this order.
+// Loads, compiles, draws, saves and reports one frame, each step in a function.
 #include "app/render/render_frame.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@
 namespace sundog {
 namespace {
 
-/// Runs `step` and adds the seconds it takes.
+/// Runs `step`, adds its duration to `seconds`, and returns its result.
 template <class Step>
 auto timed(double& seconds, const Step& step) {
   const Stopwatch clock;
@@ -63,14 +63,14 @@ RenderOptions render_options(const RenderCommand& command, const ImageSettings& 
   return options;
 }
 
-/// In a job there always is one: mpirun kills all ranks when one dies.
+/// The checkpoint's file; empty: none. A job always has one, because mpirun kills all ranks when one dies.
 std::string checkpoint_file(const RenderCommand& command, const Setup& setup) {
   const std::string name = is_standard_stream(command.out) ? "sundog" : command.out;
   return setup.job && command.resume.empty() ? name + ".checkpoint" : command.resume;
 }
 
-/// A halo is traced by the first of the devices, unless the frame before had the same. With workers, which
-/// compile the scene too, each process traces on the host: the map is the same.
+/// Traces the scene's halo on the first device that works, unless the previous frame had the same halo.
+/// Workers compile the scene too, so each process then traces the same map on its host.
 void trace_halo(const RenderCommand& command, std::shared_ptr<const SceneDescription>& scene, Setup& setup) {
   if (scene->environment.type != EnvironmentType::halo || command.isolate || setup.job) return;
   const ContentKey key = KeyMaker().add_halo(scene->environment).key();
@@ -97,7 +97,7 @@ std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const Loaded
   return plans;
 }
 
-/// Whether somebody looks at the picture on its way, of which a device of this process can make a draft.
+/// Whether to show a draft: the picture is written while it is rendered, on devices of this process.
 bool shows_draft(const RenderCommand& command, const LoadedScene& scene, const Setup& setup) {
   return command.write_every > 0 && !command.draft && !command.isolate && !setup.job && !setup.session &&
          scene.times == 1;
@@ -107,7 +107,7 @@ void add_to(float4& sum, const float4& more) {
   sum.x += more.x, sum.y += more.y, sum.z += more.z, sum.w += more.w;
 }
 
-/// Joins the parts of light, or the light of groups. Other AOVs are those of the first time.
+/// Adds the parts of light, or the light of groups. Other AOVs stay as at the first moment.
 void add_light(const Film& more, RenderResult& all) {
   const AovLayout& layout = all.film.layout;
   for (std::size_t i = 0; i < all.film.aovs.size(); ++i)
@@ -116,7 +116,7 @@ void add_light(const Film& more, RenderResult& all) {
     if (is_light(name)) image = all.film.develop_aov(name);
 }
 
-/// Joins the samples of the same frame at another time.
+/// Adds the samples of the same frame at another moment.
 void add_samples(const RenderResult& more, int channels, RenderResult& all) {
   for (std::size_t i = 0; i < all.film.sums.size(); ++i) {
     add_to(all.film.sums[i], more.film.sums[i]);

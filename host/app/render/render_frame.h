@@ -1,4 +1,4 @@
-// One frame of `sundog render`: compiled, rendered, saved.
+// Compiles, renders and saves one frame of `sundog render`.
 #pragma once
 #include <functional>
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace sundog {
 
-/// The map of the last halo that was traced, and what it was made of.
+/// The map of the last halo that was traced, and the key of its settings.
 struct KeptHalo {
   ContentKey key;
   std::shared_ptr<const HaloMap> map;
@@ -29,69 +29,69 @@ struct KeptHalo {
 /// State that the frames of one run share.
 struct Setup {
   const StopOnSignal& stop;
-  Mailbox* job = nullptr;  // the other processes that mpirun has started
+  Mailbox* job = nullptr;  // the other processes that mpirun started; null: none
   std::vector<DeviceInfo> devices;
-  std::unique_ptr<RenderSession> session;  // of frames on this process's devices, which stay open
+  std::unique_ptr<RenderSession> session;  // renders frames on this process's devices; null: opened per frame
   RunProgress run = {};
-  SceneCompiler compiler = {};  // keeps what frames have in common
+  SceneCompiler compiler = {};  // keeps tables that frames share
   KeptHalo halo = {};
-  KeptChannels workers{};  // of --isolate
+  KeptChannels workers{};  // worker processes of --isolate
 };
 
-/// A scene as it is read, and flattened.
+/// A scene's description and its compiled tables.
 struct LoadedScene {
   std::shared_ptr<const SceneDescription> description;
   std::shared_ptr<const CompiledScene> flat;
   std::optional<NextShot> next{};  // for the AOV motion
-  int times = 1;  // at which the scene is seen while the shutter is open, `flat` at the first
-  std::optional<Moment> moment{};             // the first
-  std::function<LoadedScene(int)> at_time{};  // the others
+  int times = 1;                   // number of moments while the shutter is open; `flat` is the first
+  std::optional<Moment> moment{};  // the first moment
+  std::function<LoadedScene(int)> at_time{};  // loads the scene at another moment
 };
 
 std::vector<DeviceInfo> choose_devices(const RenderCommand& command, Mailbox* job);
 
-/// Width and height of the file that the command writes. Throws UsageError for a region outside the scene's
+/// Width and height of the image that the command writes. Throws UsageError for a region outside the scene's
 /// picture.
 std::pair<int, int> picture_size(const RenderCommand& command, const CompiledScene& scene);
 
 /// The files that one frame may write.
 std::vector<std::string> output_files(const RenderCommand& command);
 
-/// Lets a signal end the process at once, because nothing is to be saved before the frame begins. Not in a
-/// job, where other ranks must hear of it.
+/// Lets a signal end the process at once, because nothing needs saving before the frame begins. Does nothing
+/// in a job, whose other ranks must be notified.
 void stop_loses_nothing(const RenderCommand& command, const Setup& setup);
 
-/// How the scene file is read.
+/// The options for reading the scene file.
 LoadOptions load_options(const RenderCommand& command);
 
 using LoadScene = std::function<std::shared_ptr<const SceneDescription>()>;
 
-/// Reads the scene by `load` and compiles it.
+/// Reads the scene with `load` and compiles it.
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
                              TimeLedger& times);
 
 /// A frame that the devices have rendered.
 struct DrawnFrame {
   RenderCommand command;
-  LoadedScene scene;  // until the frame is saved
+  LoadedScene scene;  // freed when the frame is saved
   RenderResult result;
   std::string checkpoint;
-  bool told = false;                  // that it was interrupted
-  std::vector<std::string> warnings;  // once it is saved, as are its image and samples
+  bool told = false;                  // its interruption has been reported
+  std::vector<std::string> warnings;  // set by save_frame(), as are `image` and `samples`
   ImageSettings image;
   u32 samples = 0;
 };
 
 DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setup& setup, TimeLedger& times);
 
-/// Writes the frame's files. `clock` began with the frame. The scene is let go before the frame's time ends:
-/// freeing a large one takes its time, too.
+/// Writes the frame's files. `clock` started with the frame. Frees the scene before the time is taken,
+/// because freeing a large scene takes time too.
 void save_frame(DrawnFrame& drawn, const Stopwatch& clock, TimeLedger& times);
 
 /// Reports a saved frame. Returns the exit status.
 int end_frame(const DrawnFrame& drawn, const TimeLedger& times);
 
-/// All three. Returns the exit status.
+/// Draws, saves and reports the frame. Returns the exit status.
 int render_one(const RenderCommand& command, LoadedScene scene, const Setup& setup, const Stopwatch& clock,
                TimeLedger& times);
 

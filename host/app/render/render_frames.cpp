@@ -1,4 +1,4 @@
-// Draws one frame while the next is loaded and the one before saved.
+// Draws one frame while the next is loaded and the previous one is saved.
 #include "app/render/render_frames.h"
 
 #include <fmt/format.h>
@@ -31,9 +31,9 @@ namespace {
 
 constexpr auto look_again = std::chrono::milliseconds(200);
 constexpr std::uint64_t most_ahead = std::uint64_t{1} << 30;  // bytes of a frame that is loaded ahead
-constexpr double long_frame = 10;  // times as long as saving: such a frame is saved before the next is drawn
+constexpr double long_frame = 10;  // drawing time per saving time beyond which nothing is saved meanwhile
 
-/// The numbers of the next frame's shot.
+/// The next frame's shot as text, for frame_key().
 std::string next_text(const NextShot& next) {
   std::string text;
   const auto add = [&](const glm::dmat4& matrix) {
@@ -49,7 +49,7 @@ std::string next_text(const NextShot& next) {
   return text;
 }
 
-/// All that shapes the frame's file.
+/// A hash of all that affects the frame's file.
 std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
   const ToneMap& tone = scene.description->image.tone_map;
   std::string text = fmt::format(
@@ -70,13 +70,13 @@ std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
     text += fmt::format(" {},{},{}x{}", at->x, at->y, at->width, at->height);
   for (const std::string& name : command.aovs) text += " " + name;
   if (scene.next) text += next_text(*scene.next);
-  for (const Object& object : scene.description->objects) text += "\n" + object.name;  // of Cryptomatte
+  for (const Object& object : scene.description->objects) text += "\n" + object.name;  // for Cryptomatte
   for (const MaterialDescription& material : scene.description->materials) text += "\n" + material.name;
   return fmt::format("{:016x}", hash_bytes(text.data(), text.size()));
 }
 
-/// Opens the scene and reads each frame of the run: one that is no scene is refused before the first is
-/// rendered, and so is a file that would be written over.
+/// Opens the scene and reads each frame of the run, so that an invalid frame, or an output that would
+/// overwrite an input, is refused before the first frame is rendered.
 std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
   std::vector<std::string> outputs = {frame_list(command)};
   for (const int frame : command.frames)
@@ -88,7 +88,7 @@ std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
 
 enum class Outcome { rendered, kept, elsewhere };
 
-/// A frame on its way.
+/// A frame being loaded, drawn or saved.
 struct Frame {
   explicit Frame(RenderCommand of_frame) : one(std::move(of_frame)) {}
   RenderCommand one;
@@ -98,13 +98,13 @@ struct Frame {
   FramePicture picture;
   FrameLock lock;
   DrawnFrame drawn;
-  RunProgress run;      // when it was drawn
-  Stopwatch from_step;  // that was done last
+  RunProgress run;      // progress when it was drawn
+  Stopwatch from_step;  // time since its last step
 };
 using FramePointer = std::unique_ptr<Frame>;
 
-/// Three frames are on their way at once, so that devices do not wait for the host: while one is drawn, the
-/// next is loaded and the one before saved.
+/// Processes up to three frames at once, so that devices do not wait for the host: while one frame is drawn,
+/// the next is loaded and the previous one is saved.
 class FrameRun {
  public:
   FrameRun(const RenderCommand& command, Setup& setup)
@@ -116,7 +116,7 @@ class FrameRun {
     try {
       render_all();
     } catch (...) {
-      settle();  // what is drawn is not lost
+      settle();  // saves the frame that was drawn
       throw;
     }
     if (status_ == exit_done) tell_end();
@@ -185,7 +185,7 @@ class FrameRun {
 
   FramePointer loaded(int number) {
     if (ahead_.valid() && ahead_number_ == number) return ahead_.get();
-    ahead_ = {};  // of a frame that another process has
+    ahead_ = {};  // drops a frame that another process renders
     return load_frame(number);
   }
 
@@ -233,8 +233,8 @@ class FrameRun {
     return scene;
   }
 
-  /// The scene at one of the times while the shutter is open, with its share of the samples and a seed of its
-  /// own. `seed`: the frame's, set at the first time.
+  /// The scene at one moment while the shutter is open, with its share of the samples and its own seed.
+  /// `seed`: the frame's seed, stored at the first moment.
   LoadedScene load_at(const RenderCommand& one, int frame, int time, std::int64_t* seed, TimeLedger& times) {
     Moment moment;
     const auto read = [&] {
@@ -252,7 +252,7 @@ class FrameRun {
     return scene;
   }
 
-  /// The scene a frame later. Where it cannot be read, such as behind the last file of a sequence, nothing
+  /// The shot one frame later. If that frame cannot be read, e.g. after the last file of a sequence, nothing
   /// moves.
   NextShot next_of(const LoadedScene& scene, int frame) {
     const std::scoped_lock one_at_a_time(loading_);
@@ -268,7 +268,7 @@ class FrameRun {
     return command_.skip_existing && holds_bytes(one.out) && !is_there(one.resume);
   }
 
-  /// Whether two such frames, with their scenes, are little memory. A job compiles for all its processes.
+  /// Whether the frame and its scene take less than 1 GiB, to hold two at once. Not in a job or to denoise.
   bool fits_twice(const Frame& frame) const {
     const auto pixels =
         static_cast<std::uint64_t>(frame.picture.width) * static_cast<unsigned>(frame.picture.height);
@@ -296,15 +296,15 @@ class FrameRun {
   Setup& setup_;
   std::unique_ptr<SceneFrames> frames_;
   Shutter shutter_ = frames_->shutter();
-  FrameLog log_;        // after all frames have been checked
+  FrameLog log_;        // opened after all frames have been checked
   std::mutex loading_;  // one scene at a time
   int status_ = exit_done;
   std::size_t kept_ = 0;
   std::vector<int> unfinished_;
   Stopwatch clock_;
-  double settled_ = 0;  // seconds of the clock when a frame was last behind us
+  double settled_ = 0;  // when the last frame was finished or skipped, by `clock_`
   double saving_time_ = 0;
-  std::future<FramePointer> ahead_, saving_;  // threads end before what they use
+  std::future<FramePointer> ahead_, saving_;  // their threads end before the members above
   int ahead_number_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The frames of an animation, one after the other.
+// Renders the frames of an animation.
 #pragma once
 #include <string>
 
@@ -6,14 +6,13 @@
 
 namespace sundog {
 
-/// The command of one frame: its files are numbered.
+/// The command for one frame, with numbered files.
 RenderCommand frame_command(const RenderCommand& command, int frame);
 
-/// Where the command keeps which frames are done; empty: nowhere.
+/// The file that lists finished frames (FrameLog); empty: none.
 std::string frame_list(const RenderCommand& command);
 
-/// Renders the frames that are not done. Frames that another process renders meanwhile are waited for.
-/// Returns the exit status.
+/// Renders the frames that are not done; waits for other processes' frames. Returns the exit status.
 int render_frames(const RenderCommand& command, Setup& setup);
 
 }  // namespace sundog

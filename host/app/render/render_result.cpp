@@ -32,7 +32,7 @@
 namespace sundog {
 namespace {
 
-/// Settings that all parts of a frame must share, besides the scene's file.
+/// The settings besides the scene's file that all parts of a frame must share.
 std::map<std::string, std::string> settings_of(const RenderCommand& command, const CompiledScene& scene) {
   std::map<std::string, std::string> settings;
   for (const std::string& setting : command.overrides) {
@@ -47,7 +47,7 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
   return settings;
 }
 
-/// Where the samples went, in words, and with --verbose as a picture.
+/// Prints how samples were distributed; with --verbose, also writes a picture of it.
 void tell_samples(const RenderCommand& command, const RenderResult& result, u32 each) {
   if (result.film.taken.empty()) return;
   const SamplingFigures figures =
@@ -70,7 +70,7 @@ double percent_done(const RenderResult& result) {
   return 100 * static_cast<double>(std::ranges::count(done, 1)) / pixels;
 }
 
-/// Whether it would be a black picture, perhaps over a good one.
+/// Whether no pixel is finished: the picture would be black, and might overwrite a good one.
 bool is_empty(const RenderResult& result) {
   return !result.complete && std::ranges::count(result.film.done, 1) == 0;
 }
@@ -83,12 +83,12 @@ std::string part_text(const RenderCommand& command, const RenderResult& result) 
                      command.resume.empty() ? "" : "; the same command continues from there");
 }
 
-/// From the frame's beginning to its end.
+/// Seconds from the frame's beginning to its end.
 double seconds_of(const RenderTimes& times) {
   return times.build_kernels + times.upload + times.render + times.readback;
 }
 
-/// Takes the frame's picture, without its noise where that is asked for and the frame was not interrupted.
+/// Takes the frame's picture, denoised if requested and the frame was not interrupted.
 Image take_image(const RenderCommand& command, RenderResult& result) {
   Image image = std::move(result.image);
   if (command.denoise && (result.complete || result.time_limited))
@@ -101,7 +101,7 @@ std::optional<Region> region_of(const RenderCommand& command, const ImageSetting
   return Region{command.region->x, command.region->y, image.width, image.height};
 }
 
-/// Takes the AOVs, without those that only the denoiser wanted; of a part none are developed.
+/// Takes the requested AOVs, without those that only the denoiser needed. A part has no developed AOVs.
 AovImages take_aovs(const RenderCommand& command, const Shot& shot, const std::optional<Region>& region,
                     RenderResult& result) {
   std::erase_if(result.aovs,
@@ -147,7 +147,7 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
   file.shot = shot;
   if (command.metadata)
     for (auto& text : metadata(command, scene, result)) file.texts.push_back(std::move(text));
-  // A region's film is cut, and no state of the frame.
+  // A region's film is a crop, which cannot serve as a checkpoint of the frame.
   const bool keeps = !command.region || result.checkpoint_kept;
   Picture picture{
       std::move(image),       aovs,           result.film, result.key,           keeps ? checkpoint : "",
@@ -161,7 +161,7 @@ void save_result(const RenderCommand& command, const SceneDescription& scene, co
                aov_layout(command.aovs).mattes ? names : MatteNames()},
               command.out);
   if (!result.checkpoint_error.empty()) throw IoError(result.checkpoint_error);
-  std::error_code stays;  // the picture is there
+  std::error_code stays;  // ignored, since the picture is saved
   if (result.complete && !checkpoint.empty()) std::filesystem::remove(checkpoint, stays);
 }
 
@@ -173,7 +173,7 @@ void write_so_far(const RenderCommand& command, const ImageSettings& settings, c
     write_image(shown_in(command.out, std::move(image), settings.tone_map, dithers(command)), command.out, {},
                 file);
   } catch (const IoError&) {
-    // The disk may have room again when the whole picture is there.
+    // the disk may have room again when the picture is finished
   }
 }
 
@@ -190,8 +190,11 @@ std::vector<std::string> warnings_of(const SceneDescription& scene, const Render
     all.push_back(
         "the picture is black, for nothing in the scene shines: give it lights, an environment or a "
         "background");
-  for (const DeviceReport& report : result.devices)
+  for (const DeviceReport& report : result.devices) {
     for (std::string& text : failures_text(report)) all.push_back(std::move(text));
+    for (const std::string& note : report.notes)  // several kernels may have the same
+      if (std::ranges::count(all, note) == 0) all.push_back(note);
+  }
   if (const std::string& left = result.checkpoint_left; !left.empty())
     all.push_back(left.substr(0, left.find("; remove")) + "; the frame began anew");
   return all;

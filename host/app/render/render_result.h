@@ -1,4 +1,4 @@
-// The end of a frame: its picture or part is saved, the outcome is reported, and it has an exit status.
+// The end of a frame: saves its picture or part, reports the outcome, and determines the exit status.
 #pragma once
 #include <string>
 
@@ -11,37 +11,36 @@
 
 namespace sundog {
 
-/// Where --verbose shows how the samples were spread: "out.png" -> "out.samples.png".
+/// The file in which --verbose shows how samples were distributed: "out.png" -> "out.samples.png".
 std::string samples_file(const RenderCommand& command);
 
-/// The outputs that decide how much memory the command's frame takes.
+/// The outputs that determine how much memory the command's frame needs.
 FrameOutput frame_output(const RenderCommand& command, const ImageSettings& image, bool passes);
 
 /// The frame's camera, with `next` for motion.
 Shot frame_shot(const RenderCommand& command, const SceneDescription& scene,
                 const std::optional<NextShot>& next);
 
-/// Writes the image, whole or in part, and takes the checkpoint of a whole one away: not before it is safe.
-/// Image and AOVs of the result are gone afterwards.
+/// Writes the image or part, then removes a complete frame's checkpoint. Moves image and AOVs from `result`.
 void save_result(const RenderCommand& command, const SceneDescription& scene, const CompiledScene& flat,
                  const Shot& shot, RenderResult& result, const std::string& checkpoint);
 
-/// Writes the picture as far as it is made; what fails is reported when the whole one is written.
+/// Writes the picture so far. Ignores failures, which are reported when the finished picture is written.
 void write_so_far(const RenderCommand& command, const ImageSettings& settings, const Film& film);
 
-/// Tells of an interrupted frame that its checkpoint has it. Before the picture is written, for which mpirun
-/// may leave no time.
+/// Reports that an interrupted frame is in its checkpoint. Call before the picture is written, for which
+/// mpirun may leave no time.
 void tell_kept(const RenderResult& result, const std::string& checkpoint);
 
-/// Names what was lost and the devices that failed.
+/// Warnings about losses, a scene without light, failed devices and an unusable checkpoint.
 std::vector<std::string> warnings_of(const SceneDescription& scene, const RenderResult& result);
 
-/// The frame's figures, on stdout; `samples`: a pixel's, as the scene asks for them.
+/// Prints the frame's statistics to stdout. `samples`: samples per pixel that the scene requests.
 void tell_result(const RenderCommand& command, const ImageSettings& image, u32 samples,
                  const RenderResult& result, const TimeLedger& times);
 
-/// The exit status of a frame whose finished part has been saved. An interrupt is reported, if it was not
-/// yet `told`. Throws the failure of a frame for which every device failed.
+/// The exit status of a saved frame. Reports an interruption unless it was already `told`. Throws the failure
+/// of a frame for which every device failed.
 int conclude(const RenderCommand& command, const RenderResult& result, bool told);
 
 }  // namespace sundog

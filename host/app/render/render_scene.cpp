@@ -1,4 +1,5 @@
-// Renders a scene: scene file -> description -> flat tables; render_frame.cpp makes the image and its file.
+// Checks the command's outputs, joins an MPI job if there is one, and renders a frame (render_frame.cpp) or
+// an animation (render_frames.cpp).
 #include "app/render/render_scene.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@
 namespace sundog {
 namespace {
 
-/// --write-every replaces its file, so it refuses streams.
+/// Throws UsageError if --write-every, which replaces its file, has a stream or a part as output.
 void check_write_every(const RenderCommand& command) {
   if (command.write_every > 0 &&
       (command.part || is_standard_stream(command.out) || is_pipe_or_device(command.out)))
@@ -54,7 +55,7 @@ void check_extras(const RenderCommand& command) {
   if (command.denoise) static_cast<void>(Denoiser());
 }
 
-/// Refuses outputs that could not be written, before the render rather than after it.
+/// Throws for outputs that could not be written, before the render rather than after it.
 void check_outputs(const RenderCommand& command) {
   if (command.part && lower_extension(command.out) != ".part")
     throw UsageError(
@@ -73,7 +74,7 @@ void check_outputs(const RenderCommand& command) {
     if (!file.empty() && !is_standard_stream(file)) check_writable(file);
 }
 
-/// Frames are files of their own.
+/// Throws UsageError for frames that would go to a stream instead of numbered files.
 void check_frames(const RenderCommand& command) {
   for (const std::string& file : {command.out, command.stats})
     if (!command.frames.empty() && is_standard_stream(file))
@@ -109,7 +110,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
 }  // namespace
 
 int render_scene(const RenderCommand& command) {
-  // An interrupt reaches every process of a job; rank 0 decides.
+  // An interrupt reaches every process of a job; only rank 0 acts on it.
   std::optional<StopOnSignal> stop;
   if (job_rank() > 0)
     hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU});

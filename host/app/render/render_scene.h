@@ -1,10 +1,10 @@
-// `sundog render`.
+// Runs `sundog render`: reads a scene, renders it, and writes the image and the other outputs.
 #pragma once
 #include "app/render/render_frame.h"
 
 namespace sundog {
 
-/// Renders what the command line asks for: a frame, a part of it, or frames. Returns the exit status.
+/// Renders the command's frame, part of a frame, or frames. Returns the exit status.
 int render_scene(const RenderCommand& command);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Writes the image; if the disk fails, keeps a checkpoint, or the image in the temporary folder.
+// Encodes and writes the image; on failure, writes a checkpoint, or the image to the temporary folder.
 #include "app/render/save_image.h"
 
 #include <fmt/format.h>
@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path, whose extension is the format.
+/// A path whose extension is the picture's format.
 fs::path named(const Picture& picture, const fs::path& path) {
   return is_standard_stream(path) ? fs::path("picture." + picture.format) : path;
 }
 
 void write(const Picture& picture, const fs::path& path) {
-  constexpr std::size_t large = 1 << 20;  // values that take longer to compress than threads to start
+  constexpr std::size_t large = 1 << 20;  // with more values, compressing takes longer than starting threads
   if (lower_extension(named(picture, path)) == ".exr" &&
       picture.image.data.size() * (1 + picture.aovs.size()) > large)
     share_exr_work(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
@@ -46,14 +46,14 @@ bool keep_checkpoint(const Picture& picture) {
   }
 }
 
-/// Where the frame went instead, as the end of an error message. `write_to` writes the file that could not be
-/// written to another place.
+/// Keeps the frame elsewhere. Returns where, as the end of an error message. `write_to` writes to a path.
 template <class Write>
 std::string rescue(const Picture& picture, const fs::path& path, const char* what, const Write& write_to) {
   if (keep_checkpoint(picture))
     return fmt::format("; all of it is in {}: make room and give the same command again",
                        picture.checkpoint.string());
-  std::string folder = (temporary_folder() / "sundog-XXXXXX").string();  // nobody else's link lies in its way
+  std::string folder =
+      (temporary_folder() / "sundog-XXXXXX").string();  // a private folder avoids others' links
   const fs::path elsewhere = (::mkdtemp(folder.data()) ? fs::path(folder) : temporary_folder()) /
                              (what + named(picture, path).extension().string());
   try {

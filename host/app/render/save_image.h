@@ -1,5 +1,4 @@
-// The end of a render: the image, or a part of the frame, on disk, or, when the disk fails, kept where it can
-// be.
+// Writes an image or a part of a frame; on failure, keeps it in a checkpoint or the temporary folder.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -12,22 +11,22 @@ namespace sundog {
 
 /// A frame to save: its image and AOVs, and the film that they were developed from.
 struct Picture {
-  Image image;  // linear, of image_channels() of the file; none of a part
+  Image image;  // linear, with the file's image_channels(); empty for a part
   const AovImages& aovs;
   const Film& film;
-  std::uint64_t key = 0;  // of the scene, for a checkpoint
-  // Takes the film if `path` cannot be written; empty: none was asked for.
+  std::uint64_t key = 0;  // the scene's key, for a checkpoint
+  // Receives the film if `path` cannot be written; empty: none.
   std::filesystem::path checkpoint = {};
-  bool checkpoint_kept = false;  // the frame is there
-  std::string format = "png";    // of image_formats(), where the path is "-"
+  bool checkpoint_kept = false;  // the checkpoint already holds the frame
+  std::string format = "png";    // one of image_formats(), for the path "-"
   FileOptions file = {};
   ToneMap tone_map = {};
   bool dithered = true;
 };
 
-/// Writes the image as a file of its name shows it (shown_in()) to `path`; "-" is the standard output. Warns
-/// of colours that the file cuts off. When that fails the frame is kept as a checkpoint, or as an image in
-/// the folder for temporary files: IoError says what happened and where it is.
+/// Writes the image, as shown_in() a file of its name, to `path`; "-" is the standard output. Warns about
+/// colours that the file clips. On failure, keeps the frame as a checkpoint, or as an image in the temporary
+/// folder, and throws an IoError that says what happened and where the frame is.
 void save_image(Picture picture, const std::filesystem::path& path);
 
 /// Writes a part of a frame to `path`; keeps it elsewhere if that fails, as save_image() does.

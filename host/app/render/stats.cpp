@@ -1,4 +1,4 @@
-// JSON for --stats, text for --verbose; losses() says what a picture lacks.
+// Formats times, rays and devices as JSON and text; losses() reports rays and samples that were dropped.
 #include "app/render/stats.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ json image_json(const RenderCommand& command, const SceneDescription& scene, con
           {"complete", result.complete}};
 }
 
-/// Sampling figures of a frame in passes; null for other frames.
+/// Sampling statistics of a frame rendered in passes; null for other frames.
 json sampling_json(const SceneDescription& scene, const RenderResult& result) {
   if (result.film.taken.empty()) return nullptr;
   const SamplingFigures figures = sampling_figures(
@@ -49,7 +49,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// [x, y], or "driver" where the driver chose.
+/// [x, y], or "driver" if the driver chose the size.
 json work_group_json(const KernelTimes& times) {
   return times.local_x > 0 ? json{times.local_x, times.local_y} : json("driver");
 }
@@ -114,7 +114,7 @@ std::vector<std::pair<const char*, double>> entries(const TimeLedger& times) {
           {"total", times.total}};
 }
 
-/// Bytes that the process has held at most, as its system counts them.
+/// The process's peak memory in bytes, as the system counts it.
 std::uint64_t peak_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -217,8 +217,7 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
         fmt::format("{} rays entered more solids inside each other than the media stack holds, 8, {}: "
                     "take some of them apart",
                     deep, lost_pixels(counts, scene)));
-  // A handful of stray exits comes from rays that start within rounding of an edge of a closed mesh; an open
-  // mesh gives many more.
+  // Rays that start within rounding of a closed mesh's edge cause a few; an open mesh causes many more.
   constexpr std::uint64_t rays_per_stray = 1'000'000;
   const std::uint64_t strays = counts[COUNT_STRAY_EXIT];
   if (strays > 0 && strays * rays_per_stray >= ray_count(counts))
@@ -228,7 +227,7 @@ std::vector<std::string> losses(const RayCounts& counts, const SceneDescription&
 
 std::vector<std::string> failures_text(const DeviceReport& report) {
   std::vector<std::string> sentences;
-  // A driver that fails may fail many times in the same way.
+  // A failing driver may repeat the same message many times.
   for (std::size_t i = 0; i < report.messages.size(); ++i) {
     const std::string& message = report.messages[i];
     std::size_t times = 1;

@@ -1,5 +1,5 @@
-// Blames objects with an interior whose meshes are open, turned or inside out (mesh_faults.h) or whose shapes
-// are flat, else coincident surfaces.
+// Blames objects with an interior whose meshes are open, partly turned or inside out (mesh_faults.h), or
+// whose shapes are flat; if there are none, blames coincident surfaces.
 #include "app/render/stray_exits.h"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 namespace sundog {
 namespace {
 
-/// Names of objects, each once: the first few as they are, the others as a number.
+/// Names of objects without duplicates; lists the first few and counts the others.
 class ObjectNames {
  public:
   void add(const std::string& name) {
@@ -53,7 +53,7 @@ bool has_interior(const SceneDescription& scene, const Object& object) {
   return std::ranges::any_of(materials, [&](int material) { return has_interior(scene, material); });
 }
 
-/// An open tube or a disk.
+/// Whether the shape encloses nothing, such as an open tube or a disk.
 bool is_flat(const Shape& shape) {
   return std::visit(
       [](const auto& s) {

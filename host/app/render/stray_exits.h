@@ -1,4 +1,4 @@
-// Why rays left solids that they had not entered.
+// Explains why rays left solids that they had not entered, for warnings.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace sundog {
 
-/// "in at most 12 pixels (0.4 %)": those with rays that lost count of the media they are in. Each
-/// pass over the frame counts anew.
+/// "in at most 12 pixels (0.4 %)": the pixels whose rays lost count of the media they are in. At most,
+/// because each pass over the frame counts its pixels again.
 std::string lost_pixels(const RayCounts& counts, const SceneDescription& scene);
 
-/// Sentences about such rays and their pixels, which name the objects at fault: meshes that are inside out,
-/// meshes that are not closed, shapes without an inside. Where none is, surfaces may coincide: all objects
-/// with an interior are then named. Long lists are shortened.
+/// Sentences about such rays and their pixels that name the objects at fault: meshes that are inside out or
+/// not closed, and shapes without an interior. If there are none, surfaces may coincide, so all objects with
+/// an interior are named. Long lists are shortened.
 std::vector<std::string> explain_stray_exits(const RayCounts& counts, const SceneDescription& scene);
 
 }  // namespace sundog

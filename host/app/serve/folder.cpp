@@ -63,7 +63,7 @@ fs::path file_below(const fs::path& folder, const std::string& name) {
   const fs::path root = fs::canonical(folder, failed);
   if (failed) throw UsageError(fmt::format("{}: {}", folder.string(), failed.message()));
   const fs::path file = fs::canonical(root / name, failed);
-  // One message for what is outside and what is not there: a page learns nothing of files elsewhere.
+  // The message is the same for missing files and files outside, so that pages learn nothing about those.
   if (failed || !is_below(root, file) || !fs::is_regular_file(file, failed))
     throw UsageError(
         fmt::format("{}: there is no such file below the folder that sundog was started in", name));

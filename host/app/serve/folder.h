@@ -1,4 +1,5 @@
-// The folder that the viewer was started in: the scenes and models below it, and no file outside.
+// Gives the viewer access to the scenes and models below the folder that it was started in, and to uploaded
+// files, but to no other file.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,19 +7,21 @@
 
 namespace sundog {
 
-/// Scenes and models below `folder`, as paths from it, sorted; hidden folders and build folders left out, at
-/// most 2000, at most six folders deep.
+/// Scenes and models below `folder`, as sorted relative paths: at most 2000, at most six folders deep,
+/// without hidden folders and build folders.
 std::vector<std::string> list_scenes(const std::filesystem::path& folder);
 
-/// The file that `name`, a path from `folder`, means. Throws UsageError where it leads outside (by "..", as
-/// an absolute path, through a link), is no file, or is no scene or model.
+/// The file with the path `name` relative to `folder`. Throws UsageError if it is outside (by "..", as an
+/// absolute path, or through a link), is no file, or is no scene or model.
 std::filesystem::path file_below(const std::filesystem::path& folder, const std::string& name);
 
-/// A name for a new file: letters, digits, "-", "_" and "." of `name`, never empty, never hidden.
+/// A safe name for a new file: `name` with characters other than letters, digits, "-", "_" and "." replaced
+/// by
+/// "_"; never empty, never hidden.
 std::string safe_file_name(const std::string& name);
 
-/// Files that are dropped on the page, each in a folder of its own, which this process alone may read and
-/// which goes with it.
+/// Files that users drop on the page, each in its own folder below a folder that only this user may read and
+/// that is removed with this object.
 class Uploads {
  public:
   Uploads() = default;
@@ -26,16 +29,16 @@ class Uploads {
   Uploads(const Uploads&) = delete;
   Uploads& operator=(const Uploads&) = delete;
 
-  /// Keeps the bytes under a name (safe_file_name()); the file's place. Throws IoError.
+  /// Stores the bytes in a file of this name (safe_file_name()). Returns its path. Throws IoError.
   std::filesystem::path keep(const std::string& name, const std::string& bytes);
   bool hold(const std::filesystem::path& file) const;
-  /// `text` with the newest file's folder taken out of the paths in it.
+  /// `text` without the newest file's folder in paths.
   std::string without_folder(std::string text) const;
-  /// Removes all but the newest: nobody has the others open.
+  /// Removes all files except the newest; call when the others are no longer in use.
   void forget_others();
-  /// Removes all, and the folder.
+  /// Removes all files and the folder.
   void forget_all();
-  /// Removes the newest.
+  /// Removes the newest file.
   void forget_newest();
 
  private:

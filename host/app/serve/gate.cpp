@@ -1,4 +1,5 @@
-// The token is compared in constant time; a file that keeps it must be the user's alone.
+// Checks hosts, origins, methods and the token, which is compared in constant time. A file that stores the
+// token must be accessible to the user only.
 #include "app/serve/gate.h"
 
 #include <fcntl.h>
@@ -120,7 +121,7 @@ Refusal check_request(const Gate& gate, const RequestHead& head) {
             "requests from other pages are refused; a page behind a tunnel or proxy wants sundog serve "
             "--host NAME or --host NAME:PORT, as the browser's address line has it"};
   const bool api = head.path.starts_with("/api/");
-  const bool posts = api || head.path == socket_path;  // where a page asks why its socket is refused
+  const bool posts = api || head.path == socket_path;  // POST to it tells a page why its socket is refused
   if (head.method != "GET" && !(posts && head.method == "POST"))
     return {405, "this method is not taken here", posts ? "GET, HEAD, POST" : "GET, HEAD"};
   const std::string* token = head.header(token_header);

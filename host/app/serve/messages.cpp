@@ -1,4 +1,4 @@
-// Makes the server's messages from descriptions, figures and errors.
+// Makes the server's messages from scene descriptions, devices and snapshots of the session.
 #include "app/serve/messages.h"
 
 #include <fmt/format.h>

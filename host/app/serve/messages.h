@@ -9,17 +9,17 @@
 
 namespace sundog {
 
-/// Text of a message; what is not UTF-8 (a driver's words) is replaced.
+/// A message as text; replaces bytes that are not UTF-8 (from drivers).
 std::string message_text(const nlohmann::json& message);
 
-/// All devices, with which of them draw.
+/// All devices, and which of them draw.
 nlohmann::json devices_message(const std::vector<DeviceInfo>& all, const std::vector<DeviceInfo>& picked);
 
-/// The whole document, and what was made of it.
+/// The whole document, and the values that the reader resolved.
 nlohmann::json scene_message(const SceneDocument& document);
 
-/// Values that a document may leave out and the reader has chosen: the camera's place, the order of objects,
-/// the intervals of fields; the light groups whose light can be kept apart.
+/// Values that the reader chooses if the document leaves them out: the camera, the order of objects, the
+/// intervals of fields. Also the light groups whose light can be separated, and warnings.
 nlohmann::json resolved_json(const SceneDescription& scene);
 
 nlohmann::json status_message(const Snapshot& now);

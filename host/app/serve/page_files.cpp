@@ -1,4 +1,4 @@
-// Answers requests with embedded files, or with those of the folder SUNDOG_PAGE_DIR.
+// Answers requests with embedded files, or with files from the folder SUNDOG_PAGE_DIR.
 #include "app/serve/page_files.h"
 
 #include <algorithm>

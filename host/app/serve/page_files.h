@@ -1,5 +1,5 @@
-// The page that the build embedded (cmake/EmbedFiles.cmake): HTML, CSS, modules, the sheet of surfaces, and
-// the scene's schema.
+// The files of the viewer's page, which the build embeds (cmake/EmbedFiles.cmake): HTML, CSS, modules,
+// pictures of the surfaces, and the scene's schema.
 #pragma once
 #include <span>
 #include <string>
@@ -14,15 +14,14 @@ struct PageFile {
   std::string_view bytes;
 };
 
-/// All of them; "scene.schema.json" is among them without a path of its own.
+/// All embedded files of the page.
 std::span<const PageFile> page_files();
 
-/// The file at a path of the page; "/" is index.html. Nothing else is served: paths name what is embedded,
-/// never files. With SUNDOG_PAGE_DIR set, the same names are read from that folder instead, for work on the
-/// page.
+/// The embedded file at this path; "/" is index.html. Other paths get a 404, never a file on disk. With
+/// SUNDOG_PAGE_DIR set, reads files of the same names from that folder instead, for work on the page.
 WebAnswer page_answer(std::string_view path);
 
-/// scenes/scene.schema.json as the build had it.
+/// scenes/scene.schema.json, as embedded by the build.
 std::string scene_schema();
 
 }  // namespace sundog

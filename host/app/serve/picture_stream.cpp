@@ -1,4 +1,4 @@
-// A thread encodes each new picture once, and shows it to all pages.
+// A thread encodes each new picture once and sends it to all pages.
 #include "app/serve/picture_stream.h"
 
 #include <fmt/format.h>
@@ -16,9 +16,9 @@
 namespace sundog {
 namespace {
 
-constexpr double status_seconds = 0.1;    // between two status messages while figures change
-constexpr double picture_seconds = 0.03;  // between two pictures
-constexpr double idle_seconds = 0.25;     // without a change
+constexpr double status_seconds = 0.1;    // interval between status messages
+constexpr double picture_seconds = 0.03;  // interval between pictures
+constexpr double idle_seconds = 0.25;     // longest wait for a change
 constexpr int quality_full = 90, quality_coarse = 82;
 
 }  // namespace
@@ -33,7 +33,7 @@ std::string picture_message(const Snapshot& now, std::uint64_t version) {
   std::string bytes;
   for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(text.size() >> shift & 255);
   bytes += text;
-  bytes += settled ? encode_quick_png(image)  // the pixels of the PNG of `sundog render`
+  bytes += settled ? encode_quick_png(image)  // same pixels as the PNG of `sundog render`
                    : encode_preview(image, now.block > 1 ? quality_coarse : quality_full);
   return bytes;
 }
@@ -61,7 +61,7 @@ void PictureStream::tell_status(const Snapshot& now) {
   server_.send_to_all(last_status_);
 }
 
-/// Whether there is no newer picture left to send.
+/// Sends the picture if it is new. Returns false if no page can take it yet.
 bool PictureStream::send_picture() {
   if (server_.ready_clients() == 0) return false;
   const Snapshot now = session_.snapshot();
@@ -77,7 +77,7 @@ bool PictureStream::send_picture() {
   return true;
 }
 
-/// Sends the reason in place of a picture that its encoder or the memory refuses.
+/// send_picture(); if it throws (encoder, out of memory), sends the reason as a status instead.
 bool PictureStream::try_picture(Snapshot now) {
   try {
     return send_picture();
@@ -89,7 +89,7 @@ bool PictureStream::try_picture(Snapshot now) {
   }
 }
 
-/// Without memory for its words it tries again.
+/// Streams until stopped; starts again after an exception, such as lack of memory for a message.
 void PictureStream::run() {
   while (!stop_) {
     try {
@@ -120,7 +120,7 @@ void PictureStream::stream() {
       all_sent = try_picture(now);
       picture_at = clock.seconds();
     }
-    // Changes come faster than pictures are made: the rest of the time is the renderer's.
+    // Changes may arrive faster than pictures are sent, so leave the remaining time to the renderer.
     const double spare = picture_seconds - (clock.seconds() - picture_at);
     if (!ended && spare > 0)
       std::this_thread::sleep_for(std::chrono::duration<double>(std::min(spare, 0.01)));

@@ -1,5 +1,5 @@
-// Pictures and figures of a render session on their way to the pages: JPEG while the picture changes, PNG
-// when it rests, never more than each page can draw.
+// Sends pictures and statistics of a render session to the pages: JPEG while the picture changes, PNG when it
+// is settled, never more than each page can draw.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -11,20 +11,19 @@
 
 namespace sundog {
 
-/// The bytes of a picture's message: the length of a JSON header (4 bytes, little-endian), the header, an
-/// image file.
+/// A picture's message: the length of a JSON header (4 bytes, little-endian), the header, and an image file.
 std::string picture_message(const Snapshot& now, std::uint64_t version);
 
 class PictureStream {
  public:
-  /// `version_of` gives the document's version that a generation draws. Both outlive the stream.
+  /// `version_of` returns the document's version that a generation draws. References outlive the stream.
   PictureStream(WebServer& server, RenderSession& session,
                 std::function<std::uint64_t(Generation)> version_of);
   ~PictureStream();
   PictureStream(const PictureStream&) = delete;
   PictureStream& operator=(const PictureStream&) = delete;
 
-  /// A page has come: it gets the newest picture.
+  /// Sends the newest status and picture to a new page.
   void greet(ClientId client);
 
  private:
@@ -38,13 +37,13 @@ class PictureStream {
   RenderSession& session_;
   std::function<std::uint64_t(Generation)> version_of_;
   std::mutex mutex_;
-  std::shared_ptr<const std::string> last_;  // picture that was sent
+  std::shared_ptr<const std::string> last_;  // message of the last picture
   std::string last_status_;
-  std::shared_ptr<const Image> shown_;  // of the last picture
+  std::shared_ptr<const Image> shown_;  // the last picture
   bool shown_settled_ = false;
   std::uint64_t shown_version_ = 0;
   std::atomic<bool> stop_ = false;
-  std::thread thread_;  // last: it uses all others
+  std::thread thread_;  // last, because it uses all other members
 };
 
 }  // namespace sundog

@@ -1,4 +1,5 @@
-// A step of undo is the whole document as CBOR; at most 200 steps and 64 MiB are kept.
+// Applies changes to the document and checks them by reading the scene. An undo step is the whole document as
+// CBOR; at most 200 steps and 64 MiB are kept.
 #include "app/serve/scene_document.h"
 
 #include <fmt/format.h>
@@ -24,17 +25,15 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int most_shown_edge = 65500;  // of a JPEG
+constexpr int most_shown_edge = 65500;  // a JPEG's limit
 
-/// Bytes of a session's frame per pixel: film, picture, and the copy that is sent to pages. Measured from
-/// 2048x2048 to 4096x4096.
+/// A session's bytes per pixel: film, picture, and the copy for pages. Measured from 2048x2048 to 4096x4096.
 constexpr std::uint64_t bytes_a_shown_pixel = 130;
 
 double gigabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e9; }
 
-/// Throws SceneError at /image/width or /image/height where a page cannot be shown such a picture, or where
-/// it takes more than a quarter of `available` bytes (none: not known). A frame of no more than `shown`
-/// pixels is held already.
+/// Throws SceneError at /image/width or /image/height if pages cannot show a picture of this size, or if it
+/// needs more than a quarter of the `available` bytes (none: unknown). `shown` pixels are already in memory.
 void check_frame(const SceneDescription& scene, std::int64_t shown, std::optional<std::uint64_t> available) {
   const int width = scene.image.width, height = scene.image.height;
   const auto refuse = [&](bool wide, const std::string& why) {
@@ -57,7 +56,7 @@ void check_frame(const SceneDescription& scene, std::int64_t shown, std::optiona
 constexpr std::size_t most_undone = 200, most_tokens = max_json_depth;
 constexpr std::size_t most_undo_bytes = std::size_t{64} << 20;
 
-/// The oldest steps give way to the newest.
+/// Adds a step; drops the oldest steps beyond the limits.
 void remember(std::deque<DocumentStep>& steps, DocumentStep newest) {
   steps.push_back(std::move(newest));
   std::size_t bytes = 0;
@@ -90,7 +89,7 @@ std::size_t index_of(const json& array, const std::string& token, const std::str
   return *index;
 }
 
-/// The child of `parent`; of an object it is made where it is missing.
+/// The child of `parent`; created if missing, unless `parent` is an array and `token` an index.
 json& child_of(json& parent, const std::string& token, const std::string& pointer) {
   if (parent.is_array()) {
     if (token == "-") return parent.emplace_back();
@@ -129,7 +128,7 @@ void apply_change(json& document, const Change& change) {
   const std::vector<std::string> tokens = tokens_of(change.pointer);
   json* place = &document;
   for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
-    if (!change.value && !leads_on(*place, tokens[i])) return;  // what is not there need not be taken out
+    if (!change.value && !leads_on(*place, tokens[i])) return;  // nothing to remove
     place = &child_of(*place, tokens[i], change.pointer);
   }
   if (change.value)
@@ -138,7 +137,7 @@ void apply_change(json& document, const Change& change) {
     remove_child(*place, tokens.back(), change.pointer);
 }
 
-/// Throws SceneError for what is more than the viewer holds.
+/// Throws SceneError for a document or picture that is too large for the viewer.
 void SceneDocument::check(const json& next, const SceneDescription& scene) const {
   check_document_size(text_size(next), scene.file);
   const std::int64_t shown = scene_ ? std::int64_t{scene_->image.width} * scene_->image.height : 0;
@@ -156,7 +155,7 @@ void SceneDocument::begin(json document, const fs::path& file) {
 }
 
 void SceneDocument::open(const fs::path& file) {
-  std::error_code missing;  // is reported by who reads it
+  std::error_code missing;  // read_scene_document() reports it
   const std::uintmax_t bytes = fs::file_size(file, missing);
   if (!missing && !is_model_file(file)) check_document_size(bytes, file);
   begin(read_scene_document(file), file);
@@ -168,7 +167,7 @@ void SceneDocument::replace(json document, const fs::path& file) {
   is_file_ = false;
 }
 
-/// Reads the scene of `next`, and takes both.
+/// Reads the scene of `next`, checks it, and makes both current.
 void SceneDocument::take(json next) {
   auto scene = scene_ ? change_scene(*scene_, now_, next) : nullptr;
   if (!scene) scene = std::make_shared<const SceneDescription>(load_scene_document(next, file_));

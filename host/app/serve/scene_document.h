@@ -1,6 +1,6 @@
-// The scene that the viewer shows, as a document that pages change: each change is checked by reading the
-// scene; what does not read is refused and changes nothing. With undo, redo, and the scene of what is valid
-// now. What it holds is bounded. One thread at a time.
+// SceneDocument: the scene that the viewer shows, as a JSON document that pages change, with undo and redo.
+// Each change is checked by reading the scene; an invalid change is refused. Its memory is bounded. Use from
+// one thread at a time.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -15,43 +15,43 @@
 
 namespace sundog {
 
-/// One value of the document is set, or, without `value`, taken out.
+/// Sets a value of the document or, without `value`, removes it.
 struct Change {
-  std::string pointer;  // RFC 6901; "-" appends to an array; objects around it that are missing are made
+  std::string pointer;  // RFC 6901; "-" appends to an array; missing parent objects are created
   std::optional<nlohmann::json> value;
 };
 
-/// As JSON text. Each page gets it whole, twice: as it is, and as the file has it.
+/// Limit of a document as JSON text. Each page receives two: the current one, and the one from the file.
 inline constexpr std::size_t most_document_bytes = std::size_t{16} << 20;
 
-/// Throws SceneError for more than that.
+/// Throws SceneError if `bytes` exceeds most_document_bytes.
 void check_document_size(std::uintmax_t bytes, const std::filesystem::path& file);
 
-/// A whole document as CBOR: several times smaller than its values in memory.
+/// A whole document as CBOR, several times smaller than its values in memory.
 using DocumentStep = std::vector<std::uint8_t>;
 
 class SceneDocument {
  public:
-  /// Opens a scene or model file. Throws SceneError; the document stays as it was.
+  /// Opens a scene or model file. Throws SceneError and then keeps the previous document.
   void open(const std::filesystem::path& file);
-  /// Takes a document that a page sends in place of this one; `file` need not be there: names of files count
-  /// from its folder.
+  /// Replaces the document by one that a page sent. `file` need not exist; file names in the document are
+  /// relative to its folder. Throws SceneError.
   void replace(nlohmann::json document, const std::filesystem::path& file);
-  /// Applies all changes, or throws (SceneError, UsageError) and applies none. Changes of one `gesture` (not
-  /// empty) one after the other are undone together.
+  /// Applies all changes, or throws (SceneError, UsageError) and applies none. Consecutive changes of the
+  /// same `gesture` (not empty) are undone together.
   void apply(const std::vector<Change>& changes, const std::string& gesture);
-  /// False: there is nothing to undo, or to do again.
+  /// Return false if there is nothing to undo or redo.
   bool undo();
   bool redo();
 
   const nlohmann::json& now() const { return now_; }
-  const nlohmann::json& opened() const { return opened_; }  // as the file had it
+  const nlohmann::json& opened() const { return opened_; }  // the document as opened
   const std::filesystem::path& file() const { return file_; }
-  bool is_file() const { return is_file_; }  // opened() is what the file holds
+  bool is_file() const { return is_file_; }  // opened() came from file()
   std::shared_ptr<const SceneDescription> scene() const { return scene_; }
   /// Grows with each change.
   std::uint64_t version() const { return version_; }
-  /// The version that open() or replace() made.
+  /// The version that the last open() or replace() created.
   std::uint64_t opened_version() const { return opened_version_; }
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
@@ -66,7 +66,7 @@ class SceneDocument {
   std::filesystem::path file_;
   bool is_file_ = false;
   std::shared_ptr<const SceneDescription> scene_;
-  std::deque<DocumentStep> past_, future_;  // the newest last
+  std::deque<DocumentStep> past_, future_;  // the newest is last
   std::string gesture_;
   std::uint64_t version_ = 0, opened_version_ = 0;
 };
@@ -74,8 +74,7 @@ class SceneDocument {
 /// Sets or removes one value. Throws UsageError for a pointer that leads nowhere.
 void apply_change(nlohmann::json& document, const Change& change);
 
-/// Arguments of `sundog render` that make the picture of `now` from the file: --set options that turn
-/// `opened` into `now`. Nothing if no --set options do.
+/// The values for `sundog render --set` that turn `opened` into `now`; none if no such options do.
 std::optional<std::vector<std::string>> settings_between(const nlohmann::json& opened,
                                                          const nlohmann::json& now,
                                                          const std::filesystem::path& file);

@@ -1,5 +1,5 @@
-// `sundog serve`: the viewer as a page that a browser on this machine, or at the end of an ssh tunnel, shows.
-// Prints one URL, and serves until it is interrupted.
+// `sundog serve`: serves the viewer as a page to a browser on this machine, or at the end of an ssh tunnel.
+// Prints one URL, and serves until interrupted.
 
 #include <fmt/format.h>
 
@@ -28,10 +28,10 @@ namespace fs = std::filesystem;
 struct ServeOptions {
   std::string scene, port, token_file;
   std::vector<std::string> devices, hosts;
-  std::vector<PublicName> names;  // of `hosts`
+  std::vector<PublicName> names;  // parsed `hosts`
 };
 
-/// The scene that the viewer opens when the command names none.
+/// The scene that the viewer opens if the command names none.
 constexpr const char* first_scene = R"({
   "camera": {"position": [1.5, 1.05, -2.6], "target": [0, -0.02, 0], "fov": 44},
   "image": {"width": 640, "height": 640, "background": {"bottom": [0.01, 0.012, 0.02], "top": [0.11, 0.14, 0.2]}},
@@ -60,7 +60,7 @@ SceneDocument first_document(const ServeOptions& options) {
   return document;
 }
 
-/// Ends the server at a signal, so that what it keeps in files is taken away.
+/// Stops the server at a signal, so that its temporary files are removed.
 class EndsOnSignal {
  public:
   EndsOnSignal(const StopOnSignal& signal, WebServer& server)
@@ -85,7 +85,7 @@ int serve(const ServeOptions& options) {
   const Gate gate = make_gate(server.port(), token, options.names);
   Studio studio(server, std::move(setup), std::move(document));
   fmt::print("http://127.0.0.1:{}/#token={}\n", server.port(), gate.token);
-  flush_standard_output();  // an address that nobody gets is no use
+  flush_standard_output();  // throws if nobody can read the address
   const EndsOnSignal ends(signal, server);
   server.run(gate, studio.handlers());
   return exit_done;

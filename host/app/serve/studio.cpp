@@ -1,4 +1,4 @@
-// Each "do" of a message has a function. A change draws a new generation and notifies all pages.
+// Handles pages' messages, with a function for each "do". A change restarts drawing and goes to all pages.
 #include "app/serve/studio.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Stands for the file's name in errors about JSON that a page has sent.
+/// Replaces the file's name in errors about JSON that a page has sent.
 constexpr const char* page_file = "the page";
 
 std::string text_of(const json& message, const char* key) {
@@ -37,7 +37,7 @@ std::vector<std::string> texts_of(const json& message, const char* key) {
   return texts;
 }
 
-/// A pixel's place in a message. Throws UsageError.
+/// A pixel coordinate in a message. Throws UsageError.
 int pixel_of(const json& message, const char* key) {
   const auto found = message.find(key);
   const double place = found != message.end() && found->is_number() ? found->get<double>() : std::nan("");
@@ -73,7 +73,7 @@ Studio::Studio(WebServer& server, StudioSetup setup, SceneDocument document)
   begin_drawing();
 }
 
-/// No new work, then what the threads use.
+/// Stops the threads' work before the members that it uses are destroyed.
 Studio::~Studio() {
   edits_.stop();
   uploads_.forget_all();  // before anything waits for a driver
@@ -126,14 +126,14 @@ void Studio::begin_drawing() {
   if (versions_.size() > most_versions) versions_.erase(versions_.begin());
 }
 
-/// The caller holds the mutex.
+/// Applies `lights_` to the session. The caller holds the mutex.
 void Studio::show_balance() {
   const std::vector<std::string> groups = light_groups(*drawn_);
   std::vector<glm::vec3> factors;
   for (const std::string& typed : lights_) {
     const auto [name, factor] = parse_light(typed);
     const std::size_t number = number_of_group(groups, name);
-    if (number == 0 && name != "rest") continue;  // an edit has taken it away
+    if (number == 0 && name != "rest") continue;  // an edit has removed the group
     factors.resize(groups.size() + 1, glm::vec3(1));
     factors[number] = factor;
   }
@@ -190,7 +190,7 @@ void Studio::dispatch(ClientId client, const json& message) {
 void Studio::edit(ClientId client, const json& message) {
   const std::vector<Change> changes = changes_of(message);
   std::string gesture = text_of(message, "gesture");
-  if (!gesture.empty()) gesture = fmt::format("{}/{}", client, gesture);  // pages count theirs alike
+  if (!gesture.empty()) gesture = fmt::format("{}/{}", client, gesture);  // pages number their gestures alike
   document_.apply(changes, gesture);
   begin_drawing();
   server_.send_to_all(page_text({{"is", "changed"},
@@ -203,7 +203,7 @@ void Studio::edit(ClientId client, const json& message) {
                                  {"resolved", resolved_json(*document_.scene())}}));
 }
 
-/// All get the scene; the page that asked, where there is nothing to undo as well.
+/// Sends the scene to all pages; only to the page that asked if there was nothing to undo or redo.
 void Studio::step(ClientId client, const json& message, bool back) {
   const bool changed = back ? document_.undo() : document_.redo();
   json scene = scene_message(document_);
@@ -245,7 +245,8 @@ void Studio::set_options(const json& message) {
       {{"is", "options"}, {"split", split_}, {"work_group", work_group_}, {"coarse", settings_.coarse}}));
 }
 
-/// The first balance draws the picture anew, with groups kept apart; later ones only develop it.
+/// Sets the balance of light groups. The first time, draws the picture again with separate groups; later, it
+/// is only developed again.
 void Studio::balance(ClientId client, const json& message) {
   std::vector<std::string> lights = texts_of(message, "lights");
   if (lights.size() > most_light_groups + 1) lights.resize(most_light_groups + 1);

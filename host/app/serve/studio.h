@@ -1,6 +1,6 @@
-// The viewer between its pages and the renderer: one scene that all pages see and change, one render session,
-// messages in and out. Pages' messages are done one after the other on a thread of their own; what waits for
-// a device or encodes a file has another.
+// Studio connects the viewer's pages to the renderer: one scene that all pages see and change, and one render
+// session. One thread handles the pages' messages in order; another does work that waits for a device or
+// encodes a file.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -19,13 +19,13 @@
 namespace sundog {
 
 struct StudioSetup {
-  std::filesystem::path folder;  // whose scenes may be opened
+  std::filesystem::path folder;  // scenes below it may be opened
   std::vector<DeviceInfo> devices, picked;
 };
 
 class Studio {
  public:
-  /// `document` holds a scene. Begins to draw it.
+  /// Starts to draw the scene of `document`.
   Studio(WebServer& server, StudioSetup setup, SceneDocument document);
   ~Studio();
   Studio(const Studio&) = delete;
@@ -44,12 +44,12 @@ class Studio {
   void balance(ClientId client, const nlohmann::json& message);
   void show_balance();
   void pick(ClientId client, const nlohmann::json& message);
-  /// message_text() of what may name files: those that were dropped on the page have no folder.
+  /// message_text() for messages that may name files; removes the folders of uploaded files.
   std::string page_text(const nlohmann::json& message) const;
   void tell_scene();
   void refuse(ClientId client, const nlohmann::json& message, const std::string& place,
               const std::string& reason);
-  WebAnswer answer(const WebRequest& request);  // what reads or changes the document
+  WebAnswer answer(const WebRequest& request);  // on the first thread, except for pictures
   WebAnswer open_upload(const WebRequest& request);
   void open_model(const std::string& name, const std::string& bytes);
   WebAnswer picture(const std::string& format);  // on the second thread
@@ -62,13 +62,13 @@ class Studio {
   Uploads uploads_;
   RenderSession session_;
   SessionSettings settings_;
-  std::vector<std::string> lights_;  // the balance of light groups, as `sundog mix --light` takes it
+  std::vector<std::string> lights_;  // the balance of light groups, as for `sundog mix --light`
   std::string split_ = "dynamic", work_group_ = "auto";
-  std::mutex mutex_;  // for what the threads share: versions_, drawn_
+  std::mutex mutex_;  // guards versions_ and drawn_, which the threads share
   std::map<Generation, std::uint64_t> versions_;
   std::shared_ptr<const SceneDescription> drawn_;
   PictureStream stream_;
-  WorkQueue edits_, asks_;  // last: their threads use all others
+  WorkQueue edits_, asks_;  // last, because their threads use all other members
 };
 
 }  // namespace sundog

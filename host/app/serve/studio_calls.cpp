@@ -1,5 +1,5 @@
-// The studio's HTTP calls: the schema and lists that pages build their panels from, downloads, uploads of
-// scenes. Each call carries the token in its header; only POST changes state.
+// Answers the pages' HTTP calls: the schema and lists for their panels, downloads, and uploads of scenes.
+// Each call has the token in its header; only POST changes state.
 #include <fmt/format.h>
 
 #include "app/commands/formulas_command.h"
@@ -29,7 +29,7 @@ WebAnswer plain(int status, std::string text) {
 
 WebAnswer json_answer(const json& value) { return {200, json_type, message_text(value), ""}; }
 
-/// The channels of a settled frame that `sundog render` would write into that file.
+/// The image with only its first `channels` channels, as `sundog render` would write it.
 Image with_channels(const Image& image, int channels) {
   if (image.channels <= channels) return image;
   Image out(image.width, image.height, channels);
@@ -63,7 +63,7 @@ WebAnswer Studio::answer(const WebRequest& request) {
   }
 }
 
-/// A model that was dropped on the page is all there is in its folder: files that it names are not found.
+/// Opens a model that was dropped on the page, alone in its folder: files that it names are missing.
 void Studio::open_model(const std::string& name, const std::string& bytes) {
   try {
     document_.open(uploads_.keep(name, bytes));
@@ -78,14 +78,14 @@ void Studio::open_model(const std::string& name, const std::string& bytes) {
   uploads_.forget_others();
 }
 
-/// A scene or model that was dropped on the page, or a scene that a link carries. Files that a scene names
-/// count from the folder of the scene before.
+/// Opens a scene or model that was dropped on the page, or a scene from a link. File names in a scene are
+/// relative to the previous scene's folder.
 WebAnswer Studio::open_upload(const WebRequest& request) {
   const std::string name = safe_file_name(query_value(request.query, "name"));
   if (is_model_file(name)) {
     open_model(name, request.body);
   } else {
-    check_document_size(request.body.size(), name);  // before its values take many times as much
+    check_document_size(request.body.size(), name);  // its values would take many times as much memory
     document_.replace(parse_json(request.body, name), document_.file().parent_path() / name);
   }
   begin_drawing();
@@ -109,8 +109,8 @@ WebAnswer Studio::picture(const std::string& format) {
           encode_image(image, name, {}, {.shot = shot_of(*scene)}), name};
 }
 
-/// A scene that no file holds as it was opened is named as the page saves it; a model that was dropped on the
-/// page has its own name, since the folder that it lies in goes with the server.
+/// The command line that renders this picture. Names a scene that is in no file as the page would save it,
+/// and an uploaded model without its folder, which is removed with the server.
 std::string Studio::command_line() const {
   const fs::path file = document_.file();
   std::error_code ignored;

@@ -1,4 +1,4 @@
-// One connection that speaks HTTP: each request passes the gate before its body is read.
+// An HTTP connection: reads requests, checks each at the gate before reading its body, and sends the answers.
 #pragma once
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ inline RequestHead head_of(const http::request<http::string_body>& request) {
   return head;
 }
 
-/// A connection that speaks HTTP, one request after the other, until one of them makes it a socket.
+/// An HTTP connection that handles requests in order, until one of them turns it into a WebSocket.
 class WebConnection : public std::enable_shared_from_this<WebConnection> {
  public:
   WebConnection(WebState& server, tcp::socket&& socket)
@@ -40,7 +40,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   void read_head() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(server_.limits.header_bytes));
-    parser_->body_limit(boost::none);  // check_body() says how long it is
+    parser_->body_limit(boost::none);  // check_body() limits it
     stream_.expires_after(std::chrono::seconds(server_.limits.header_seconds));
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](NetError error, std::size_t) {
@@ -53,7 +53,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
                             });
   }
 
-  /// Answers and closes: the rest of the request is not read.
+  /// Answers and closes the connection without reading the rest of the request.
   void refuse(const Refusal& refusal) {
     write({refusal.status, "text/plain; charset=utf-8", refusal.reason + "\n", ""}, false, refusal.allow);
   }
@@ -81,7 +81,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     });
   }
 
-  /// By its length, before a byte of it is held.
+  /// Refuses a body by its length, before reading it.
   Refusal check_body() const {
     if (parser_->chunked()) return {411, "wanted a Content-Length"};
     const std::uint64_t bytes = parser_->content_length().value_or(0);
@@ -125,19 +125,19 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
     response_.keep_alive(keep);
     response_.body() = answer.body;
     response_.prepare_payload();
-    if (head_only_) response_.body().clear();  // its length stands in the head
+    if (head_only_) response_.body().clear();  // the head states its length
     stream_.expires_after(std::chrono::seconds(server_.limits.body_seconds));
     http::async_write(stream_, response_, [self = shared_from_this(), keep](NetError error, std::size_t) {
       if (error) return;
       if (keep) return self->read_head();
-      NetError ignored;  // the other side may have closed first
+      NetError ignored;  // the client may have closed first
       std::ignore = self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
       self->drain();
     });
   }
 
-  /// A connection that is closed with unread bytes is reset, and the other side may lose the answer: some
-  /// more are read.
+  /// Reads up to 4 MiB more before closing: closing with unread bytes resets the connection, and the client
+  /// may lose the answer.
   void drain() {
     stream_.expires_after(std::chrono::seconds(2));
     stream_.async_read_some(asio::buffer(scrap_),
@@ -149,7 +149,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
 
   WebState& server_;
   Counted counted_;
-  std::optional<Counted> held_;  // the bytes of its body
+  std::optional<Counted> held_;  // counts the body's bytes
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{64 << 10};
   std::optional<http::request_parser<http::string_body>> parser_;

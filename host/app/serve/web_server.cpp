@@ -1,5 +1,5 @@
-// Accepts connections with Boost.Beast, asynchronously on one thread, so that a slow or lost connection
-// delays no other; messages from other threads are posted to it.
+// Accepts connections with Boost.Beast, asynchronously on one thread, so that a slow or lost connection does
+// not delay others. Other threads post their messages to this thread.
 #include "app/serve/web_server.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace sundog {
 void WebState::accept_next() {
   acceptor.async_accept([this](NetError error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (error) {  // as when no descriptor is left
+    if (error) {  // e.g. no descriptor is left
       pause.expires_after(std::chrono::milliseconds(100));
       pause.async_wait([this](NetError stopped) {
         if (!stopped) accept_next();
@@ -22,7 +22,7 @@ void WebState::accept_next() {
       return;
     }
     if (connections < limits.connections) {
-      NetError ignored;  // a connection without it is slower, no more
+      NetError ignored;  // without this option, the connection is only slower
       std::ignore = socket.set_option(tcp::no_delay(true), ignored);
       std::make_shared<WebConnection>(*this, std::move(socket))->read_head();
     }
@@ -52,8 +52,8 @@ const WebLimits& WebServer::limits() const { return state_->limits; }
 
 namespace {
 
-/// Runs handlers until the server stops. False: an exception escaped a handler (no memory for its bytes); it
-/// ends that handler's connection alone.
+/// Runs handlers until the server stops. Returns false if an exception escaped a handler (out of memory),
+/// which ends only that handler's connection.
 bool runs_to_its_end(asio::io_context& io) {
   try {
     io.run();
@@ -78,8 +78,8 @@ void WebServer::stop() { state_->io.stop(); }
 
 namespace {
 
-/// Has the server's thread call `use` for each socket, or for that of one client. A socket may take itself
-/// off the list meanwhile.
+/// Makes the server's thread call `use` for each socket, or for one client's. Iterates over a copy of the
+/// list, because `use` may remove a socket.
 template <class Use>
 void post_to(WebState& state, std::optional<ClientId> client, Use use) {
   asio::post(state.io, [&state, client, use = std::move(use)] {

@@ -1,5 +1,5 @@
-// One page's WebSocket: its first message is the token, "ack" acknowledges a picture, all else is the
-// handlers'. At most one picture is under way, and the newest of those that wait is the next.
+// A page's WebSocket: its first message is the token, "ack" acknowledges a picture, and all others go to the
+// handlers. Sends a picture only after the previous one is acknowledged, and then the newest.
 #pragma once
 #include <chrono>
 #include <deque>
@@ -94,7 +94,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     return ++messages_ <= server_.limits.messages_a_second;
   }
 
-  /// Says why in the close frame; what is being written is not waited for.
+  /// Closes with the reason in the close frame, or at once if a write is in progress.
   void refuse(const char* why) {
     if (writing_) return drop();
     writing_ = true;
@@ -131,11 +131,11 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   websocket::stream<beast::tcp_stream> stream_;
   asio::steady_timer patience_;
   beast::flat_buffer buffer_;
-  ClientId id_ = 0;  // 0: its token has not come
+  ClientId id_ = 0;  // 0: the token has not arrived
   std::deque<SharedText> texts_;
   std::size_t queued_bytes_ = 0;
-  SharedText picture_, now_;                            // waits; is written
-  bool writing_ = false, owes_ = false, gone_ = false;  // owes: a picture is not acknowledged
+  SharedText picture_, now_;                            // waiting; being written
+  bool writing_ = false, owes_ = false, gone_ = false;  // owes_: a picture is not acknowledged
   std::chrono::steady_clock::time_point second_{};
   int messages_ = 0;
 };

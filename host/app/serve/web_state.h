@@ -1,5 +1,5 @@
-// State that a WebServer's connections share. Only web_server.cpp includes this header and its neighbours
-// web_socket.h and web_connection.h, so that one source alone includes Boost.
+// State that a WebServer's connections share. Only web_server.cpp includes this header, web_socket.h and
+// web_connection.h, so that only one source includes Boost.
 #pragma once
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -27,7 +27,7 @@ class WebSocket;
 
 struct WebState {
   WebLimits limits;
-  // Before `io`, whose end is that of the connections that count themselves.
+  // Declared before `io`, whose destruction ends the connections, which update these counts.
   std::size_t connections = 0, upgraded = 0, held_bytes = 0;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
@@ -41,7 +41,7 @@ struct WebState {
   void accept_next();
 };
 
-/// Counts while it lives.
+/// Adds `by` to the count during its lifetime.
 class Counted {
  public:
   explicit Counted(std::size_t& count, std::size_t by = 1) : count_(count), by_(by) { count_ += by_; }

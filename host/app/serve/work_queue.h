@@ -18,8 +18,8 @@ class WorkQueue {
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
-  /// False: too much is waiting already, or the queue has stopped. `bytes`: what the task holds. Tasks answer
-  /// for their own errors; one that escapes them (no memory for the answer) ends that task alone.
+  /// Returns false if too much is waiting or the queue has stopped. `bytes`: memory that the task holds.
+  /// Tasks handle their own errors; an exception that escapes (out of memory) ends only that task.
   bool post(std::function<void()> task, std::size_t bytes = 0) {
     {
       const std::lock_guard lock(mutex_);
@@ -71,9 +71,9 @@ class WorkQueue {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Task> tasks_;
-  std::size_t bytes_ = 0;  // of what waits
+  std::size_t bytes_ = 0;  // held by waiting tasks
   bool stopped_ = false;
-  std::thread thread_;  // last: it uses all others
+  std::thread thread_;  // last, because it uses all other members
 };
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
-// Applies glow, the red modifier, the reference curve and the screen's curve with the numbers of the
-// Academy's transforms.
+// Computes the transform in four steps (glow, red modifier, reference curve, screen curve) with the numbers
+// of the Academy's transforms.
 #include "base/colors/aces.h"
 
 #include <algorithm>
@@ -21,13 +21,13 @@ double saturation(const dvec3& c) {
   return (std::max(most, 1e-10) - std::max(least, 1e-10)) / std::max(most, 1e-2);
 }
 
-/// From 0 to 1 as x goes from -2 to 2.
+/// Rises smoothly from 0 at x = -2 to 1 at x = 2.
 double smooth_step(double x) {
   const double t = std::max(1 - std::abs(x / 2), 0.0);
   return 0.5 + std::copysign(0.5 * (1 - t * t), x);
 }
 
-/// Dark colours that are saturated glow.
+/// Brightens dark, saturated colours.
 dvec3 with_glow(const dvec3& c) {
   constexpr double gain = 0.05, middle = 0.08, chroma_weight = 1.75;
   const double chroma = std::sqrt(std::max(0.0, c.z * (c.z - c.y) + c.y * (c.y - c.x) + c.x * (c.x - c.z)));
@@ -36,14 +36,14 @@ dvec3 with_glow(const dvec3& c) {
   return c * (1 + gain * smooth_step((saturation(c) - 0.4) / 0.2) * fading);
 }
 
-/// A cubic B-spline of the width 1 about 0, 1 there.
+/// A cubic B-spline of width 1 around 0, scaled to 1 at 0.
 double bump(double x) {
   const double t = 4 * std::abs(x);
   if (t >= 2) return 0;
   return 1.5 * (t < 1 ? 2.0 / 3 - t * t + t * t * t / 2 : (2 - t) * (2 - t) * (2 - t) / 6);
 }
 
-/// Saturated reds become darker.
+/// Darkens saturated reds.
 dvec3 with_tamed_red(dvec3 c) {
   constexpr double scale = 0.82, pivot = 0.03, width = 135;  // degrees of hue
   const double hue = std::atan2(std::sqrt(3.0) * (c.y - c.z), 2 * c.x - c.y - c.z) * 180 / std::numbers::pi;
@@ -51,7 +51,7 @@ dvec3 with_tamed_red(dvec3 c) {
   return c;
 }
 
-/// A quadratic B-spline over even knots from `begin` to `end`.
+/// A uniform quadratic B-spline from `begin` to `end`.
 struct Segment {
   double begin, end;
   std::span<const double> coefficients;
@@ -66,7 +66,7 @@ struct Segment {
   }
 };
 
-/// Common logarithms of luminance, from the scene's to the cinema's of 10,000 nits.
+/// Maps the decimal logarithm of the scene's luminance to that of a 10,000-nit cinema screen, in nits.
 double reference_curve(double x) {
   static constexpr std::array<double, 6> low = {-4,           -4,          -3.1573765773, -0.4852499958,
                                                 1.8477324706, 1.8477324706},
@@ -77,7 +77,7 @@ double reference_curve(double x) {
   return x < middle ? dark.at(x) : bright.at(x);
 }
 
-/// From there to the nits of a screen of 48.
+/// Maps the result of reference_curve() to the decimal logarithm of nits on a 48-nit screen.
 double screen_curve(double x) {
   static constexpr std::array<double, 10> low = {-1.6989700043, -1.6989700043, -1.4779, -1.2291,
                                                  -0.8648,       -0.448,        0.00518, 0.4511080334,
@@ -94,7 +94,7 @@ double screen_curve(double x) {
                    : Segment{pivot, end, std::span(high).first(9)}.at(x);
 }
 
-/// A linear value of the screen, 0 to 1.
+/// The screen's linear value for a channel: 0 at black, 1 at white.
 double shown(double light) {
   constexpr double black = 0.02, white = 48;
   const double nits = std::pow(10, screen_curve(reference_curve(std::log10(std::max(light, 1e-10)))));

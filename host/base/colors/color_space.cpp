@@ -1,4 +1,4 @@
-// Matrices by primaries and white point; white points adapt by Bradford's cone responses.
+// Computes matrices from primaries and white points, which are adapted by Bradford's cone responses.
 #include "base/colors/color_space.h"
 
 namespace sundog {

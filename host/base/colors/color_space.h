@@ -1,10 +1,10 @@
-// Spaces of linear colours: their primaries, and matrices from one to another.
+// Linear colour spaces: their primaries, and matrices that convert between them.
 #pragma once
 #include <glm/glm.hpp>
 
 namespace sundog {
 
-/// Chromaticities (CIE x and y) of red, green, blue and white.
+/// Chromaticities (CIE 1931 x and y) of red, green, blue and white.
 struct Primaries {
   glm::dvec2 red, green, blue, white;
 };
@@ -15,16 +15,16 @@ inline constexpr Primaries ap0_primaries = {{0.7347, 0.2653}, {0, 1}, {0.0001, -
 inline constexpr Primaries ap1_primaries = {
     {0.713, 0.293}, {0.165, 0.83}, {0.128, 0.044}, {0.32168, 0.33767}};
 
-/// CIE XYZ of the luminance 1.
+/// CIE XYZ of a chromaticity at luminance 1.
 glm::dvec3 xyz_of(glm::dvec2 chromaticity);
 
-/// CIE XYZ of colours; white has the luminance 1. Not finite for primaries on one line.
+/// The matrix from a space's colours to CIE XYZ; white has luminance 1. Not finite for collinear primaries.
 glm::dmat3 xyz_from(const Primaries& space);
 
-/// XYZ under one white as it would be under the other: Bradford's adaptation (Lam 1985).
+/// The matrix that adapts XYZ from one white to another (Bradford: Lam 1985).
 glm::dmat3 adaptation(glm::dvec2 from_white, glm::dvec2 to_white);
 
-/// From one space's colours to the other's, white to white.
+/// The matrix from one space's colours to the other's; maps white to white.
 glm::dmat3 conversion(const Primaries& from, const Primaries& to);
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
 // Writes header, table and tags in the layout of ICC.1:2022 (profile version 4.4), which all readers of
-// version 4 take, with primaries adapted to D50.
+// version 4 accept, with primaries adapted to D50.
 #include "base/colors/icc_profile.h"
 
 #include <cmath>
@@ -18,14 +18,14 @@ std::string number(std::uint32_t value, int bytes = 4) {
   return text;
 }
 
-/// s15Fixed16Number.
+/// Encodes an s15Fixed16Number.
 std::string fixed(double value) {
   return number(static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value * 65536))));
 }
 
 std::string xyz(const glm::dvec3& v) { return "XYZ " + number(0) + fixed(v.x) + fixed(v.y) + fixed(v.z); }
 
-/// A text of ASCII letters in one language.
+/// Encodes an ASCII text in one language.
 std::string text_tag(const std::string& text) {
   constexpr std::uint32_t begin = 28, record = 12;
   std::string tag = "mluc" + number(0) + number(1) + number(record) + "enUS" +
@@ -34,7 +34,7 @@ std::string text_tag(const std::string& text) {
   return tag;
 }
 
-/// The curve of the type 3: (a x + b)^g from d on, c x below.
+/// The sRGB curve as a parametric curve of type 3: (a x + b)^g for x >= d, else c x.
 std::string srgb_curve() {
   std::string tag = "para" + number(0) + number(3, 2) + number(0, 2);
   for (const double value : {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}) tag += fixed(value);

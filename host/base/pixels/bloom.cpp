@@ -1,5 +1,5 @@
-// Adds three bells of different widths, each three means over a window in turn (Wells 1986, "Efficient
-// synthesis of Gaussian filters by cascaded uniform filters").
+// Adds three Gaussians, each approximated by three box filters in turn (Wells 1986, "Efficient synthesis of
+// Gaussian filters by cascaded uniform filters").
 #include "base/pixels/bloom.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Line {
   std::ptrdiff_t step, count;
 };
 
-/// Replaces each value by the mean of those at most `reach` away; at the ends, of those that there are.
+/// Replaces each value by the mean of the values at most `reach` away, without those beyond the ends.
 void average(const Line& line, std::ptrdiff_t reach, std::vector<double>& sums) {
   const auto count = line.count;
   sums.assign(static_cast<std::size_t>(count) + 1, 0);

@@ -18,7 +18,7 @@ namespace {
 // Upper bound over EXR's compression methods.
 constexpr std::uint64_t pixels_a_byte = 2000;
 
-// Memory that any file may request for a block of lines or a tile.
+// A block of lines or a tile may request this much in any file.
 constexpr std::uint64_t block_bytes = std::uint64_t{256} << 20, tile_pixels = std::uint64_t{1} << 22;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error("the EXR file " + what); }
@@ -58,7 +58,7 @@ struct Shape {
   std::int64_t width = 0, height = 0;
   std::uint64_t pixel_bytes = 0;  // over all channels
   bool alpha = false;
-  std::uint64_t lines = 1;  // compressed together
+  std::uint64_t lines = 1;  // lines compressed together
   std::uint64_t tile_pixels = 0;
 };
 

@@ -1,5 +1,4 @@
-// Decodes BMP and TGA, which textures of old models have, with stb_image, whose code is compiled here and
-// nowhere else.
+// Decodes BMP and TGA, the texture formats of old models, with stb_image, whose code is compiled only here.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -18,7 +17,7 @@
 namespace sundog {
 namespace {
 
-/// stb_image reads zeros behind a file's end, so the end is watched here.
+/// Tells whether stb_image read beyond the end, where it silently reads zeros.
 struct WatchedBytes {
   std::string_view left;
   bool short_of = false;

@@ -1,4 +1,5 @@
-// OpenEXR: colour as R, G, B(, A), each AOV as a layer of 32-bit float channels ("depth.Z", "normal.X").
+// Reads and writes EXR with OpenEXR: colour as R, G, B(, A), each AOV as a layer of 32-bit float channels
+// ("depth.Z", "normal.X").
 #include <fmt/format.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -68,7 +69,7 @@ class MemoryIn : public Imf::IStream {
 
 using Suffixes = std::vector<std::string>;
 
-/// Whether it is one of the parts of light (kernels/shared/light_parts.h), or the light of a group of lights.
+/// Whether the AOV is a part of the light (kernels/shared/light_parts.h) or the light of a light group.
 bool is_light_part(std::string_view aov) {
   return aov.ends_with("_direct") || aov.ends_with("_indirect") || aov == "emission" || aov == "sky" ||
          aov.starts_with("light_");
@@ -95,7 +96,7 @@ void add_slice(Imf::FrameBuffer& buffer, const std::string& name, const Sample* 
                 Imf::Slice(type, base, pixel, pixel * static_cast<std::size_t>(shape.width), 1, 1, fill));
 }
 
-/// Moves the slices so that they begin at `corner` of the file: the library counts from its pixel (0, 0).
+/// Moves the slices so that they begin at the file's `corner`, because the library counts from pixel (0, 0).
 void begin_at(Imf::FrameBuffer& buffer, const Imath::V2i& corner) {
   for (auto at = buffer.begin(); at != buffer.end(); ++at)
     at.slice().base -= static_cast<std::ptrdiff_t>(at.slice().xStride) * corner.x +
@@ -121,7 +122,7 @@ void convert(Image& image, const glm::dmat3& matrix) {
   }
 }
 
-/// Colours of another space become those of sRGB.
+/// Converts colours of another space to sRGB primaries.
 void convert_to_srgb(Image& image, const Imf::Header& header) {
   if (!Imf::hasChromaticities(header)) return;
   const Imf::Chromaticities found = Imf::chromaticities(header), srgb = chromaticities(srgb_primaries);
@@ -165,13 +166,13 @@ class Reader {
   const Imf::ChannelList& channels() const { return file_.header().channels(); }
   bool has(const std::string& name) const { return channels().findChannel(name) != nullptr; }
 
-  /// The channels of the picture itself; others are further layers.
+  /// The channels of the picture itself; the others are layers.
   Suffixes color_channels() const {
     if (has("R") || has("G") || has("B")) return {"R", "G", "B", "A"};
     return {"Y", "A"};
   }
 
-  /// Reads the named channels into one image, in that order; absent ones are `fill` everywhere.
+  /// Reads the named channels into one image, in that order; absent channels are filled with `fill`.
   Image read(const Suffixes& names, std::vector<float> fill = {}) {
     fill.resize(names.size());
     Image image(width_, height_, static_cast<int>(names.size()));
@@ -232,7 +233,7 @@ Imath::M44f row_matrix(const glm::dmat4& m) {
   return rows;
 }
 
-/// Matrices of row vectors, seconds and metres, as ImfStandardAttributes.h has them.
+/// Adds matrices for row vectors, seconds and metres, as ImfStandardAttributes.h defines them.
 void add_shot(Imf::Header& header, const Shot& shot) {
   Imf::addWorldToCamera(header, row_matrix(shot.world_to_camera));
   Imf::addWorldToNDC(header, row_matrix(shot.world_to_ndc));
@@ -244,7 +245,7 @@ void add_shot(Imf::Header& header, const Shot& shot) {
   if (shot.exposure_seconds > 0) Imf::addExpTime(header, static_cast<float>(shot.exposure_seconds));
 }
 
-/// The channels of an image on their way into a file, some rows at a time.
+/// Converts an image's channels for a file, some rows at a time.
 class ChannelRows {
  public:
   ChannelRows(const Image& image, ExrColor color, const std::optional<glm::dmat3>& matrix, Suffixes names,
@@ -261,7 +262,7 @@ class ChannelRows {
       header.channels().insert(name, Imf::Channel(halves_.empty() ? Imf::FLOAT : Imf::HALF));
   }
 
-  /// Adds `count` rows from y on.
+  /// Adds `count` rows, starting with row y.
   void add_to(Imf::FrameBuffer& buffer, int y, int count) {
     const std::ptrdiff_t values = std::ptrdiff_t{count} * image_.width * image_.channels;
     std::copy_n(image_.pixel(0, y), values, rows_.data.begin());
@@ -283,9 +284,9 @@ class ChannelRows {
   std::vector<half> halves_;
 };
 
-constexpr int rows_of_block = 16;  // that a file compresses together
+constexpr int rows_of_block = 16;  // a file compresses them together
 
-/// How many blocks of rows are compressed at once: one a thread, as far as copies of them are small.
+/// How many blocks of rows to compress at once: one per thread, as long as their copies take at most 64 MiB.
 int blocks_at_once(const Image& image, const AovImages& aovs) {
   std::size_t bytes = image.data.size() * sizeof(float);
   for (const auto& [name, layer] : aovs) bytes += layer.data.size() * sizeof(float);
@@ -299,7 +300,7 @@ void share_exr_work(unsigned threads) {
   try {
     Imf::setGlobalThreadCount(static_cast<int>(threads));
   } catch (const std::exception&) {
-    // The threads that there are do the work.
+    // the existing threads do the work
   }
 }
 
@@ -317,7 +318,7 @@ std::string encode_exr(const Image& image, const AovImages& aovs, const FileOpti
   Imf::addXDensity(header, static_cast<float>(options.dpi));
   if (options.shot) add_shot(header, *options.shot);
   for (const auto& [name, text] : options.texts) {
-    if (name == "capDate") Imf::addUtcOffset(header, 0);  // it is universal time
+    if (name == "capDate") Imf::addUtcOffset(header, 0);  // the date is in UTC
     header.insert(name, Imf::StringAttribute(text));
     text_bytes += name.size() + text.size() + 32;
   }

@@ -1,6 +1,6 @@
-// Reads Radiance pictures (Ward, "Real Pixels", Graphics Gems II): text lines, a blank one, "-Y height +X
+// Reads Radiance pictures (Ward, "Real Pixels", Graphics Gems II): text lines, a blank line, "-Y height +X
 // width", then scanlines of red, green, blue mantissas and a shared exponent, flat or run-length coded.
-// stb_image's reader never ends on truncated files.
+// stb_image's reader would loop forever on truncated files.
 #include <fmt/format.h>
 
 #include <array>
@@ -73,8 +73,8 @@ void read_runs(Bytes& bytes, std::vector<Rgbe>& row, std::size_t component) {
   }
 }
 
-/// Decodes the older form: flat pixels, where (1, 1, 1, n) repeats the last pixel n times and each
-/// consecutive mark counts 256 times the one before.
+/// Decodes the older form: flat pixels, where (1, 1, 1, n) repeats the last pixel n times, and each
+/// consecutive mark counts 256 times as much as the previous mark.
 void read_flat(Bytes& bytes, std::vector<Rgbe>& row, Rgbe pixel) {
   unsigned shift = 0;
   for (std::size_t x = 0; x < row.size();) {

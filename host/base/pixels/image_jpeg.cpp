@@ -1,4 +1,4 @@
-// Decodes JPEG with libjpeg-turbo. Grey stays grey.
+// Decodes JPEG with libjpeg-turbo, to one channel if the file is grey.
 #include <fmt/format.h>
 #include <turbojpeg.h>
 
@@ -18,7 +18,7 @@ struct DestroyJpeg {
 /// A Huffman-coded block of 64 pixels takes at least a bit; doubled for arithmetic coding.
 constexpr std::int64_t jpeg_pixels_a_byte = 1024;
 
-/// libjpeg invents missing pixels with a warning; other warnings are harmless.
+/// Throws for errors and warnings, except harmless ones: libjpeg only warns when it invents missing pixels.
 void check_jpeg(void* handle, int result) {
   if (result == 0) return;
   const std::string_view reason = tjGetErrorStr2(handle);
@@ -26,7 +26,7 @@ void check_jpeg(void* handle, int result) {
   throw std::runtime_error(fmt::format("a bad JPEG image: {}", reason));
 }
 
-/// Adobe stores inks inverted: 255 is no ink.
+/// Converts CMYK to RGB. Adobe stores inks inverted: 255 is no ink.
 void colors_from_inks(std::vector<std::uint8_t>& data) {
   for (std::size_t i = 0; i + 3 < data.size(); i += 4) {
     const unsigned black = data[i + 3];

@@ -1,5 +1,5 @@
-// One pass makes up to six levels while edges are even, so that rows stay in the cache; odd edges take
-// weighted means of three pixels.
+// Computes up to six levels in one pass while edges are even, so that rows stay in the cache; odd edges take
+// weighted means of three pixels, one level per pass.
 #include "base/pixels/image_levels.h"
 
 #include <tbb/blocked_range.h>
@@ -26,7 +26,7 @@ struct LinearLevel {
   std::vector<float> data;
 };
 
-/// Linear value to sRGB byte, in steps fine enough that the result is within a quarter of a level.
+/// Maps a linear value to an sRGB byte, in steps so fine that the error is at most a quarter of a level.
 constexpr std::size_t srgb_steps = std::size_t{1} << 14;
 const std::vector<std::uint8_t>& srgb_bytes() {
   static const auto table = [] {
@@ -72,7 +72,7 @@ class LevelReader {
     const LevelReader& read = *this;
     return mean_of_pixels<channels>(read(at), read(at + 1), read(at + width), read(at + width + 1));
   }
-  /// A level's rows have been passed on already.
+  /// Does nothing: the level's rows have already been passed on.
   void pass_rows(int, int, const TakeRow&) const {}
 
  private:
@@ -135,7 +135,7 @@ class SampleReader {
   std::array<float, 256> table_{}, plain_{};
 };
 
-/// Weights of the source pixels from 2 i on that make pixel `i` of the halved edge.
+/// Weights of the source pixels 2 i, 2 i + 1 and 2 i + 2 for pixel `i` of the halved edge.
 std::array<float, 3> weights_of(int edge, int i) {
   if (edge == 1) return {1, 0, 0};
   if (edge % 2 == 0) return {0.5f, 0.5f, 0};
@@ -171,8 +171,8 @@ std::uint16_t word_of(float value, Sample kind) {
                               : static_cast<std::uint16_t>(rounded(unit_clamped(value) * 65535));
 }
 
-/// Converts `count` linear pixels to samples. `table` maps to sRGB bytes; empty for linear samples. Colours
-/// weighted by alpha are divided by it.
+/// Converts `count` linear pixels to samples: sRGB for colours in bytes, else linear. Divides colours that
+/// were weighted by alpha by it.
 template <std::size_t channels>
 void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse use, std::uint8_t* to) {
   const bool by_alpha = use == SampleUse::color_by_alpha && channels == 4;
@@ -197,7 +197,7 @@ void store_pixels(const float* from, std::size_t count, Sample kind, SampleUse u
 /// Levels per pass; few enough that a task's rows stay in the cache.
 constexpr int most_steps = 6;
 
-/// Computes the levels after one, holding at most two float rows per level.
+/// Computes the levels that follow a level, holding at most two float rows per level.
 template <std::size_t channels, class Read>
 class LevelMaker {
  public:
@@ -206,8 +206,8 @@ class LevelMaker {
              const TakeRow& take)
       : read_(read), width_(width), height_(height), level_(level), kind_(kind), use_(use), take_(take) {}
 
-  /// Makes up to `most` levels while edges are even, at least one. Returns the last one, and adds their
-  /// number to `made`.
+  /// Makes at least one level, and up to `most` while edges are even. Returns the last level, and adds the
+  /// number of levels to `made`.
   LinearLevel make(int most, std::size_t& made) {
     const auto evenly = [](int edge) { return std::countr_zero(static_cast<unsigned>(edge)); };
     even_ = width_ % 2 == 0 && height_ % 2 == 0;
@@ -227,7 +227,7 @@ class LevelMaker {
   }
 
  private:
-  /// Two float rows of each level but the last, and a row of samples.
+  /// Two float rows of each level except the last, and a row of samples.
   struct Scratch {
     std::array<std::vector<float>, most_steps> pairs;
     std::vector<std::uint8_t> samples;
@@ -244,7 +244,7 @@ class LevelMaker {
     return scratch;
   }
 
-  /// Makes row `y` of the level `step` after the source, and first the rows that it averages.
+  /// Makes row `y` of the level that is `step` levels after the source, after the rows that it averages.
   void make_row(int step, int y, float* to, Scratch& scratch) const {
     const auto columns = static_cast<std::size_t>(width_of(step));
     if (step == 1) {

@@ -1,5 +1,5 @@
-// Portable float maps (Debevec): "PF" for colour, "Pf" for grey, width, height, and a scale whose sign gives
-// the byte order (negative: little-endian); then rows, bottom first.
+// Reads and writes portable float maps (Debevec): "PF" for colour or "Pf" for grey, width, height, and a
+// scale whose sign gives the byte order (negative: little-endian); then rows, bottom first.
 #include <fmt/format.h>
 
 #include <bit>

@@ -1,4 +1,4 @@
-// Decodes PNG with libspng, under limits set before decoding; the most common files with png_pixels.h.
+// Encodes and decodes PNG with libspng, under limits; png_pixels.h decodes the most common files.
 #include <fmt/format.h>
 #include <spng.h>
 
@@ -29,7 +29,7 @@ void check_png(int error) {
   if (error) throw std::runtime_error(fmt::format("a bad PNG image: {}", spng_strerror(error)));
 }
 
-/// For bytes that outlive it.
+/// A decoder for `bytes`, which must outlive it.
 Context decoder_of(std::string_view bytes) {
   Context context(spng_ctx_new(0), spng_ctx_free);
   if (!context) throw std::bad_alloc();
@@ -45,17 +45,17 @@ std::optional<float> decoding_exponent(spng_ctx* context) {
   spng_iccp profile{};
   std::uint32_t gamma = 0;  // 100000 times the encoding exponent
   if (!spng_get_srgb(context, &intent) || !spng_get_iccp(context, &profile)) return {};
-  // Writers of sRGB files state 0.45455.
+  // Programs that write sRGB files state 0.45455.
   if (spng_get_gama_int(context, &gamma) || gamma == 0 || (gamma >= 45000 && gamma <= 46000)) return {};
   return 1e5f / static_cast<float>(gamma);
 }
 
-/// The output format; grey stays grey unless something is transparent.
+/// The output format: grey for a grey file without transparency, else RGBA.
 spng_format format_of(const spng_ihdr& header, bool transparent, StoredImage& stored) {
   const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && !transparent;
   stored.channels = grey ? 1 : 4;
   stored.sample = header.bit_depth == 16 ? StoredImage::Sample::word : StoredImage::Sample::byte;
-  if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in the machine's order
+  if (grey) return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;  // words in native byte order
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
 }
 
@@ -90,9 +90,9 @@ void check_encoder(int error) {
   if (error && error != SPNG_EOI) throw std::runtime_error(fmt::format("PNG: {}", spng_strerror(error)));
 }
 
-/// The values of sRGB, for programs that know no sRGB chunk (PNG, third edition, 11.3.2.5), and the density.
-/// With a profile, which stays in use until the image is encoded, an iCCP chunk takes the place of the sRGB
-/// chunk.
+/// Adds an sRGB chunk, sRGB's gamma and primaries for programs that ignore this chunk (PNG, third edition,
+/// 11.3.2.5), and the density. With a profile, which must live until the image is encoded, an iCCP chunk
+/// replaces the sRGB chunk.
 void tag_as_srgb(spng_ctx* context, int dpi, std::string& profile) {
   spng_chrm_int primaries{31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
   spng_iccp chunk{"sRGB", profile.size(), profile.data()};
@@ -104,7 +104,7 @@ void tag_as_srgb(spng_ctx* context, int dpi, std::string& profile) {
   check_encoder(spng_set_phys(context, &density));
 }
 
-/// The texts stay in use until the image is encoded.
+/// `texts` must live until the image is encoded.
 void add_texts(spng_ctx* context, const ImageTexts& texts) {
   static constexpr char none[] = "";  // neither a language nor a translation
   std::vector<spng_text> chunks;
@@ -112,7 +112,7 @@ void add_texts(spng_ctx* context, const ImageTexts& texts) {
     spng_text chunk{.keyword = "",
                     .type = SPNG_ITXT,
                     .length = text.size(),
-                    .text = const_cast<char*>(text.data()),  // it is only read
+                    .text = const_cast<char*>(text.data()),  // libspng only reads it
                     .compression_flag = 0,
                     .compression_method = 0,
                     .language_tag = const_cast<char*>(none),
@@ -129,17 +129,17 @@ int append_bytes(spng_ctx*, void* to, void* bytes, std::size_t size) {
   return 0;
 }
 
-/// `fill(y, row)` writes a row's samples, words in the machine's order. With `file` the colours are sRGB.
+/// `fill(y, row)` writes a row's samples, words in native byte order. With `file`, tags the colours as sRGB.
 template <class Fill>
 std::string encode_rows(spng_ihdr header, std::size_t row_bytes, const FileOptions* file, const Fill& fill) {
-  constexpr int level = 4;  // of zlib: half the time of its default, and hardly larger
-  constexpr int filters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;  // a fifth less time, as small
+  constexpr int level = 4;  // zlib's: half the time of its default, hardly larger files
+  constexpr int filters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;  // a fifth less time, same size
   std::string profile = file && file->icc ? srgb_icc_profile() : "";       // outlives the context
   const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   if (!context) throw std::bad_alloc();
   std::vector<std::uint8_t> row(row_bytes);
   std::string bytes;
-  bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // it never grows
+  bytes.reserve(row.size() * header.height + row.size() * header.height / 1000 + 65536);  // never grows
   check_encoder(spng_set_png_stream(context.get(), append_bytes, &bytes));
   check_encoder(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, level));
   check_encoder(spng_set_option(context.get(), SPNG_FILTER_CHOICE, filters));

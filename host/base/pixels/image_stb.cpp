@@ -1,4 +1,4 @@
-// The writing of JPEG and Radiance HDR through stb_image_write, whose code is compiled here and nowhere else.
+// Writes JPEG and Radiance HDR with stb_image_write, whose code is compiled only here.
 #include <algorithm>
 #include <stdexcept>
 #include <vector>
@@ -20,7 +20,7 @@ void append(void* context, void* bytes, int size) {
 }  // namespace
 
 std::string encode_jpeg(const Image& image, const FileOptions& options) {
-  // From 91 on stb_image_write keeps the colours of each pixel, not of four at once.
+  // Above 90, stb_image_write stores the colour of each pixel, not one for four pixels.
   constexpr int quality = 92;
   const auto channels = static_cast<std::size_t>(image.channels);
   std::vector<std::uint8_t> samples;

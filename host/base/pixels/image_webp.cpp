@@ -15,7 +15,7 @@ StoredImage decode_webp(std::string_view bytes) {
   if (WebPGetFeatures(data, bytes.size(), &features) != VP8_STATUS_OK)
     throw std::runtime_error("wanted an image, found a bad WebP file");
   if (features.has_animation) throw std::runtime_error("an animated WebP file; wanted one image");
-  // A lossless file of one colour takes zero bits a pixel.
+  // A lossless file of a single colour takes 0 bits per pixel, so the size of the file sets no limit.
   check_image_size(features.width, features.height, 4, bytes.size(),
                    std::numeric_limits<std::int64_t>::max());
   StoredImage stored;

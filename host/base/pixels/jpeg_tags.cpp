@@ -1,5 +1,5 @@
-// Reads a JPEG's colour space and density from its JFIF header, ICC profile and Exif (CIPA DC-008, 4.6: a
-// TIFF header and directories of tags).
+// Writes a JPEG's colour space and density to its JFIF header, ICC profile and Exif (CIPA DC-008, 4.6: a TIFF
+// header and directories of tags).
 #include "base/colors/icc_profile.h"
 #include "base/pixels/image_codecs.h"
 
@@ -45,7 +45,7 @@ std::string with_jpeg_tags(std::string jpeg, const FileOptions& options) {
   const std::string density = big_endian_word(static_cast<std::size_t>(options.dpi));
   jpeg.replace(units, 5, "\x01" + density + density);
   std::string segments = segment(0xe1, exif(options.dpi));
-  // In one piece: the first of one (ICC.1:2022, annex B.4).
+  // The profile in one piece, numbered 1 of 1 (ICC.1:2022, annex B.4).
   if (options.icc) segments += segment(0xe2, std::string("ICC_PROFILE\0\1\1", 14) + srgb_icc_profile());
   return jpeg.insert(header_end, segments);
 }

@@ -1,5 +1,5 @@
-// Inflates to the end of the pixels' memory and unfilters rows towards its start, a pixel at a time (Portable
-// Network Graphics Specification, third edition, sections 5, 9 and 10).
+// Inflates into the end of the pixels' memory and unfilters rows towards its start, a pixel at a time
+// (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
 #include "base/pixels/png_pixels.h"
 #include "base/memory.h"
 
@@ -24,8 +24,8 @@ std::uint32_t chunk_word(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// The content of all IDAT chunks, in `joined` if there are several; empty if a chunk is broken, a checksum
-/// wrong or the end missing.
+/// The contents of all IDAT chunks, stored in `joined` if there are several; empty if a chunk is broken, a
+/// checksum wrong or the end missing.
 std::string_view packed_pixels(std::string_view bytes, std::string& joined) {
   std::string_view first;
   std::size_t count = 0;
@@ -71,14 +71,14 @@ std::uint32_t narrowed(WordLanes words) {
 WordLanes greater_lanes(WordLanes a, WordLanes b) { return a > b ? a : b; }
 WordLanes lesser_lanes(WordLanes a, WordLanes b) { return a < b ? a : b; }
 
-/// Adds four bytes each, without carries between bytes.
+/// Adds four pairs of bytes, without carries between bytes.
 std::uint32_t byte_sums(std::uint32_t a, std::uint32_t b) {
   return ((a & 0x7F7F7F7Fu) + (b & 0x7F7F7F7Fu)) ^ ((a ^ b) & 0x80808080u);
 }
 std::uint32_t byte_means(std::uint32_t a, std::uint32_t b) { return (a & b) + ((a ^ b) >> 1 & 0x7F7F7F7Fu); }
 
-/// Unfilters a row of pixels of `in` bytes into pixels of `out` bytes. `to` may overlap `row` if it stays
-/// behind the read position.
+/// Unfilters a row: reads pixels of `in` bytes, writes pixels of `out` bytes. `to` may overlap `row` if it
+/// stays behind the read position.
 template <std::size_t in, std::size_t out>
 class FilteredRow {
  public:
@@ -137,7 +137,7 @@ class FilteredRow {
     }
   }
 
-  /// Predicts the one of left, above, corner nearest to left + above - corner; ties go in this order.
+  /// Predicts whichever of left, above, corner is nearest to left + above - corner; ties go in this order.
   void paeth() {
     WordLanes left{}, corner{};
     for (std::size_t i = 0; i < width_; ++i) {
@@ -185,7 +185,7 @@ bool decode_png_pixels(std::string_view bytes, std::size_t file_channels, Stored
   const std::size_t size = image.pixel_count() * image.pixel_bytes();
   fill_large(image.data, size + height + slack);
   std::uint8_t* rows = image.data.data() + size + height - filtered;
-  // With no size returned, the stream must have exactly this one.
+  // As no actual size is asked for, the stream must unpack to exactly `filtered` bytes.
   bool whole = libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), rows, filtered,
                                           nullptr) == LIBDEFLATE_SUCCESS;
   if (whole)

@@ -1,4 +1,4 @@
-// Converts to sRGB by a table of 4096 levels, and encodes by libjpeg-turbo, with 4:4:4 from quality 90.
+// Converts to sRGB with a table of 4096 levels and encodes with libjpeg-turbo, in 4:4:4 from quality 90 on.
 #include "base/pixels/preview.h"
 
 #include <turbojpeg.h>

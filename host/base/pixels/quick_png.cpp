@@ -1,5 +1,5 @@
-// Stores rows as differences to the row above, which suits smooth pictures without trials, and deflates them
-// (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
+// Stores each row as the difference to the row above, a good filter for smooth pictures, and deflates the
+// rows (Portable Network Graphics Specification, third edition, sections 5, 9 and 10).
 #include "base/pixels/quick_png.h"
 
 #include <libdeflate.h>
@@ -20,13 +20,14 @@ namespace {
 constexpr std::size_t most_quick_bytes = std::size_t{1} << 30;
 constexpr char filter_up = 2;
 
-/// Cells of floats from 2^-13 to 1, by exponent and leading fraction bits.
+/// Floats from 2^-13 to 1 are divided into cells by exponent and leading fraction bits.
 constexpr unsigned cell_shift = 16;
 constexpr std::uint32_t first_bits = std::uint32_t{127 - 13} << 23, end_bits = std::uint32_t{127} << 23;
 
 struct ByteSteps {
-  std::array<float, 257> least{};  // the smallest float of each byte; the last is above all
-  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1> at{};  // at the start of a cell
+  std::array<float, 257> least{};  // the smallest float for each byte; the last exceeds all
+  std::array<std::uint8_t, ((end_bits - first_bits) >> cell_shift) + 1>
+      at{};  // the byte at the start of each cell
 };
 
 std::uint8_t slow_byte(float value) {

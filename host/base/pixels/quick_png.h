@@ -1,5 +1,5 @@
-// Fast PNG encoding for previews: pixels as in encode_png(), in somewhat larger files. libspng takes 2.2
-// times as long with the same filter at its fastest level.
+// Fast PNG encoding for previews: same pixels as encode_png(), in somewhat larger files. With the same filter
+// and its fastest level, libspng takes 2.2 times as long.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -28,26 +28,25 @@ struct StoredImage {
   }
 };
 
-/// PNG, JPEG, WebP, BMP, TGA, Radiance HDR, EXR and PFM, by the content; samples of the latter three become
-/// halves.
-/// An EXR's primaries are those of sRGB then, unless its numbers are no `colors`. Throws std::runtime_error
-/// with the reason alone.
+/// Decodes PNG, JPEG, WebP, BMP, TGA, Radiance HDR, EXR and PFM, recognised by content; samples of the last
+/// three become halves. `colors`: an EXR is converted to sRGB primaries. Throws std::runtime_error with the
+/// reason, without a file name.
 StoredImage decode_stored(std::string_view bytes, bool colors = true);
 
 /// Encodes as grey or RGB PNG of 8 or 16 bits, without alpha. Throws std::runtime_error.
 std::string encode_png(const StoredImage& image);
 
-/// One format each. A PNG's gAMA chunk sets the exponent unless it has an sRGB or iCCP chunk or gAMA means
-/// sRGB. Animated WebP is refused.
+/// Each decodes one format. A PNG's gAMA chunk sets the exponent, unless gAMA means sRGB or the file has an
+/// sRGB or iCCP chunk. Animated WebP is refused.
 StoredImage decode_png(std::string_view bytes);
 StoredImage decode_jpeg(std::string_view bytes);
 StoredImage decode_webp(std::string_view bytes);
 StoredImage decode_bmp_or_tga(std::string_view bytes);
-/// 0 for other files.
+/// The file's number of channels; 0 for other files.
 int channels_of_bmp_or_tga(std::string_view bytes);
 
-/// Throws for sizes beyond a frame's, for more pixels than `file_bytes` can encode, and for images that do
-/// not fit into the available memory.
+/// Throws for sizes that no frame may have, for more pixels than `file_bytes` can encode, and for images that
+/// need more than half of the available memory.
 void check_image_size(std::int64_t width, std::int64_t height, std::size_t pixel_bytes,
                       std::size_t file_bytes, std::int64_t most_pixels_a_byte);
 

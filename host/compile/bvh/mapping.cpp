@@ -1,4 +1,4 @@
-// The meshes that objects place; texture coordinates, alpha and tangents that textures need.
+// Collects the meshes that objects place, and compiles texture coordinates, alphas and tangents for textures.
 #include <algorithm>
 
 #include "compile/bvh/mesh_groups.h"
@@ -29,7 +29,7 @@ void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
         put(first_vertex + 3 * t + static_cast<std::size_t>(corner), mesh.triangles[t][corner]);
 }
 
-/// Calls visit(mesh, its place in the tables) for each mesh that is placed.
+/// Calls visit(mesh, its place in the tables) for each placed mesh.
 void for_each_mesh(const MappingInputs& in, const auto& visit) {
   for (std::size_t i = 0; i < in.sources->size(); ++i)
     if (const Mesh* mesh = (*in.sources)[i]) visit(*mesh, in.meshes->placed[i]);

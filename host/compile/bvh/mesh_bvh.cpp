@@ -80,7 +80,7 @@ Bounds triangle_box(const Mesh& mesh, const glm::uvec3& triangle) {
   return box;
 }
 
-/// The value of PlacedMesh::unit.
+/// Computes PlacedMesh::unit.
 double table_unit(const Mesh& mesh) {
   constexpr int far = 24;  // 2^24 is 1.7e7: products of three edges of a small triangle stay normal
   const auto greatest = [&](const tbb::blocked_range<std::size_t>& range, float most) {
@@ -97,7 +97,7 @@ double table_unit(const Mesh& mesh) {
   return std::abs(exponent) <= far ? 1 : std::ldexp(1.0, exponent);
 }
 
-/// The mesh in units of the tables.
+/// The mesh in table units.
 Mesh resized(const Mesh& mesh, double unit) {
   Mesh result = mesh;
   const double scale = 1 / unit;  // a power of two: exact, except for vanishing values
@@ -108,7 +108,7 @@ Mesh resized(const Mesh& mesh, double unit) {
 /// A BVH and the meshes that share it.
 struct Tree {
   std::vector<std::size_t> meshes;
-  Mesh copy;  // positions and triangles of several meshes, or scaled
+  Mesh copy;  // positions and triangles of several meshes or of a scaled one; else empty
   WideBvh bvh;
 
   const Mesh& mesh(const MeshInputs& in) const {
@@ -133,7 +133,7 @@ Mesh join_meshes(const MeshInputs& in, std::span<const std::size_t> meshes) {
   return joined;
 }
 
-/// The meshes of each BVH. Scaled ones are not shared.
+/// Assigns meshes to BVHs; groups with a scaled mesh are not shared.
 std::vector<Tree> plan_trees(const MeshInputs& in, const std::vector<PlacedMesh>& placed) {
   std::vector<Tree> trees;
   for (const std::vector<std::size_t>& group : in.groups) {
@@ -167,7 +167,7 @@ void build_tree(const MeshInputs& in, double unit, Tree& tree) {
   tree.bvh = build_wide_bvh(mesh.triangles.size(), fill, settings);
 }
 
-/// By the arithmetic of finish_triangle.
+/// Computes exactly as finish_triangle does.
 bool has_area(const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2) {
   return glm::cross(v1 - v0, v2 - v0) != glm::vec3(0);
 }
@@ -206,7 +206,7 @@ void append_tree(const WideBvh& tree, const Mesh& mesh, u32 first_triangle, std:
   });
 }
 
-/// Stores each triangle's position: the first block that contains it.
+/// Sets each triangle's `place`: a lane of the first block that contains it.
 void note_places(std::span<const TriangleBlock> blocks, u32 first_block,
                  std::span<TriangleShading> all_triangles) {
   for (std::size_t i = blocks.size(); i-- > 0;)
@@ -229,7 +229,7 @@ void check_rows(const MeshInputs& in, const Rows& sum) {
                     sum.triangles, sum.blocks));
 }
 
-/// The first rows of each tree, then the totals. Also stores those of the meshes.
+/// Returns the first rows of each tree, then the totals. Also sets the first rows of meshes in `placed`.
 std::vector<Rows> lay_out(const MeshInputs& in, const std::vector<Tree>& trees,
                           std::vector<PlacedMesh>& placed) {
   std::vector<Rows> first(1);

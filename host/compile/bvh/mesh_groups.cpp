@@ -79,7 +79,7 @@ class Sets {
   std::vector<std::size_t> parent_, size_;
 };
 
-/// Joins overlapping meshes of one transform.
+/// Joins overlapping meshes with the same transform.
 void join_overlapping(std::span<Candidate> same_place, const SceneDescription& scene, Sets& sets) {
   if (same_place.size() < 2) return;
   for (Candidate& one : same_place) one.box = box_of(scene.meshes[one.mesh]);

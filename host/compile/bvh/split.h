@@ -55,8 +55,8 @@ inline float blocks(std::size_t members, const SplitSettings& settings) {
 /// Whether several threads should share one set: it is large, and there are too few other sets.
 bool share_work(std::size_t members, const SplitSettings& settings);
 
-constexpr std::size_t split_chunk = 1u << 13;  // members a task takes then
-constexpr float least_extent = 1e-34f;         // below, a bin's width is unusable as a divisor
+constexpr std::size_t split_chunk = 1u << 13;  // members per task of a shared set
+constexpr float least_extent = 1e-34f;         // smaller extents are not divided into bins
 
 /// Places the parts: left at the front of the set's memory, right after left's portion of the spare places.
 RefSplit place_parts(const RefSet& set, std::size_t left_count, std::size_t right_count);

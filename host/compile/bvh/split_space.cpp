@@ -165,7 +165,8 @@ void search_axis(const SpaceBins& bins, int axis, const RefSet& set, const Split
 
 enum class Way { left, right, both };
 
-/// The cheapest side for a straddling ref (section 4.4 of the paper), by members, since blocks hide one.
+/// The cheapest side for a straddling ref (section 4.4 of the paper). Counts members, because blocks would
+/// hide a single one.
 Way cheapest_way(const SpacePlane& plane, const Ref& ref, float scale) {
   const float left = half_area(plane.left, scale), right = half_area(plane.right, scale);
   const auto n = static_cast<float>(plane.left_count), m = static_cast<float>(plane.right_count);

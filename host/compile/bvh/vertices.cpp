@@ -1,5 +1,5 @@
-// Gives each triangle its own vertices if the mesh has no normals; a normal without direction is replaced by
-// the sum of the faces' around it.
+// Gives each triangle its own vertices if the mesh has no normals; replaces a normal without direction by the
+// sum of its faces' normals.
 #include "compile/bvh/vertices.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Computes each binary node's least cost as 1 to 7 wide children on the way up, then lays out Bvh8Nodes and
-// leaf blocks; a tree too deep for the stack is built again by median splits.
+// leaf blocks; rebuilds a tree that is too deep for the stack with median splits.
 #include "compile/bvh/wide_bvh.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -20,16 +20,16 @@ constexpr int depth_limit = 64;              // deeper sets are halved, which bo
 
 struct BinaryNode {
   Bounds box;
-  const Ref* refs = nullptr;   // of a leaf: its members, sorted by index
+  const Ref* refs = nullptr;   // a leaf's members, sorted by index
   u32 count = 0;               // members of the subtree; the parts of a split triangle count separately
   BinaryNode* left = nullptr;  // both or neither
   BinaryNode* right = nullptr;
   /// cost[i]: minimum expected cost of this subtree as at most i children of a wide node (i = 1..7).
   std::array<float, 8> cost{};
-  /// share[i]: how many of i children `left` becomes; 0: i - 1 children are as good. share[8]: as a wide
+  /// share[i]: how many of i children come from `left`; 0: i - 1 children are as cheap. share[8]: as a wide
   /// node.
   std::array<std::uint8_t, 9> share{};
-  bool leaf = false;  // as a single child: a leaf of blocks, else a wide node
+  bool leaf = false;  // whether a single child is a leaf of blocks, not a wide node
 };
 
 /// Allocates nodes from chunks; one pool per thread.

@@ -40,8 +40,8 @@ struct WideBvh {
 WideBvh build_wide_bvh(std::size_t count, const std::function<void(std::span<Ref>)>& fill,
                        const WideBvhSettings& settings);
 
-/// Expected cost of a ray that crosses the root's box: 1 per visited node, and `leaf_cost` of the first block
-/// and count in a leaf word.
+/// Expected cost of a ray that crosses the root's box: 1 per visited node, and leaf_cost(first block, number
+/// of blocks) per visited leaf.
 double expected_cost(std::span<const Bvh8Node> nodes, u32 root,
                      const std::function<double(u32 first, u32 count)>& leaf_cost);
 

@@ -1,4 +1,4 @@
-// An operation's text is its expression in FIELD_OPS with the operands in place of their letters.
+// Prints statements as OpenCL C: an operation becomes its expression in FIELD_OPS with operands for letters.
 #include "compile/fields/field_code.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ constexpr OpText op_texts[] = {FIELD_OPS(SUNDOG_REAL_OP, SUNDOG_MASK_OP, SUNDOG_
 #undef SUNDOG_POINT_OP
 #undef SUNDOG_SAMPLE_OP
 
-/// Replaces each word of `expression` for which `value` gives another.
+/// Replaces each word of `expression` by value(word).
 template <class Value>
 std::string replace_words(const std::string& expression, const Value& value) {
   const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };

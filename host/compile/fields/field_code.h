@@ -20,8 +20,8 @@ const char* type_name(FieldType type);
 /// A variable or a component of one, an entry of the table, or a literal.
 struct Operand {
   enum class Kind { none, variable, table, literal } kind = Kind::none;
-  std::size_t index = 0;  // of the variable, or into the table
-  int part = -1;          // of a point: 0, 1, 2
+  std::size_t index = 0;  // index of the variable, or into the table
+  int part = -1;          // a point's coordinate, 0 to 2; -1: the whole value
   double value = 0;
 
   static Operand literal(double value) { return {Kind::literal, 0, -1, value}; }
@@ -48,8 +48,8 @@ struct FieldStatement {
   std::size_t result = 0;
   bool declares = false, constant = false;
   Operands operands;
-  std::size_t number = 0, end = 0;          // number: T, Q or N of a computation
-  std::string function;                     // of a call, in kernels
+  std::size_t number = 0, end = 0;          // number: T, Q or N in the operation's text
+  std::string function;                     // a call's function in kernels; the counter of cells
   std::shared_ptr<const FieldCode> callee;  // none: programs cannot call it
 };
 

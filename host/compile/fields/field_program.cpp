@@ -1,5 +1,5 @@
-// First flattens statements to instructions over unlimited values, with calls inlined; then assigns registers
-// from first to last use, and encodes the instructions.
+// Flattens statements to instructions over unlimited values, with calls inlined, then assigns registers by
+// first and last use, and encodes the instructions.
 #include "compile/fields/field_program.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t max_table = 0xFFFF;  // half a word
+constexpr std::size_t max_table = 0xFFFF;  // the largest number in half a word
 
 /// Thrown for code that programs cannot express.
 struct NoProgram {};
@@ -21,7 +21,7 @@ std::size_t registers_of(FieldType type) {
   return type == FieldType::sample ? 8 : type == FieldType::point ? 3 : 1;
 }
 
-/// A value, or its part from a register on.
+/// A value's registers from `part` on.
 struct ValuePlace {
   std::size_t value = 0, part = 0;
 };
@@ -30,8 +30,8 @@ struct Instruction {
   u32 op = FIELD_COPY;
   std::optional<ValuePlace> result = {};
   std::vector<ValuePlace> operands = {};
-  u32 low = 0, high = 0;                   // second word: low half instead of operands C and D, high half
-  u32 x = 0;                               // second word: a literal or a number
+  u32 low = 0, high = 0;                   // halves of the second word; `low` replaces operands C and D
+  u32 x = 0;                               // the second word, if a literal or a number
   std::optional<std::size_t> target = {};  // a label
   u32 counter = 0;                         // in counter instructions, replaces the result
 };
@@ -44,7 +44,7 @@ struct StoredValue {
 /// Emits a function and its callees.
 class Flattener {
  public:
-  /// `hoists`: loads numbers used in loops before the loops, at a register each.
+  /// `hoists`: loads the numbers that a loop uses before the loop, at the cost of a register each.
   Flattener(const FieldCode& code, bool hoists) : hoists_(hoists) {
     const ValuePlace point = add_value(3), active = add_value(1);
     const ValuePlace result = write(code, point, active, 0);
@@ -54,14 +54,14 @@ class Flattener {
   std::vector<Instruction> instructions;
   std::vector<StoredValue> values;
   std::vector<std::size_t> labels;                         // the instruction after each label
-  std::vector<std::pair<std::size_t, std::size_t>> loops;  // as labels, inner ones first
+  std::vector<std::pair<std::size_t, std::size_t>> loops;  // their begin and end labels, inner loops first
 
  private:
   struct Scope {
     FieldStatement::Kind kind;
     std::size_t begin = 0, out = 0;  // labels
     u32 counter = 0, turn = 0;
-    std::size_t next = 0;  // of turns: the next alternative
+    std::size_t next = 0;  // label of the next alternative or cell
     bool is_outermost = false;
   };
 

@@ -15,7 +15,7 @@ inline constexpr std::size_t max_program = 16384;
 /// the fields (native code), or exceed the registers or instructions.
 std::vector<u32> field_programs(std::span<const std::vector<FieldCode>> functions);
 
-/// The instructions of one function; empty if not possible. Pure.
+/// The instructions of one function; empty if a program cannot express it. Pure.
 std::vector<u32> field_program(const FieldCode& code);
 
 }  // namespace sundog

@@ -47,7 +47,7 @@ std::vector<SdfDescription> near_fields(const SceneDescription& scene, const std
   return fields;
 }
 
-/// Each field as often as objects place it.
+/// One field per object that places one.
 std::vector<SdfDescription> placed_fields(const SceneDescription& scene,
                                           const std::vector<FieldView>& views) {
   std::vector<SdfDescription> fields;

@@ -8,7 +8,7 @@
 namespace sundog {
 
 /// The text of generated/patterns.cl, whose pattern_formula() computes formula `number`. It depends only on
-/// the formulas and their integer exponents; other parameters are in the table that it is called with. Throws
+/// the formulas and their integer exponents; other parameters are read from its table argument. Throws
 /// FormulaError.
 std::string pattern_code(std::span<const PatternFormula> formulas);
 

@@ -134,7 +134,7 @@ class FieldsEmitter {
                       wanted == 2 ? "two or more" : std::to_string(wanted), node.children.size()));
     for (const SdfNode& child : node.children) place(child, depth + 1);
   }
-  /// The gradient uses differences. #line makes build logs name the native code's lines.
+  /// Wraps native code in functions; gradients use differences. #line makes build logs name its own lines.
   static std::string native_code(const std::string& code, std::size_t index) {
     return fmt::format(
         "static inline REAL native{0}(REAL3 p) {{\n#line 1 \"native code {0} of the scene\"\n{1}\n}}\n#line "

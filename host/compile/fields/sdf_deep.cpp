@@ -10,7 +10,7 @@ namespace {
 
 constexpr double default_least = 3e-5;  // relative to half the interval's diagonal, as in the reader
 
-/// Each doubling of magnification needs as much as another iteration of a quadratic map.
+/// Each doubling of magnification needs about one more iteration of a quadratic map.
 void add_iterations(SdfNode& node, int more) {
   FormulaField& formula = node.formula;
   if (node.kind == SdfNode::Kind::formula) {

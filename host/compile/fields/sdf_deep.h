@@ -10,11 +10,11 @@
 
 namespace sundog {
 
-/// Adapts to the footprint of a near view what the scene leaves open: the minimum threshold and, in deep
-/// views, the number of iterations.
+/// Adapts what the scene leaves open to a near view's footprint: the minimum threshold and, in deep views,
+/// the number of iterations.
 SdfDescription near_description(SdfDescription field, const FieldView& view);
 
-/// A field and the origin of its rays' coordinates, a point in its own space.
+/// A field and the origin of its rays' coordinates, a point in the field's space.
 struct DeepField {
   SdfDescription field;
   dvec3 origin{0};

@@ -1,4 +1,5 @@
-// Fuses products that one sum uses, and writes what no iteration changes before the loop.
+// Emits graphs as statements; fuses a product that only one sum uses, and writes loop invariants before the
+// loop.
 #include "compile/fields/sdf_emit.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace sundog {
 namespace {
 
-/// All except sums, choices and powers of roots, whose operands have another order.
+/// The FieldOp of `op`; not for sums, choices and inverse roots, whose operands have another order.
 FieldOp field_op(Op op) {
   static constexpr std::pair<Op, FieldOp> ops[] = {{Op::multiply, FIELD_MULTIPLY},
                                                    {Op::divide, FIELD_DIVIDE},
@@ -53,7 +54,7 @@ GraphWriter::GraphWriter(FieldCode& code, const Graph& graph, std::vector<NodeId
   count_uses();
 }
 
-/// Numbers of parameters alone. Conditions have no place in a table.
+/// Finds numbers that depend on parameters alone. Conditions have no place in a table.
 void GraphWriter::find_known() {
   std::vector<bool> fixed(graph_.size(), false);
   for (NodeId id = 0; id < graph_.size(); ++id) {
@@ -78,7 +79,7 @@ void GraphWriter::count_uses() {
     const Node& node = graph_[id];
     if (uses_[id] == 0 || (node.op != Op::add && node.op != Op::subtract)) continue;
     const auto product = [&](NodeId x) { return graph_[x].op == Op::multiply && uses_[x] == 1; };
-    // The second operand of a sum, the first of a difference: the order of lib/core/lanes.h.
+    // Prefer the second operand of a sum and the first of a difference: the order of lib/core/lanes.h.
     const bool first = node.op == Op::subtract;
     if (product(first ? node.a : node.b))
       is_fused_[first ? node.a : node.b] = true;

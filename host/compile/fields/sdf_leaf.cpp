@@ -44,7 +44,7 @@ void LeafEmitter::direct() {
       code_.define("scaled", FIELD_MULTIPLY, {write.value(s.distance), slot(leaf_slot::safety)});
   const Operand distance = code_.define("distance", FIELD_FINITE, {scaled});
   if (!is_sample()) return code_.set_result(distance);
-  // Gradient of the returned distance; if that is divided by its gradient, to first order about the surface.
+  // The gradient of the returned distance; for a normalised formula, to first order about the surface.
   Operands parts;
   for (const NodeId id : s.gradient) parts.push_back(write.value(id));
   Operand gradient = code_.assemble("gradient", FieldType::point, parts);

@@ -11,7 +11,7 @@
 
 namespace sundog {
 
-// A leaf's table: these entries, the steps' parameters in order, and the numbers that follow from them alone.
+// A leaf's table: these entries, the steps' parameters in order, and numbers derived from those.
 namespace leaf_slot {
 constexpr int iterations = 0, bailout = 1, inside = 2, safety = 3, inside_safety = 4, level = 5,
               first_parameter = 6;
@@ -36,7 +36,7 @@ class LeafEmitter {
   bool bails_out() const { return escapes() || field_.bailout > 0; }
   bool running() const { return !jacobian_; }
   bool is_sample() const { return variant_ == Variant::sample; }
-  /// Only |z| and its derivative at escape are needed, so z may continue.
+  /// Only |z| and its derivative at escape are needed, so z may continue to change afterwards.
   bool latched() const { return variant_ == Variant::distance && escapes() && running(); }
   std::size_t components() const { return static_cast<std::size_t>(size_); }
 
@@ -55,9 +55,9 @@ class LeafEmitter {
   void map(std::size_t step, GraphWriter& write);
   /// Emits loop invariants; one writer per step.
   std::vector<GraphWriter> begin_maps();
-  /// One iteration: the only step, or the one whose turn it is.
+  /// One iteration; if there are several steps, of the step whose turn it is.
   void iteration(std::vector<GraphWriter>& maps);
-  /// dr from the Jacobian: its largest stretch.
+  /// Computes dr as the Jacobian's largest stretch.
   Operand derivative_from_jacobian();
   void inner_distance();
   void traps();

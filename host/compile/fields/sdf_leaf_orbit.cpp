@@ -1,4 +1,4 @@
-// Emits a leaf's orbit: before the first iteration, one iteration, the loop. See sdf_leaf_emitter.h.
+// Emits a leaf's orbit: its start, one iteration, and the loop. See sdf_leaf_emitter.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ Operand LeafEmitter::input(std::size_t step, int index) {
   }
 }
 
-/// A number that depends on the step's parameters alone, computed here.
+/// Adds a number that depends on the step's parameters alone to the table, if new, and returns its entry.
 Operand LeafEmitter::known(std::size_t step, char section, const Graph& graph, NodeId id) {
   const auto [place, is_new] = table_.places.try_emplace({step, section, id}, table_.values.size());
   if (is_new) {
@@ -263,7 +263,7 @@ void LeafEmitter::loop() {
     count_ = code_.declare("count", FIELD_COPY, {Operand::literal(0)});
   }
   std::vector<GraphWriter> maps = begin_maps();
-  if (escapes()) entered_ = code_.declare("entered", FIELD_COPY_MASK, {alive_});  // the last iteration
+  if (escapes()) entered_ = code_.declare("entered", FIELD_COPY_MASK, {alive_});  // in the last iteration
   code_.begin_iterations(leaf_slot::iterations);
   if (bails_out()) code_.leave_if_none(alive_);
   iteration(maps);

@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-// For built-in closed forms, a lower safety is a scale, not a margin. Users' formulas may be anything.
+// For built-in closed forms, a lower safety is a scale, not a margin. Users' formulas always count as uneven.
 constexpr double even_safety = 0.8;
 
 bool is_direct(const SdfNode& node) {

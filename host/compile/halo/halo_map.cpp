@@ -53,8 +53,8 @@ void add_launches(HaloLaunch launch, u32 count, std::vector<HaloLaunch>& launche
 
 HaloLaunch launch_of(const EnvironmentDescription& e, const HaloCrystals& crystals, int band, u32 kind) {
   const double height = e.sun_altitude * pi / 180, half = 2 / std::sqrt(3.0) * crystals.ratio;
-  // Upper bound of the sum of face areas times cosines: that of a vector of the areas, as the three pairs of
-  // sides show at most twice one.
+  // Upper bound of the sum of face areas times cosines: the length of the vector of areas, because the three
+  // pairs of sides show at most twice one side.
   const double basal = 2 * std::sqrt(3.0), side = 4 / std::sqrt(3.0) * half;
   HaloLaunch launch{};
   launch.shape = crystals.shape;
@@ -136,7 +136,7 @@ HaloMap HaloSum::map() const {
   HaloMap map;
   map.side = plan_.side;
   map.cells.assign(3 * sums_.size(), 0.0f);
-  // Mirroring in the sun's vertical plane is equally likely and halves the variance.
+  // Mirror images in the sun's vertical plane are equally likely; their mean halves the variance.
   const double scale =
       units_ > 0 ? 0.5 * double(sums_.size()) / (4 * pi) * double(plan_.bands.size()) / units_ : 0;
   const auto side = static_cast<std::size_t>(map.side);

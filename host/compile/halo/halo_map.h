@@ -1,5 +1,5 @@
-// Halos: the plan of what to trace, on a device (render/device/halo_tracer.h) or on the host, and the
-// resulting map. The map is the same to the bit either way.
+// Halos: plans the rays to trace, on a device (render/device/halo_tracer.h) or on the host, and sums them to
+// a map, which is the same to the bit either way.
 #pragma once
 #include <functional>
 #include <glm/glm.hpp>
@@ -10,7 +10,7 @@
 
 namespace sundog {
 
-/// Words of the tallies: pairs of low and high.
+/// Number of words of the tallies, each a low and a high word.
 inline constexpr std::size_t halo_tally_words = std::size_t{2} * HALO_TALLIES;
 
 /// Rays by wavelength band, and the bands' colours.
@@ -49,8 +49,9 @@ HaloMap trace_halo(const HaloPlan& plan, const std::function<bool(std::uint64_t)
 /// Radiance per steradian towards `d`, interpolated between cells; d: unit, the sun above +x, z up.
 glm::dvec3 halo_radiance(const HaloMap& map, const glm::dvec3& d);
 
-/// Fraction of the cloud's sunlight that one steradian of full light sends from a height: single scattering
-/// in a horizontal layer of this optical depth. Arguments are the sines of the heights of sun and direction.
+/// Radiance from single scattering in a horizontal layer of this optical depth, relative to the irradiance
+/// facing the sun times the fraction scattered per steradian. Arguments are the sines of the heights of sun
+/// and direction.
 double halo_depth(double optical_depth, double sun, double direction);
 
 }  // namespace sundog

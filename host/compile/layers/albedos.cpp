@@ -1,5 +1,5 @@
-// Integrates the lobes of kernels/plain/shade/layer_lobes.cl over a grid of directions; a matte ground weighs
-// sums that are made once.
+// Integrates the lobes of kernels/plain/shade/layer_lobes.cl over a grid of directions; the matte ground's
+// albedo weights sums that are computed once.
 #include "compile/layers/albedos.h"
 
 #include <tbb/parallel_for.h>
@@ -39,8 +39,8 @@ double over_hemisphere(int rows, int columns, const Value& value) {
   return sum * 2 / (rows * columns);
 }
 
-/// Integrals over wi of the terms of a white matte ground, by the column of `past` that weights each: 1, the
-/// term of wi, and for each viewer the term of both.
+/// Integrals over wi of a white matte ground's terms, by the column of `past` that weights them: 1, the term
+/// of wi, and for each viewer the term of both directions.
 struct MatteSums {
   AlbedoRow plain{}, part{};
   std::array<AlbedoRow, matte_viewers> both{};

@@ -32,7 +32,7 @@ const GainGrid& round_gains() {
   return grid;
 }
 
-/// By the kernels' test.
+/// Uses the kernels' test.
 bool is_round(double anisotropy) { return float(1 - anisotropy) == 1; }
 
 /// The gains of one anisotropy, shared by a scene's materials.
@@ -90,7 +90,7 @@ std::array<double, steps> greatest_scales(const GridSteps& of, const GainGrid& g
   return scales;
 }
 
-/// All steps of a grid; `around` has one entry for all, or one each.
+/// Computes all steps of a grid; `around` has one entry for all steps, or one per step.
 std::array<BaseInterface, steps> make_steps(const GridSteps& of, const GainGrid& gains,
                                             const std::array<double, steps>& scales,
                                             std::span<const BaseSurroundings> around) {
@@ -125,7 +125,7 @@ void write_grid(const std::array<BaseInterface, steps>& made, const GainGrid& ga
   }
 }
 
-/// Neighbours often have equal widths: those of a smooth coat.
+/// Computes equal widths of neighbours only once; under a smooth coat most are equal.
 GainGrid gains_of(std::span<const FacetWidths> widths) {
   GainGrid gains;
   for (std::size_t i = 0; i < steps; ++i) {

@@ -1,5 +1,5 @@
-// The interface of a layered material's base: the light it leaves for the ground, at one roughness, or at a
-// grid of them if a texture gives the roughness or the coat's weight, which affects the roughness.
+// The interface of a layered material's base: the light that it transmits to the ground, at one roughness, or
+// on a grid if a texture sets the roughness or the coat's weight, which affects the roughness.
 #pragma once
 #include <array>
 #include <map>
@@ -13,9 +13,9 @@ namespace sundog {
 /// The surroundings of the base's facets, independent of their widths.
 struct BaseSurroundings {
   Interface interface;
-  double tint;             // of a dielectric: its largest component
+  double tint;             // largest component of a dielectric's tint
   AlbedoRow above;         // light that coat and fuzz transmit
-  double matte_roughness;  // of the ground
+  double matte_roughness;  // roughness of the ground
 };
 
 struct BaseInterface {
@@ -28,11 +28,11 @@ BaseInterface base_interface(const FacetAlbedo& shine, const BaseSurroundings& a
 /// Widths that kernels accept: at least LEAST_LAYER_ALPHA.
 FacetWidths wide_enough(const FacetWidths& widths);
 
-/// One per step of a grid.
+/// The gains at each step of a grid.
 using GainGrid = std::array<FacetGains, LAYER_GRID_STEPS>;
 
-/// The table layer_rows under construction: materials with equal grids share one, those of equal anisotropy
-/// share gains.
+/// The table layer_rows under construction. Materials with equal grids share one; materials with equal
+/// anisotropy share gains.
 struct LayerRows {
   std::vector<float> values;
   std::map<std::vector<double>, u32> grids;
@@ -43,7 +43,7 @@ struct LayerRows {
 /// weight in `around`; adds them unless present. Facets never reflect more than all light, neither at a step
 /// nor between two.
 u32 add_roughness_grids(double anisotropy, std::span<const BaseSurroundings> around, LayerRows& rows);
-/// Entries of one such grid.
+/// Number of entries of one such grid.
 u32 layer_grid_size(double anisotropy);
 
 /// The first entry of the grid by coat weight, for LAYER_GRID_STEPS widths and their surroundings.

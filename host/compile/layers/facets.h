@@ -13,8 +13,8 @@ struct Interface {
 
 double interface_reflects(double cosine, const Interface& interface);
 
-/// By azimuth: row i holds directions whose squared component along the tangent is i / (LAYER_TURNS - 1) of
-/// the whole.
+/// Gains by azimuth: row i holds directions whose squared component along the tangent is i / (LAYER_TURNS -
+/// 1) of that in the surface's plane.
 using FacetGains = std::array<AlbedoRow, LAYER_TURNS>;
 
 /// Gains multiply a white lobe by one function of both directions, so that it reflects all light

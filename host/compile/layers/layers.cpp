@@ -1,4 +1,4 @@
-// Packs numbers of OpenPBR, then appends rows of fuzz, coat, base, film and gains; textures of roughness or
+// Packs OpenPBR parameters, then appends rows of fuzz, coat, base, film and gains; textures of roughness or
 // coat weight add grids (base.h). Lobes as in kernels/plain/shade/layer_lobes.cl.
 #include "compile/layers/layers.h"
 
@@ -21,7 +21,7 @@ double index_above(const OpenPbr& v, double coat_weight) {
   return v.coat_bends ? 1 + coat_weight * (v.coat_ior - 1) : 1;
 }
 
-/// The base's index relative to that, or its inverse if below 1.
+/// The base's index relative to the index above it, inverted if below 1.
 double base_eta(const OpenPbr& v, double coat_weight) {
   return lowering::base_index(v.specular_ior, std::sqrt(v.specular_weight), index_above(v, coat_weight));
 }
@@ -151,7 +151,7 @@ bool maps_coat(const OpenPbr& v, const MaterialTextures& textures) {
   return v.coat_weight > 0 && textures.coat >= 0;
 }
 
-/// The grid by coat weight, and by roughness too if a texture gives it.
+/// Adds the grid by coat weight, and by roughness too if a texture sets it.
 void add_coat_steps(const OpenPbr& v, bool rough, const Above& above, LayerRows& rows, Layers& to) {
   const double anisotropy = v.specular_roughness_anisotropy;
   std::vector<BaseSurroundings> around;

@@ -1,5 +1,5 @@
-// Compiles layered materials to rows of kernels/shared/layers.h, with the light that each layer leaves for
-// those below, found by quadrature of the layer.
+// Compiles layered materials to rows of kernels/shared/layers.h, with the light that each layer transmits to
+// the layers below, by quadrature.
 #pragma once
 #include "compile/layers/base.h"
 #include "compile/steps.h"

@@ -1,4 +1,4 @@
-// Interpolates by cubics through four rows, uniform in the root of the width; facets.h has anisotropic ones.
+// Interpolates isotropic facets by cubics through four table rows, uniform in the root of the width.
 #include "compile/layers/round_facets.h"
 
 #include <algorithm>

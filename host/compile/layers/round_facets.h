@@ -24,7 +24,7 @@ struct RoundFacets {
   std::array<std::array<FacetGroup, round_groups>, LAYER_STEPS> groups;
 };
 
-/// By quadrature.
+/// Computes facets by quadrature.
 RoundFacets make_round_facets(double alpha);
 
 /// All tables in sequence: the facets and fuzz albedo at round_width() of each row.
@@ -40,7 +40,7 @@ double round_width(std::size_t row);
 RoundFacets round_facets(double alpha);
 FacetAlbedo albedo_of(const RoundFacets& facets, const Interface& interface);
 
-/// Facets of any widths; anisotropic ones by quadrature.
+/// Facets of any widths; computes anisotropic ones by quadrature.
 class Facets {
  public:
   explicit Facets(const FacetWidths& widths);

@@ -1,5 +1,4 @@
-// Completes the lights in the order of what each needs: lights of meshes, numbers of groups, the tree,
-// photons.
+// Completes the lights in order of dependency: lights of meshes, group numbers, the tree, photons.
 #include "compile/lights/light_tree.h"
 #include "compile/lights/mesh_lights.h"
 #include "compile/lights/photons.h"
@@ -8,8 +7,7 @@
 namespace sundog {
 namespace {
 
-/// Writes the numbers of groups into the tables of lights, materials and the environment, after all lights
-/// have rows.
+/// Writes group numbers into the tables of lights, materials and the environment, once all lights have rows.
 void set_light_groups(const AllLightsInputs& in, AllLights& out) {
   if (in.groups.empty()) return;
   const std::size_t around = number_of_group(in.groups, in.environment_group);
@@ -18,7 +16,7 @@ void set_light_groups(const AllLightsInputs& in, AllLights& out) {
     if (light.type != LightType::ambient) of_rows.push_back(number_of_group(in.groups, light.group));
   auto& lights = out.lights.edit();
   for (std::size_t row = 0; row < lights.size(); ++row)
-    if (lights[row].kind != LIGHT_TRIANGLE)  // those have their materials' (mesh_lights.cpp)
+    if (lights[row].kind != LIGHT_TRIANGLE)  // they have their materials' groups (mesh_lights.cpp)
       lights[row].color.w = static_cast<float>(row < of_rows.size() ? of_rows[row] : around);
   for (Environment& environment : out.environments.edit()) environment.ahead.w = static_cast<float>(around);
   auto& materials = out.materials.edit();

@@ -25,7 +25,7 @@ constexpr int gradient_rows = 256, sky_columns = 512, sky_rows = 256;
 /// Columns: right, up and ahead, with the picture's rotation.
 glm::dmat3 axes_of(const EnvironmentDescription& e) {
   const dvec3 up = glm::normalize(e.up);
-  // As close to +x and -z as in an upright picture.
+  // Right and ahead stay as close to +x and -z as in an upright picture.
   dvec3 right = glm::cross(dvec3(0, 0, -1), up);
   if (glm::length(right) < 1e-6) right = dvec3(1, 0, 0);
   right = glm::normalize(right);
@@ -65,7 +65,7 @@ dvec3 sun_in_axes(const EnvironmentDescription& e) {
   return {std::cos(height) * std::sin(azimuth), std::sin(height), std::cos(height) * std::cos(azimuth)};
 }
 
-/// The sky of the day, at the latest that of sunset.
+/// The day's sky; after sunset, the sky at sunset.
 Sky sky_of(const EnvironmentDescription& e) {
   return {e.turbidity, std::max(0.0, e.sun_altitude) * pi / 180};
 }
@@ -76,8 +76,8 @@ double sun_share(const EnvironmentDescription& e) {
   return std::exp(-e.halo.optical_depth / std::max(sun_in_axes(e).y, 0.01));
 }
 
-/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below it. The row below
-/// the horizon repeats the one above: interpolated with the ground, the sky would have a dark rim there.
+/// A picture of `light_along(zenith, azimuth)` above the horizon, and of the ground below. The row below the
+/// horizon repeats the row above it, because interpolation with the ground would darken the sky's rim.
 template <class Light>
 Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, const Light& light_along) {
   const dvec3 factor = e.color * e.intensity;
@@ -97,7 +97,7 @@ Picture picture_of_day(const EnvironmentDescription& e, int columns, int rows, c
   return picture;
 }
 
-/// The sky after sunset, and its share in the sky of a low sun: Preetham's model has no twilight.
+/// The twilight sky and its weight in a low sun's sky, because Preetham's model has no twilight.
 struct Dusk {
   Twilight light;
   double share;
@@ -162,7 +162,7 @@ double luminance_at(const Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) 
 
 /// Mean luminance of the interpolated picture over a pixel's square.
 double light_of_pixel(const Picture& picture, u32 x, u32 y) {
-  constexpr std::array share{0.125, 0.75, 0.125};  // of a pixel and its neighbours along an axis
+  constexpr std::array share{0.125, 0.75, 0.125};  // weights of a pixel and its neighbours along an axis
   double sum = 0;
   for (u32 j = 0; j < 3; ++j)
     for (u32 i = 0; i < 3; ++i)

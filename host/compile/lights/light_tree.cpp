@@ -1,5 +1,5 @@
 // Halves the lights along the longest axis of their centres, left child first, and replaces their light rays
-// by rays to chosen ones.
+// by rays to chosen lights.
 #include "compile/lights/light_tree.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ LightTree make_light_tree(const RenderSettings& settings, const std::vector<Ligh
   const bool triangles =
       std::ranges::any_of(lights, [](const Light& light) { return light.kind == LIGHT_TRIANGLE; });
   const bool chooses = settings.light_samples > 0 || chooses_one || triangles;
-  // General kernels request the path to each light, even where there is nothing to choose.
+  // General kernels request the path to each light, even if there is nothing to choose.
   std::vector<u32> leaves(lights.size());
   if (chooses && !lamps.empty() && (lamps.size() > 1 || triangles)) {
     append(lamps, tree.light_nodes.edit());

@@ -1,4 +1,4 @@
-// Compiles lights: those of the scene file, the environment and its sun, and the halo.
+// Compiles the lights of the scene file, the environment and its sun, and the halo.
 #include "compile/lights/lights.h"
 
 #include <fmt/format.h>

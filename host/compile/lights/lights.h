@@ -1,4 +1,4 @@
-// Lights of the scene file.
+// Adds lights of the scene file to the tables of lights.
 #pragma once
 #include <string>
 

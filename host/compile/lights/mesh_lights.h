@@ -4,16 +4,16 @@
 
 namespace sundog {
 
-/// The lights of a scene with those of its meshes, and its instances with the rows of their lights.
+/// A scene's lights, including those of its meshes, and its instances with the rows of their lights.
 struct MeshLights {
   SharedTable<Light> lights;
   SharedTable<Instance> instances;
   bool any = false;  // some mesh is a light
 };
 
-/// Appends a light for each triangle of meshes whose materials have a uniform emission. Stores the light's
-/// index in their instances, and in those of visible lights for path tracing. Meshes with textured emission
-/// or more than `most_shining` triangles are left to rays that hit them.
+/// Appends a light for each triangle of meshes whose materials have a uniform emission, and stores the first
+/// row in their instances. For path tracing, stores a visible light's row in the instances that show it. Only
+/// rays that hit them find meshes that move, have textured emission or exceed `most_shining` triangles.
 MeshLights add_mesh_lights(const AllLightsInputs& in);
 
 constexpr std::size_t most_shining = 200'000;

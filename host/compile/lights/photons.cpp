@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr std::size_t most_targets = 64;  // each costs time for every photon
-constexpr double photons_within = 12;     // within the first radius, if light is uniform
+constexpr double photons_within = 12;     // photons within the first radius, if light is uniform
 constexpr double least_share = 0.02;      // of the photons, divided evenly among the emitters
 
 bool is_smooth(const Material& material) {
@@ -49,7 +49,7 @@ float4 ball_about(const AllLightsInputs& in, const Instance& instance, const Bou
   return ball;
 }
 
-/// The balls of smooth objects, after one around everything. Of a plane, which is infinite, the relevant part
+/// Returns a ball around everything, then balls around smooth objects. A plane is infinite; its relevant part
 /// is assumed to be not much farther away than the camera and all other objects.
 std::vector<float4> find_balls(const AllLightsInputs& in) {
   Bounds all = Bounds::none(), smooth = Bounds::none();
@@ -170,7 +170,7 @@ bool may_be_inside(const Light& light, const AllLightsInputs& in) {
   return has_place(light) && is_camera_inside(middle_of(light.position), in.instances.rows(), in.boxes);
 }
 
-constexpr double least_radius = 1e-15;  // smaller ones vanish as the square of a float
+constexpr double least_radius = 1e-15;  // squares of smaller ones vanish in a float
 
 }  // namespace
 

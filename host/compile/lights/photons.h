@@ -10,8 +10,8 @@ struct Photons {
   PhotonPlan plan;
 };
 
-/// For path tracing with caustics in a scene with lights and smooth reflecting or refracting objects; else
-/// nothing. `lights`: all of the scene.
+/// Plans photons for path tracing with caustics, if there are lights and smooth objects that reflect or
+/// refract; otherwise returns nothing. `lights`: all lights of the scene.
 Photons plan_photons(const AllLightsInputs& in, const std::vector<Light>& lights);
 
 }  // namespace sundog

@@ -87,7 +87,7 @@ bool may_be_coarse(const Mesh& mesh, const Seen& seen, double least) {
 
 std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec3& origin) {
   const Camera& camera = scene.camera;
-  // At most what rounding at the camera's position requires.
+  // The offset that rounding at the camera's position requires anyway; smaller ones do not matter.
   const double least = scene_spacing * greatest_of(camera.position - origin);
   std::vector<CoarseStart> found;
   for (const Object& object : scene.objects) {

@@ -7,14 +7,14 @@
 
 namespace sundog {
 
-/// Secondary rays start `away` from the object's surface, the bound of a hit's rounding
-/// (kernels/plain/shade/interaction.cl); `distance`, less than a hundred times that, is the camera's.
+/// An object whose secondary rays start `away` from its surface, by the bound of a hit's rounding
+/// (kernels/plain/shade/interaction.cl), which exceeds 1/100 of its `distance` from the camera.
 struct CoarseStart {
   std::string object;
   double away = 0, distance = 0;
 };
 
-/// `origin`: of the tables' coordinates. Skips fields, which offset rays differently.
+/// `origin`: the origin of the tables. Skips fields, which offset rays differently.
 std::vector<CoarseStart> coarse_starts(const SceneDescription& scene, const dvec3& origin);
 
 }  // namespace sundog

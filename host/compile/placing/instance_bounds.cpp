@@ -18,7 +18,7 @@ float round_down(double value) {
 
 float round_up(double value) { return -round_down(-value); }
 
-/// The support along `direction` (unit space); for a mesh or field, that of its boxes.
+/// The maximum of dot(d, p) over the shape's points p in unit space; over its boxes for a mesh or field.
 double reach(const UnitShape& unit, std::span<const Bounds> boxes, const dvec3& d) {
   if (unit.shape != SHAPE_MESH && unit.shape != SHAPE_SDF) return reach(unit, d);
   double most = -std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Gathers what instances are made of.
+// Collects the inputs of compile_instances() from the scene, its meshes and its surfaces.
 #include "compile/placing/instances.h"
 #include "compile/steps.h"
 #include "compile/surfaces/lobes.h"

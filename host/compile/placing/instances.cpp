@@ -22,12 +22,12 @@
 namespace sundog {
 namespace {
 
-/// An instance and its world bounds; `cost` is that of a ray that crosses them.
+/// An instance and its world bounds. `cost`: expected cost of a ray that crosses them.
 struct Placed {
   Instance instance{};
   Bounds box = Bounds::none();  // over the shutter interval
   std::vector<Bounds> parts;    // smaller boxes that together contain it; may be empty
-  std::vector<Placed> sharing;  // the others in its BVH
+  std::vector<Placed> sharing;  // the other meshes in its BVH
   bool follows = false;
   double cost = 1;
   float4 moves{};
@@ -89,7 +89,7 @@ Bounds interval_of(const FieldInterval& field) {
   return box;
 }
 
-/// The edge of a cell of the object's checkerboard; 0 without one.
+/// The edge of a cell of the object's checkerboard; 0 without a checkerboard.
 double checker_size(const SceneDescription& scene, const Object& object) {
   if (object.material < 0) return 0;
   const MaterialDescription& material = scene.materials[static_cast<std::size_t>(object.material)];
@@ -135,7 +135,7 @@ class Placer {
   }
 
  private:
-  /// The row of a profile; equal ones share theirs.
+  /// The first row of a profile; equal profiles share rows.
   float add_profile(const std::vector<ProfileArc>& arcs) {
     for (const auto& [first, count] : profiles_)
       if (count == arcs.size() &&
@@ -201,8 +201,8 @@ class Placer {
 
   const InstanceInputs& in_;
   Instances& out_;
-  std::size_t planes_ = 0;                                     // placed so far
-  std::vector<std::pair<std::size_t, std::size_t>> profiles_;  // their first rows, and numbers of rows
+  std::size_t planes_ = 0;                                     // number placed so far
+  std::vector<std::pair<std::size_t, std::size_t>> profiles_;  // first row and number of rows of each
 };
 
 /// Whether the camera may be inside this solid with a medium.
@@ -219,7 +219,7 @@ bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camer
   return true;
 }
 
-/// Moves meshes that share a BVH to the first of them.
+/// Moves meshes that share a BVH into `sharing` of the first of them.
 void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
   std::unordered_map<u32, std::size_t> first;
   for (std::size_t i = 0; i < bounded.size(); ++i)
@@ -233,14 +233,14 @@ void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
   }
 }
 
-/// The box of an instance and the others in its BVH.
+/// The box of an instance and of the other meshes in its BVH.
 Bounds box_of_all(const Placed& placed) {
   Bounds box = placed.box;
   for (const Placed& other : placed.sharing) box.extend(other.box);
   return box;
 }
 
-/// Refs of the instances' boxes, or of their parts', which puts an instance into several leaves.
+/// Refs of the instances' boxes, or of their parts, which put an instance into several leaves.
 std::vector<Ref> refs_of(const std::vector<Placed>& bounded) {
   constexpr std::size_t most_in_parts = 1000;  // the leaves of a CompactNode must be close together
   std::vector<Ref> refs;
@@ -261,7 +261,7 @@ void add_scene_bvh(std::vector<Placed>& bounded, Instances& out, u32 mesh_stack)
   settings.block_width = 1;
   settings.block_cost = 3;  // an instance costs more than a node
   const bool shared = std::ranges::any_of(bounded, [](const Placed& one) { return !one.sharing.empty(); });
-  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's are consecutive
+  if (shared || refs.size() > bounded.size()) settings.max_leaf_blocks = 1;  // a leaf's blocks are adjacent
   WideBvh tree =
       build_wide_bvh(refs.size(), [&](std::span<Ref> to) { std::ranges::copy(refs, to.begin()); }, settings);
   const bool alone = bounded.size() == 1;
@@ -378,12 +378,12 @@ Instances compile_instances(const InstanceInputs& in) {
   append(large);
   append(unbounded);
   out.instance_count = static_cast<u32>(instances.size());
-  append(shown);  // first: rays remember the sides of the first fields
+  append(shown);  // first, because rays remember the sides of the first fields
   append(fields);
   out.field_end = static_cast<u32>(instances.size());
   const auto boxes = std::span(out.boxes).subspan(out.instance_count);
   if (mark_near_fields(boxes, in.surfaces, std::span(instances).subspan(out.instance_count)))
-    out.features.near_fields = out.features.media = true;  // rays cross what touches by their media
+    out.features.near_fields = out.features.media = true;  // media resolve rays at touching surfaces
   out.instances = std::move(instances);
   if (out.features.object_motion) out.moves = std::move(moves);
   out.features.unbounded = !unbounded.empty();

@@ -6,7 +6,7 @@
 
 namespace sundog {
 
-/// Whether a camera there, relative to the tables' origin, may be inside a solid with a medium.
+/// Whether a camera at this position, relative to the tables' origin, may be inside a solid with a medium.
 bool is_camera_inside(const dvec3& camera, std::span<const Instance> instances,
                       std::span<const Bounds> boxes);
 

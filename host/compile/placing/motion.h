@@ -13,7 +13,7 @@ namespace sundog {
 /// Maps world points of an object when the shutter opens to their position at `time`, from 0 to 1.
 dmat4 world_at(const Object& object, double time);
 
-/// A bounded shape's world box over the whole shutter interval. As world_bounds(); relative to `origin`.
+/// A bounded shape's world box over the whole shutter interval, like world_bounds(), relative to `origin`.
 Bounds moving_bounds(const Object& object, const UnitShape& unit, std::span<const Bounds> boxes,
                      const dmat4& world_from_unit, const dvec3& origin);
 

@@ -1,4 +1,4 @@
-// Takes the next scene's camera, transforms and deformed faces, or without one those at the end of this
+// Finds the camera, transforms and deformed faces of the next scene or, without one, of the end of this
 // scene's own motion.
 #include "compile/placing/next_shot.h"
 
@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-/// The object's mesh in a scene; none where it has none.
+/// An object's mesh; null for other shapes.
 const Mesh* mesh_of(const SceneDescription& scene, std::size_t object) {
   const auto* shape = std::get_if<MeshShape>(&scene.objects[object].shape);
   return shape ? &scene.meshes[static_cast<std::size_t>(shape->mesh)] : nullptr;

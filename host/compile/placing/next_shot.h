@@ -5,7 +5,7 @@
 
 namespace sundog {
 
-/// Objects are paired by their index. Without `next` it is the scene as its shutter closes.
+/// Pairs objects by index. Without `next`, uses the scene as its shutter closes.
 NextShot next_shot(const SceneDescription& now, const SceneDescription* next);
 
 }  // namespace sundog

@@ -4,7 +4,7 @@
 
 namespace sundog {
 
-/// 1 of a sky's light, in cd/m^2.
+/// The luminance of 1 in a sky's light, in cd/m^2.
 constexpr double sky_unit = 20000;
 
 /// Linear sRGB of CIE XYZ (IEC 61966-2-1). May be negative.

@@ -1,5 +1,5 @@
-// Marches rays through a spherical atmosphere in 12 bands, adds light scattered again from tables of three
-// orders, and keeps the sky as a grid. Lengths in km.
+// Marches rays through a spherical atmosphere in 12 bands, adds further scattering from tables of three
+// orders, and stores the sky in a grid. Lengths in km.
 #include "compile/sky/twilight.h"
 
 #include <tbb/parallel_for.h>
@@ -23,16 +23,17 @@ constexpr int bands = 12;  // of 25 nm, from 400 to 700 nm
 constexpr double first_band = 400, band_width = 25;
 using Spectrum = std::array<double, bands>;
 
-/// Watts a square metre and nanometre above the atmosphere (ASTM E490), and cross-sections of ozone in
-/// 1e-21 cm^2 (Serdyuchenko and others 2014), means of each band.
+/// Irradiance above the atmosphere in W/(m^2 nm) (ASTM E490) and cross-sections of ozone in 1e-21 cm^2
+/// (Serdyuchenko and others 2014), means of each band.
 constexpr Spectrum sunlight = {1.66, 1.77, 2.04, 1.99, 1.90, 1.89, 1.85, 1.80, 1.70, 1.62, 1.54, 1.46};
 constexpr Spectrum ozone_section = {0.03, 0.11, 0.36, 0.80, 1.70, 2.80, 3.60, 4.60, 4.70, 3.20, 1.90, 1.00};
-constexpr double ozone_column = 8.07e18, ozone_depth = 15;  // 300 DU as molecules a cm^2; km at its peak
+constexpr double ozone_column = 8.07e18, ozone_depth = 15;  // molecules/cm^2 in 300 DU; half width in km
 constexpr double haze_albedo = 0.9, haze_g = 0.76;
-constexpr double air_height = 8, haze_height = 1.2;  // in which they thin to 1/e
-constexpr double night = 2e-4;                       // cd/m^2 (Leinert and others 1998)
+constexpr double air_height = 8, haze_height = 1.2;  // scale heights: density falls to 1/e
+constexpr double night = 2e-4;                       // night sky, cd/m^2 (Leinert and others 1998)
 
-/// Amounts of air, haze and ozone: densities relative to their greatest, or columns of these in km.
+/// Amounts of air, haze and ozone: densities relative to their maximum, or these integrated along a ray in
+/// km.
 using Amounts = dvec3;
 
 Amounts densities(double height) {
@@ -40,7 +41,7 @@ Amounts densities(double height) {
           std::max(0.0, 1 - std::abs(height - 25) / ozone_depth)};
 }
 
-/// The extinction of each, a band's share a km, where it is densest.
+/// Extinction per km by air, haze and ozone at their maximum densities, for each band.
 struct Air {
   std::array<Amounts, bands> extinction;
 
@@ -55,8 +56,8 @@ struct Air {
   }
 };
 
-/// Distance from a point at that height, in a direction with that cosine to the zenith, to the ground or the
-/// top of the atmosphere.
+/// Distance from a point at `height`, in a direction with this cosine to the zenith, to the ground or the top
+/// of the atmosphere.
 double way_out(double height, double cosine) {
   const double r = earth + height, b = r * cosine;
   const double to_ground = b * b - r * r + earth * earth;
@@ -74,17 +75,17 @@ double horizon_angle(double height) { return pi - std::asin(std::min(1.0, earth 
 
 struct Place {
   int index;
-  double share;  // of the next
+  double share;  // weight of the next row
 };
 
-/// Where `at`, from 0 to 1, lies among so many rows.
+/// The position of `at`, from 0 to 1, among `rows` rows.
 Place place_of(double at, int rows) {
   const double x = std::clamp(at, 0.0, 1.0) * (rows - 1);
   const int index = std::min(int(x), rows - 2);
   return {index, x - index};
 }
 
-/// Columns from a height towards the sun.
+/// A table of columns from a height towards the sun.
 class SunColumns {
  public:
   SunColumns() : logs_(std::size_t(heights * angles)) {
@@ -98,7 +99,7 @@ class SunColumns {
     });
   }
 
-  /// The amounts on the way to a sun above the horizon there.
+  /// The columns towards the sun, which must be above the horizon at this height.
   Amounts at(double height, double angle) const {
     const Place row = place_of(std::sqrt(height / top), heights),
                 column = place_of(1 - std::sqrt(std::max(0.0, 1 - angle / horizon_angle(height))), angles);
@@ -128,8 +129,8 @@ struct Point {
   double height, sun_angle;
 };
 
-/// The light that comes along a ray from a point at `height`, whose zenith is +y, of what `source` adds a km:
-/// source(point, densities, columns to it, &sum).
+/// Integrates light along a ray from a point at `height`, whose zenith is +y. For each step, source(point,
+/// densities, columns up to it, step, sum) adds light to the sum.
 template <class Source>
 Spectrum gather(double height, const dvec3& direction, const dvec3& sun, int steps, const Source& source) {
   Spectrum light{};
@@ -154,8 +155,8 @@ double haze_phase(double cosine) {  // Henyey and Greenstein 1941
   return (1 - haze_g * haze_g) / (4 * pi * std::pow(1 + haze_g * haze_g - 2 * haze_g * cosine, 1.5));
 }
 
-/// Mean radiance at a point from all directions, by its height and the sun's angle there: of the light that
-/// has been scattered so far, and of all together.
+/// Mean radiance at a point from all directions, by its height and the sun's angle there: of the last order
+/// of scattering, and of all orders.
 class Scattered {
  public:
   Scattered(const Air& air, const SunColumns& columns, double sun_height)
@@ -171,7 +172,7 @@ class Scattered {
     }
   }
 
-  /// The light that reaches the ground.
+  /// The light that reaches the ground from `direction`.
   Spectrum light(const dvec3& direction, const dvec3& sun) const {
     Spectrum once = once_scattered(0, direction, sun, 64);
     const Spectrum more = again_scattered(0, direction, sun, 64, all_);
@@ -181,7 +182,7 @@ class Scattered {
 
  private:
   static constexpr int heights = 16, angles = 40, orders = 3, zeniths = 16, azimuths = 6;
-  static constexpr double reach = 24 * pi / 180;  // of the sun's angles about that of the observer
+  static constexpr double reach = 24 * pi / 180;  // of the sun's angles on each side of the observer's
 
   Spectrum once_scattered(double height, const dvec3& direction, const dvec3& sun, int steps) const {
     const double cosine = glm::dot(direction, sun);
@@ -217,7 +218,8 @@ class Scattered {
         });
   }
 
-  /// The logarithm of the mean.
+  /// The logarithm of the mean radiance; `again`: of light scattered from the last order, else scattered
+  /// once.
   Spectrum mean_at(int place, bool again) const {
     const int row = place / angles;
     const double root = row / (heights - 1.0), height = top * root * root;
@@ -260,7 +262,7 @@ dvec3 color_of(const Spectrum& light) {
 
 constexpr int zenith_rows = 96, azimuth_columns = 96;
 
-/// More rows at the horizon, where the light changes most: from the zenith, 0 to 1.
+/// Rows are denser near the horizon, where the light changes most. `at`: from 0 at the zenith to 1.
 double angle_of_row(double at) { return pi / 2 * (1 - (1 - at) * (1 - at)); }
 double row_of_angle(double angle) { return 1 - std::sqrt(std::max(0.0, 1 - angle / (pi / 2))); }
 

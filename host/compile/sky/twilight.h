@@ -7,11 +7,11 @@ namespace sundog {
 
 /// Sunlight scattered by the air, haze and ozone around a round Earth. Single scattering is integrated along
 /// each direction (Nishita and others 1993, "Display of the Earth Taking into Account Atmospheric
-/// Scattering"); the light scattered again, three times, comes from a table by height and sun, where it is
-/// taken to be equal in all directions (after Hillaire 2020, "A Scalable and Production Ready Sky and
-/// Atmosphere Rendering Technique"). Ozone gives the blue hour its colour (Hulburt 1953, "Explanation of the
-/// Brightness and Color of the Sky, Particularly the Twilight Sky"). Refraction is left out. Units as in
-/// sky.h. The faintest light is the air's own at night.
+/// Scattering"); three further orders come from a table by height and the sun's angle, which assumes that
+/// light is equal in all directions (after Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere
+/// Rendering Technique"). Ozone gives the blue hour its colour (Hulburt 1953, "Explanation of the Brightness
+/// and Color of the Sky, Particularly the Twilight Sky"). Refraction is neglected. Units as in sky.h. The
+/// light never falls below that of the night sky.
 class Twilight {
  public:
   /// `turbidity` as in sky.h; `sun_height` in radians above the horizon, [-pi / 10, pi / 10].

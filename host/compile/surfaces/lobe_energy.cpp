@@ -22,8 +22,8 @@ double smith_lambda(double cosine, double alpha) {
   return (std::sqrt(1 + alpha * alpha * (1 - square) / square) - 1) / 2;
 }
 
-// A Fibonacci lattice, which is even along the sum of its axes as well: the limit of transmission cuts no
-// whole row of it.
+// A Fibonacci lattice is also even along the sum of its axes, so the limit of transmission cuts off no whole
+// row.
 constexpr int draws = 377, lattice_turn = 233;
 
 // Energy that white lobes may lose, so that none exceeds 1 between table entries.
@@ -72,13 +72,13 @@ double in_row(const Row& row, const ColumnPlace& at) {
   return std::lerp(double(row[at.left]), double(row[at.left + 1]), at.to_next);
 }
 
-/// Light from the cosine at `from`, and the fraction that is reflected.
+/// Light from a direction whose cosine is at `from`, and the fraction of it that is reflected.
 struct Sent {
   ColumnPlace from;
   double part;
 };
 
-/// A white lobe's light by equally weighted visible normals.
+/// The light that a white lobe sends to a viewer, by equally weighted visible normals.
 std::vector<Sent> sent_to(double cosine, double alpha) {
   const dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double lambda_o = smith_lambda(cosine, alpha);
@@ -165,7 +165,8 @@ double mean_lost(const float* row, double alpha) {
   return std::max(sum / places, 0.0);
 }
 
-/// 1 - 1 / eta of the thicker medium. Equal indices make no interface, so the limit is computed slightly off.
+/// 1 - 1 / eta of the thicker medium. Equal indices make no interface, so the first entry has a slight
+/// difference.
 double less_of(u32 index) {
   const double root = double(index) / (GLASS_INDICES - 1);
   return std::max(double(GLASS_REACH) * root * root, 1e-3);
@@ -181,7 +182,7 @@ double mean_entering(double eta) {
   return sum / 256;
 }
 
-/// Mean loss at the first facet, and where the lost light goes.
+/// Adds the mean loss at the first facet, and the share of the lost light that enters the thicker medium.
 void add_further(std::vector<float>& table) {
   table.resize(GLASS_LOST + GLASS_INDICES * 2 * GLASS_STEPS);
   for (u32 i = 0; i < GLASS_INDICES * 2 * GLASS_STEPS; ++i) {

@@ -9,8 +9,8 @@ namespace sundog {
 
 struct LobeRow {
   std::string_view name;
-  bool SceneFeatures::* feature;  // of scenes that have it; null: all do
-  u32 flags;                      // a material that has it has one of these
+  bool SceneFeatures::* feature;  // set in scenes that have the lobe; null: all do
+  u32 flags;                      // a material with the lobe has one of these
 };
 
 namespace lobe_features {

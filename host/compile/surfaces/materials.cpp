@@ -1,5 +1,5 @@
-// Packs materials with flags that follow from their values, merges equal media, adds scattering fog to the
-// world's, and tabulates dispersion for paths.
+// Packs materials with flags derived from their values, merges equal media, adds scattering fog to the
+// world's medium, and tabulates dispersion for paths.
 #include "compile/surfaces/materials.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::vector<float> columns_of_colors() {
 /// indices of dispersive media.
 class SpectraMaker {
  public:
-  /// Only paths carry wavelengths; else the table stays empty.
+  /// Only paths carry wavelengths; without them the table stays empty.
   explicit SpectraMaker(bool paths) : used_(paths) {}
 
   /// The offset of a medium's indices, shared by equal dispersions; NO_SPECTRUM without dispersion.
@@ -130,8 +130,8 @@ bool bends_light(const std::vector<Medium>& media) {
   return std::ranges::any_of(media, [&](const Medium& m) { return differs_in_index(m, media[0]); });
 }
 
-/// Whether a thin material's facets scatter transmitted paths. Partial opacity is seen straight through, so
-/// facets of such a material only reflect.
+/// Whether a thin material's facets scatter transmitted paths. A partly opaque material is seen straight
+/// through, so its facets only reflect.
 bool is_frosted(const SurfaceInputs& in, const MaterialDescription& material) {
   const bool there = material.opacity == 1 && material.textures.opacity < 0 && !material.one_sided;
   const double alpha = material.roughness * material.roughness;
@@ -139,9 +139,9 @@ bool is_frosted(const SurfaceInputs& in, const MaterialDescription& material) {
          alpha >= double(LEAST_ALPHA);
 }
 
-/// Whether shadow rays stop at a material. Paths themselves find light through refracting interfaces and
-/// frosted walls (as do photons), so shadow rays passing straight through would count it twice. `bends`: some
-/// medium of the scene refracts; `of_world`: the material's has the index of the world.
+/// Whether shadow rays stop at a material. Paths (and photons) find light through refracting interfaces and
+/// frosted walls themselves, so shadow rays passing straight through would count it twice. `bends`: some
+/// medium of the scene refracts; `of_world`: the material's medium has the world's index.
 bool stops_shadows(const SurfaceInputs& in, const MaterialDescription& material, bool bends, bool of_world) {
   const bool frosted = is_frosted(in, material);
   const bool by_path = (in.paths && bends && material.medium >= 0) || frosted;

@@ -4,8 +4,8 @@
 
 namespace sundog {
 
-/// Fills the media and materials of `out`, with a default one at the end where some object or mesh lacks
-/// one. Returns its index, or NO_MATERIAL.
+/// Fills the media and materials of `out`. If some object or mesh lacks a material, appends a default one and
+/// returns its index, else NO_MATERIAL.
 u32 add_materials(const SurfaceInputs& in, Surfaces& out);
 
 /// Whether some object or mesh lacks a material.

@@ -21,7 +21,7 @@ bool scatters(const Medium& medium) {
   return s.x != 0 || s.y != 0 || s.z != 0;
 }
 
-/// By the test of highlight() in kernels/plain/shade/lobes/highlight.cl.
+/// Uses the test of highlight() in kernels/plain/shade/lobes/highlight.cl.
 bool has_fractional_exponent(const Material& material) {
   const float exponent = material.specular.w;
   return exponent != std::floor(exponent) || exponent > GREATEST_WHOLE_EXPONENT;

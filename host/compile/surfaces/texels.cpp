@@ -1,4 +1,4 @@
-// Levels are rounded up to whole units, so that no tile crosses the end of a page.
+// Lays out an image's levels as tiles of texels, and writes its rows to them.
 #include "compile/surfaces/texels.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A texture's nodes follow those of its operands. An image is weighted by alpha where that is the material's
-// opacity.
+// Converts textures to nodes, which follow their operands' nodes, and writes their images. An image's colours
+// are weighted by alpha where alpha is the material's opacity.
 #include "compile/surfaces/textures.h"
 
 #include <fmt/format.h>
@@ -19,7 +19,8 @@
 namespace sundog {
 namespace {
 
-/// Zeros large memory with all threads before a single one fills it.
+/// Returns zeros. All threads touch the pages of large memory first, because one thread would fault them in
+/// slowly.
 std::vector<u32> zeroed_words(std::size_t count) {
   constexpr std::size_t step = 1024, least = std::size_t{1} << 20;
   std::vector<u32> words;
@@ -105,7 +106,7 @@ class TextureCompiler {
     return pack4({u, v});
   }
 
-  /// Tangents and steps along the surface need its coordinates.
+  /// Relief needs the surface's coordinates, for tangents and steps along it.
   void add_relief(const MaterialTextures& textures, MaterialMaps& maps) {
     out_.features.relief = true;
     out_.features.surface_coordinates = true;
@@ -129,7 +130,8 @@ class TextureCompiler {
     return in_.images[at];
   }
 
-  /// Adds the images whose alpha a texture uses. `depth` stops at graphs that add_graph() rejects.
+  /// Adds the images whose alpha a texture uses. `depth` ends the recursion in graphs that add_graph()
+  /// rejects.
   void find_cut_images(int index, const MaterialDescription& material, u32 depth = 0) {
     if (index < 0 || depth > MOST_TEXTURE_STACK) return;
     const TextureDescription& texture = texture_at(index, material);
@@ -137,7 +139,7 @@ class TextureCompiler {
     for (const int of : texture.of) find_cut_images(of, material, depth + 1);
   }
 
-  /// Whether colours are weighted by alpha: for materials whose opacity it is.
+  /// Whether an image's colours are weighted by its alpha: it is the material's opacity.
   bool counts_by_alpha(const ImageDescription& image) const {
     return image.srgb && image.pixels.channels == 4 &&
            std::ranges::any_of(cut_images_,
@@ -286,10 +288,10 @@ class TextureCompiler {
   const SurfaceInputs& in_;
   Surfaces& out_;
   using CutImages = std::vector<const ImageDescription*>;
-  CutImages cut_images_;                            // whose alpha is the current material's opacity
-  std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture and its images weighted by alpha
+  CutImages cut_images_;                            // images whose alpha is the current material's opacity
+  std::map<std::pair<int, CutImages>, u32> nodes_;  // by texture and images weighted by alpha
   std::map<std::pair<int, SampleUse>, std::pair<u32, u32>> levels_;  // by image: first level and count
-  std::vector<float> stops_;  // of ramps and formulas, after the byte values
+  std::vector<float> stops_;  // numbers of ramps and formulas, after the sRGB values
   std::vector<PatternFormula> formulas_;
   std::size_t units_ = 0;
 };

@@ -9,7 +9,7 @@ namespace sundog {
 /// after add_materials(). Throws SceneError for an unknown texture.
 void add_textures(const SurfaceInputs& in, Surfaces& out);
 
-/// Whether a material needs more than its Material: it has textures, or is not opaque.
+/// Whether a material needs a MaterialMaps: for textures, partial opacity, one side, metalness or a coat.
 bool has_maps(const MaterialDescription& material);
 
 /// The tables texels0 to texels3, zeroed, each except the last with at least `least_page` units. A page has

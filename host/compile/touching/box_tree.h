@@ -28,7 +28,7 @@ class BoxTree {
  private:
   struct Node {
     LooseBox all;
-    u32 first, count;  // of a leaf, into order_
+    u32 first, count;  // a leaf's range of order_
     u32 right;         // the left child follows its parent
   };
   u32 build(u32 first, u32 count);

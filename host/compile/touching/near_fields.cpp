@@ -10,7 +10,7 @@ namespace sundog {
 
 namespace {
 
-/// How far apart boxes may be, as a part of the larger one: rays arrive before a surface.
+/// The maximum gap between boxes, relative to the larger box, because rays stop short of a surface.
 constexpr double near = 1e-3;
 
 double extent(const Bounds& box) {

@@ -1,4 +1,4 @@
-// Finds distance fields that lie close together. In: their boxes and materials. Out: a mark on each.
+// Finds distance fields that lie close together, by their boxes and materials, and marks them.
 #pragma once
 #include <span>
 
@@ -9,9 +9,9 @@ namespace sundog {
 /// Whether rays see the walls of fields of this material from both sides.
 bool shows_both_walls(const SurfaceFacts& material);
 
-/// Marks fields of which rays remember their side (Instance::touch): those whose walls both show, as rays may
-/// start anywhere inside them, and those whose boxes all but meet one of them. Returns whether there are any.
-/// `boxes`: of the fields.
+/// Marks fields whose sides rays remember (Instance::touch): fields that show both walls, because rays may
+/// start anywhere inside them, and fields whose boxes nearly meet such a field's. Returns whether any field
+/// shows both walls. `boxes`: the fields' boxes.
 bool mark_near_fields(std::span<const Bounds> boxes, std::span<const SurfaceFacts> materials,
                       std::span<Instance> fields);
 

@@ -1,5 +1,5 @@
-// Compares spheres in closed form; halves cells of other pairs while both surfaces may pass nearly parallel,
-// in a half plane if they share an axis.
+// Compares spheres in closed form; for other pairs, halves cells in which both surfaces may pass nearly
+// parallel, in a half plane if they share an axis.
 #include "compile/touching/round_surfaces.h"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ struct Surface {
   dmat4 unit_from_world;
   double slope;      // maximum change of the unit distance per world length
   double curvature;  // maximum, in the world
-  double bends;      // how much more a surface may be curved there than in unit space
+  double bends;      // maximum ratio of curvature in the world to curvature in unit space
 
-  /// The maximum within a ball.
+  /// The maximum curvature within a ball.
   double curvature_near(const dvec3& world, double radius) const {
     if (!unit.revolution) return curvature;
     const dvec3 center(unit_from_world * glm::dvec4(world, 1));
@@ -67,14 +67,14 @@ Surface make_surface(const RoundSolid& solid, const Curvature& bends) {
   return {solid.unit, inverse, shrinks, bends.greatest * more, more};
 }
 
-constexpr double least_sine = 0.02;  // of the angle from which surfaces count as crossing, not parallel
+constexpr double least_sine = 0.02;  // a larger sine of their angle means that surfaces cross
 
 struct Ball {
   dvec3 center;
   double radius;
 };
 
-/// A sphere under uniform scaling.
+/// The solid as a ball, if it is a uniformly scaled sphere.
 std::optional<Ball> as_ball(const RoundSolid& solid) {
   if (solid.unit.shape != SHAPE_SPHERE) return std::nullopt;
   const glm::dmat3 linear(solid.world_from_unit);
@@ -131,7 +131,7 @@ struct CellSearch {
   }
 };
 
-/// Places the second of two solids that revolve about one axis, one of them a lathe, in the first's unit
+/// If both solids revolve about one axis and one of them is a lathe, places the second in the first's unit
 /// space.
 std::optional<dmat4> about_one_axis(const RoundSolid& a, const RoundSolid& b) {
   const auto revolves = [](const RoundSolid& solid) {
@@ -157,7 +157,7 @@ bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds
   if (!bends_a || !bends_b) return false;
   const auto ball_a = as_ball(a), ball_b = as_ball(b);
   if (ball_a && ball_b) return !part_or_cross(*ball_a, *ball_b, tolerance);
-  if (const auto relative = about_one_axis(a, b)) {  // one half plane shows all
+  if (const auto relative = about_one_axis(a, b)) {  // one half plane suffices
     const double slack = tolerance * norm(glm::dmat3(glm::inverse(a.world_from_unit)));
     const Surface of_a = make_surface({a.unit, dmat4(1)}, *bends_a),
                   of_b = make_surface({b.unit, *relative}, *bends_b);

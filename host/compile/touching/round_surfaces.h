@@ -11,7 +11,7 @@ struct RoundSolid {
 };
 
 /// Whether the surfaces of two solids may touch, within `tolerance`, where they share tangents in `box`;
-/// false if one is not curved. True if moderate work does not decide it.
+/// false if one is not curved, true if limited work cannot decide.
 bool round_surfaces_touch(const RoundSolid& a, const RoundSolid& b, const Bounds& box, double tolerance);
 
 }  // namespace sundog

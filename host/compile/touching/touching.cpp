@@ -1,8 +1,7 @@
-// Finds instances whose faces coincide with others, exactly or up to rounding: compile_touching() sets
-// Instance.touch of instances that may have a face on one of another, or of their own mesh, if at least one
-// of the two has an interior medium. Conservative: false positives only cost time. A flat face lies on a
-// convex solid if its plane is a supporting plane of the solid; triangles are compared with triangles; curved
-// surfaces are searched in ever smaller cells.
+// Sets Instance.touch of instances with a face that may coincide, exactly or up to rounding, with a face of
+// another instance or of their own mesh, if at least one of the two has an interior medium. Conservative:
+// false positives only cost time. A flat face lies on a convex solid if its plane is a supporting plane of
+// the solid; triangles are compared with triangles; curved surfaces are searched in ever smaller cells.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,7 +31,7 @@ struct Body {
   const Mesh* mesh;
   double size;  // largest coordinate, the scale of rounding
   bool transmits, plane;
-  std::vector<Face> faces;  // flat ones of a solid
+  std::vector<Face> faces;  // flat faces of a solid
 };
 
 double greatest(const Bounds& box) {
@@ -166,10 +165,10 @@ bool touch(const Body& a, const Body& b, double tolerance) {
                               tolerance);
 }
 
-/// Marks bodies as it finds them.
+/// Searches pairs of bodies and marks those that touch.
 class Search {
  public:
-  /// `instances`: those to mark.
+  /// `instances`: the instances to mark.
   Search(const TouchingInputs& in, std::span<Instance> instances) : camera_(in.camera_reach) {
     for (std::size_t i = 0; i < in.instances->instance_count; ++i)
       bodies_.push_back(make_body(in, instances[i], in.instances->boxes[i]));
@@ -230,8 +229,8 @@ class Search {
   bool found_ = false;
 };
 
-/// The largest coordinate for rounding at the camera: that of its position, rounded up to a power of two, so
-/// that a camera that orbits causes no new search.
+/// The largest coordinate for rounding at the camera, rounded up to a power of two so that an orbiting camera
+/// causes no new search.
 double camera_reach(const SceneDescription& scene, const dvec3& origin) {
   const dvec3 camera = glm::abs(scene.camera.position - origin);
   const double reach = std::max({camera.x, camera.y, camera.z});

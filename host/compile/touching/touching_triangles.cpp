@@ -36,8 +36,8 @@ Flat flatten(const PlacedTriangle& t, int away) {
   return flat;
 }
 
-/// Whether an edge of `a` separates it from `b`. Overlap below this share of a triangle is contact along an
-/// edge.
+/// Whether an edge of `a` separates it from `b`. A smaller overlap, relative to a triangle, is mere contact
+/// along an edge.
 bool parted_by_edge(const Flat& a, const Flat& b) {
   constexpr double share = 1e-4;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -58,7 +58,7 @@ bool parted_by_edge(const Flat& a, const Flat& b) {
 struct Entry {
   std::uint64_t cell;
   std::uint32_t index;
-  bool second;  // of the second list
+  bool second;  // the index is into the second list
 };
 
 class Grid {

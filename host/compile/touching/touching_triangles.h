@@ -1,4 +1,4 @@
-// Finds coincident triangles.
+// Tests whether placed triangles coincide: coplanar within a tolerance, and overlapping.
 #pragma once
 #include <span>
 

@@ -72,7 +72,7 @@ void set_motion(const Camera& camera, const Frame& opens, const Frame& closes, S
   info.moved_dy = pack(closes.dy - opens.dy);
 }
 
-/// Samples that grow in number must come from a sequence.
+/// Sample counts that grow need a sequence.
 u32 sampler_of(const RenderSettings& settings) {
   const bool grows = settings.sampling.threshold > 0 || settings.sampling.progressive;
   return grows && settings.sampler == SAMPLER_AUTO ? SAMPLER_SOBOL : settings.sampler;

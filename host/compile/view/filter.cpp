@@ -1,5 +1,5 @@
-// Integrates the filter in 2^14 steps and inverts the sum to distances at equal quantiles, apart for its
-// positive and negative part.
+// Integrates the filter in 2^14 steps and inverts the sum to distances at equal quantiles, separately for its
+// positive and negative parts.
 #include "compile/view/filter.h"
 
 #include <algorithm>
@@ -27,7 +27,8 @@ double blackman_harris(double x) {
 /// Radius 1, standard deviation 1/3, lowered to end at 0.
 double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
 
-/// Distances at equal quantiles of the part of one sign: FILTER_STEPS + 1 of them. Returns the part's area.
+/// Writes FILTER_STEPS + 1 distances at equal quantiles of the filter's part of one sign. Returns the part's
+/// area.
 double add_distances(Filter filter, double radius, double sign, float* distances) {
   constexpr int steps = 1 << 14;
   std::vector<double> area(steps + 1);  // from the centre to step i
@@ -40,7 +41,7 @@ double add_distances(Filter filter, double radius, double sign, float* distances
     const double wanted = area.back() * k / FILTER_STEPS;
     auto above = std::upper_bound(area.begin(), area.end(), wanted);
     if (above > end) above = end;
-    if (above == area.begin()) continue;  // there is no such part
+    if (above == area.begin()) continue;  // the filter has no such part
     const auto below = above - 1;
     const double share = *above > *below ? (wanted - *below) / (*above - *below) : 0;
     distances[k] = static_cast<float>(radius * (static_cast<double>(below - area.begin()) + share) / steps);

@@ -56,7 +56,7 @@ std::tuple<int, std::size_t, double> unfitness(double origin, double target,
   int sum = std::max(least, decimals(origin, rounding * std::abs(origin)));
   std::size_t others = 0;
   double last = std::numeric_limits<double>::quiet_NaN();
-  for (const double place : places) {  // coincident ones count once
+  for (const double place : places) {  // coincident places count once
     others += place != origin;
     if (place != std::exchange(last, place))
       sum += std::max(0, decimals(place - origin, rounding * std::max(std::abs(place), std::abs(origin))));
@@ -97,7 +97,7 @@ double far_part(double offset, double period, const Camera& camera) {
 }
 
 SplitPoint split_point(const dvec3& v) {
-  // Componentwise: for whole vectors GCC 12 converts to float and back in vain.
+  // Componentwise, because GCC 12 converts whole vectors to float and back in vain.
   const auto high = [](double value) { return static_cast<float>(value); };
   const auto low = [&](double value) { return static_cast<float>(value - double(high(value))); };
   return {{high(v.x), high(v.y), high(v.z), 0}, {low(v.x), low(v.y), low(v.z), 0}};

@@ -1,5 +1,5 @@
-// glTF 2.0 and GLB: reads one scene's nodes with their meshes, instances, camera and lights, as they stand or
-// at a time of the animations. In: JSON and buffers. Out: a Model whose objects share meshes.
+// Converts glTF 2.0 and GLB files, as JSON and buffers, to a Model whose objects share meshes: one scene's
+// nodes with their meshes, instances, camera and lights, at rest or at a time of the animations.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -88,7 +88,7 @@ class GltfReader {
         materials_(root, textures_, for_paths_),
         meshes_(root, accessors_, materials_, options.crease_angle.value_or(0)) {}
 
-  /// The nodes as they stand.
+  /// Reads the nodes at rest.
   Model read() {
     Model model;
     model.for_paths = for_paths_;
@@ -102,7 +102,7 @@ class GltfReader {
     return model;
   }
 
-  /// Moves what read() has returned to a time of the animations.
+  /// Moves the model from read() to a time of the animations.
   void pose(const Playing& playing, Model& model) {
     if (!animations_) animations_.emplace(root_, accessors_, nodes_.size());
     if (playing.animation.empty() && animations_->compete())
@@ -340,7 +340,7 @@ nlohmann::json parse(const Source& source, std::string_view text) {
   } catch (const nlohmann::json::exception& error) {
     const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
     std::string what = error.what();
-    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may end within a letter
+    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may cut a character
       const std::size_t rest = what.rfind("; expected ");
       what.erase(read, rest == what.npos || rest < read ? what.npos : rest - read);
     }
@@ -358,7 +358,7 @@ Model load_gltf(Source from, const ModelOptions& options) {
     Source source;
     GltfContainer container;
     nlohmann::json json;
-    std::optional<GltfReader> reader;  // of the others
+    std::optional<GltfReader> reader;  // refers to the members above
   };
   const auto file = std::make_shared<File>();
   file->source = std::move(from);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t element_array_buffer = 34963;  // target of a view: indices
 constexpr std::uint64_t most = std::uint64_t{1} << 53;
 
-// Calls `use` with a 0 of the component's type; the result's own 0 if glTF has no such component.
+// Calls `use` with a 0 of the component's type; returns a value-initialised result for unknown components.
 template <class Use>
 auto with_component(std::uint64_t component, const Use& use) -> decltype(use(float{})) {
   switch (component) {

@@ -52,7 +52,7 @@ class GltfAccessors {
   }
   /// `components` floats per element; normalised integers are scaled; decoded once. Infinities become NaN.
   const std::vector<float>& floats(std::size_t index);
-  /// floats() that must not be NaN. Throws SceneError.
+  /// floats() without NaN. Throws SceneError if there is one.
   const std::vector<float>& numbers(std::size_t index);
   [[noreturn]] void fail_at(const Accessor& accessor, const std::string& what) const;
   /// The bytes of the buffer view with index `at`.
@@ -63,7 +63,7 @@ class GltfAccessors {
   /// is out of proportion to the file and its buffers, as when a small file references the same data over and
   /// over.
   void spend(std::size_t amount, const std::string& pointer);
-  /// For what takes the place of what was created.
+  /// Resets spend(), for content that replaces what was created before.
   void forget_spent() { spent_ = 0; }
 
  private:

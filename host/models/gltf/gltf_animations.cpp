@@ -1,5 +1,5 @@
-// Moves a glTF file's nodes by its animations: the first that moves a node counts. Cubic keys are Hermite
-// splines (appendix C); rotations go the short way.
+// Moves a glTF file's nodes by its animations; the first one that moves a value wins. Cubic keys are Hermite
+// splines (appendix C); rotations take the shorter way.
 #include "models/gltf/gltf_animations.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ glm::dquat quaternion(const glm::dvec4& v) {
   return unit_quaternion(v.x, v.y, v.z, v.w).value_or(glm::dquat(1, 0, 0, 0));
 }
 
-/// The index of an accessor of one of two types.
+/// The index of an accessor of this type, with floats or, if `normalized`, normalised integers.
 std::size_t accessor_of(const JsonAt& at, const GltfAccessors& accessors, std::string_view type,
                         bool normalized) {
   const std::size_t index = at.index(accessors.all().size(), "accessor");
@@ -61,7 +61,7 @@ GltfAnimations::GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std
   }
 }
 
-/// None for a target without a node, which an extension may have, and for morph weights.
+/// Nothing for a target without a node, which an extension may have, and for morph weights.
 std::optional<GltfAnimations::Channel> GltfAnimations::read_channel(const JsonAt& at,
                                                                     const std::vector<JsonAt>& samplers,
                                                                     GltfAccessors& accessors,
@@ -124,7 +124,7 @@ glm::dvec4 GltfAnimations::Channel::at(double seconds) const {
            (3 * s2 - 2 * s3) * to + length * (s3 - s2) * value(key + 1, 0);
   }
   if (path != Path::rotation) return from + s * (to - from);
-  const glm::dquat turned = glm::slerp(quaternion(from), quaternion(to), s);  // the short way
+  const glm::dquat turned = glm::slerp(quaternion(from), quaternion(to), s);  // the shorter way
   return {turned.x, turned.y, turned.z, turned.w};
 }
 

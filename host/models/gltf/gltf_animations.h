@@ -12,29 +12,29 @@ namespace sundog::models {
 
 /// A node's transform relative to its parent.
 struct NodePose {
-  std::optional<dmat4> matrix;  // in place of the others
+  std::optional<dmat4> matrix;  // replaces the other members
   dvec3 translation{0};
   glm::dquat rotation{1, 0, 0, 0};
   dvec3 scale{1};
 };
 
-/// The quaternion at unit length; none for 0.
+/// The normalised quaternion; nothing for 0.
 std::optional<glm::dquat> unit_quaternion(double x, double y, double z, double w);
 
-/// The names of the document's animations, their numbers where they have none. Reads nothing else of them.
+/// The names of the document's animations; an unnamed animation gets its index. Reads nothing else.
 std::vector<std::string> animation_names(const nlohmann::json& document);
 
 class GltfAnimations {
  public:
-  /// Reads and checks all animations; those of morph weights are passed by. Throws SceneError.
+  /// Reads and checks all animations; ignores those of morph weights. Throws SceneError.
   GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std::size_t nodes);
 
-  /// Moves the nodes to where they are at that time. Of several animations that move a value of a node the
-  /// first one counts.
+  /// Sets the nodes' poses at a time. If several animations move the same value of a node, the first one
+  /// wins.
   void move(const Playing& playing, std::vector<NodePose>& nodes) const;
   /// The time of the last key.
   double last() const;
-  /// Whether one animation undoes what another does.
+  /// Whether several animations move the same value of a node.
   bool compete() const;
 
  private:

@@ -185,7 +185,7 @@ void GltfMaterials::transmit(const JsonAt& at, Entry& entry, dvec3 base, double 
   }
 }
 
-/// The texture of that name; with `channel`, that one of it.
+/// Reads the texture `name`; only its channel `channel`, unless that is -1.
 std::optional<TextureDescription> GltfMaterials::read_texture(const std::optional<JsonAt>& of,
                                                               const char* name, int channel) const {
   const auto found = of ? of->find(name) : std::nullopt;
@@ -232,7 +232,7 @@ void GltfMaterials::read_unlit(const JsonAt& at, Entry& entry, dvec3 base) {
   m.coat = 0;
 }
 
-/// The textures of KHR_materials_specular: alpha of one, colour of the other. Only non-metals use them.
+/// The textures of KHR_materials_specular: one's alpha and the other's colour. Only non-metals use them.
 void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const {
   const auto extension = at.extension("KHR_materials_specular");
   if (!extension || (!entry.by_values && entry.values.metalness > 0)) return;
@@ -240,7 +240,7 @@ void GltfMaterials::add_specular_textures(const JsonAt& at, Entry& entry) const 
   entry.specular_color = read_texture(extension, "specularColorTexture");
 }
 
-/// Red multiplies the coat's weight.
+/// The texture whose red channel multiplies the coat's weight.
 std::optional<TextureDescription> GltfMaterials::read_coat_texture(const JsonAt& at) const {
   return read_texture(at.extension("KHR_materials_clearcoat"), "clearcoatTexture", 0);
 }
@@ -281,7 +281,7 @@ void GltfMaterials::add_layers(const JsonAt& at, Entry& entry, double ior) const
     return;
   }
   MaterialDescription other;
-  // A texture that makes a full metal also tells where it is none.
+  // A texture on a full metal also determines where it is not metal, and so may transmit.
   Entry passing = entry;
   if (metal_map && entry.values.metalness == 1 && !is_partly_there(at)) {
     transmit(at, passing, entry.values.base, ior);
@@ -321,7 +321,7 @@ void GltfMaterials::blend(const JsonAt& at, Entry& entry, double alpha) {
     if (entry.opacity) entry.opacity->channel = 3;
     return;
   }
-  // Uniform: a thin pane.
+  // A uniform opacity makes a thin pane.
   const double opacity = mode == "BLEND" ? alpha : alpha >= cutoff ? 1 : 0;
   if (entry.by_paths) entry.by_paths->opacity = opacity;
   if (m.layers) {

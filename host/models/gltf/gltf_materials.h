@@ -44,7 +44,7 @@ class GltfMaterials {
     std::optional<TextureDescription> coat_weight, glass;  // for by_paths, which may have its own medium
     bool paths_have_medium = false;
     MetalRough values;
-    double transmitted = 0;  // of the non-metal; multiplied by the transmission texture
+    double transmitted = 0;  // share of the non-metal; multiplied by the transmission texture
     bool two_sided = false, unlit = false,
          by_values = false;  // textures change metalness or roughness
     bool fades = false;      // vertex alpha multiplies the opacity

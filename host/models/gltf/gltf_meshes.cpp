@@ -103,7 +103,7 @@ std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, 
   return index;
 }
 
-/// Four numbers for each of `count` vertices; other data has no effect.
+/// An accessor of four numbers for each of `count` vertices; nothing for other data.
 std::optional<std::size_t> GltfMeshes::read_four(const JsonAt& attributes, const char* name,
                                                  std::size_t count) const {
   const auto found = attributes.find(name);

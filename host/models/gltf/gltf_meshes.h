@@ -21,11 +21,11 @@ class GltfMeshes {
   const std::string& name(std::size_t mesh) const { return meshes_[mesh].name; }
   /// The index in `model` of a mesh, added at its first use; -1 if it has no triangles (points, lines).
   int use(std::size_t index, Model& model);
-  /// Whether its vertices have joints, which then replace its node's transform.
+  /// Whether the mesh's vertices have joints, which then replace its node's transform.
   bool has_joints(std::size_t index) const;
   /// use() for the mesh as `skin` deforms it, in world space; `joints` are world matrices.
   int use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints, Model& model);
-  /// From now on use_skinned() replaces the meshes that it has added.
+  /// Makes later calls of use_skinned() replace the meshes that it has added.
   void skin_anew();
 
  private:

@@ -1,4 +1,4 @@
-// glTF's skins (glTF 2.0, section 3.7.3.3) in the file's pose, without animation.
+// glTF's skins (glTF 2.0, section 3.7.3.3): moves vertices by joint matrices.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>

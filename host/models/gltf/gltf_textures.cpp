@@ -1,4 +1,4 @@
-// A file's transforms have v down: coordinates are flipped before and after.
+// Reads samplers, textures and images. Files have v down, so their transforms are flipped before and after.
 #include "models/gltf/gltf_textures.h"
 
 #include <fmt/format.h>
@@ -35,8 +35,8 @@ TextureDescription read_sampler(const JsonAt& at) {
   return sampled;
 }
 
-/// From the model's coordinates, v up, to the texture's, v up, through the file's matrix, whose v points
-/// down. Its rotation is clockwise with v down.
+/// Converts the file's matrix, for coordinates with v down, to one for coordinates with v up. The file's
+/// rotation is clockwise with v down.
 glm::dmat3 read_uv_transform(const JsonAt& at) {
   const auto pair = [&](const char* key, double otherwise) {
     const auto found = at.find(key);

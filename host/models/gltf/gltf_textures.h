@@ -13,7 +13,7 @@ namespace sundog::models {
 /// Maximum number of texture coordinate sets.
 inline constexpr std::uint64_t most_uv_sets = 4;
 
-/// The place that a material's textures are read from.
+/// The source of a material's textures.
 class TextureSource {
  public:
   virtual ~TextureSource() = default;

@@ -123,7 +123,7 @@ void find_in_mesh(const json& mesh, Model& model) {
   }
 }
 
-/// Those of materials are reported where materials use them; KHR_texture_basisu likewise.
+/// Extensions of materials and KHR_texture_basisu are reported where materials use them.
 bool is_known(const std::string& extension) {
   constexpr std::array known{"KHR_lights_punctual",   "EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
                              "KHR_texture_transform", "EXT_texture_webp",        "KHR_texture_basisu"};

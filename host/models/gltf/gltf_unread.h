@@ -7,7 +7,7 @@
 
 namespace sundog::models {
 
-/// Adds them to Model::unread, for a document that has been read; validates nothing else.
+/// Adds these features to Model::unread, for a document that has been read; validates nothing else.
 void find_unread(const nlohmann::json& document, Model& model);
 
 /// Throws SceneError for an unsupported required extension, unless it only affects colours.

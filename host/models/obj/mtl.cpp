@@ -1,6 +1,5 @@
-// Reads MTL material libraries (Wavefront, "MTL material format", 1995). Colours are taken as linear. In: a
-// library's text. Out: phong materials, dielectrics and their media; glTF's materials of PBR statements
-// (mtl_pbr.h).
+// Reads MTL material libraries (Wavefront, "MTL material format", 1995) as phong materials, dielectrics and
+// their media, or as glTF's materials for PBR statements (mtl_pbr.h). Colours are taken as linear.
 #include "models/obj/mtl.h"
 
 #include <fmt/format.h>
@@ -31,7 +30,7 @@ std::optional<dvec3> read_color(TextReader& text) {
   return glm::max(dvec3(red, green, blue), dvec3(0));
 }
 
-/// Statements that affect the picture.
+/// Map statements that are read.
 constexpr std::string_view read_maps[] = {"map_kd",   "map_ka", "map_ks", "map_ke", "map_d",
                                           "map_bump", "bump",   "norm",   "map_kn", "map_disp",
                                           "disp",     "map_ns", "map_pr", "map_pm", "map_ps"};
@@ -40,7 +39,7 @@ constexpr std::pair<std::string_view, const char*> unread_properties[] = {
     {"refl", "reflection maps"},      {"map_refl", "reflection maps"},
     {"map_pc", "clearcoat textures"}, {"map_pcr", "clearcoat textures"}};
 
-/// Zeros mean that the feature is unused.
+/// Notes a statement that is not read. Zeros mean that the feature is unused.
 void note_unread(TextReader text, std::string_view key, MtlStatements& m) {
   const auto all_zero = [&] {
     while (!text.at_line_end())
@@ -58,7 +57,7 @@ double read_opacity(TextReader& text) {
   return std::clamp(text.number("d"), 0.0, 1.0);
 }
 
-/// `key` is in lower case, since programs differ.
+/// `key` is in lower case, because programs differ in case.
 void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
   if (key == "ka") m.ambient = read_color(text);
   if (key == "kd") m.diffuse = read_color(text);
@@ -79,7 +78,7 @@ void read_statement(TextReader& text, std::string_view key, MtlStatements& m) {
     m.illumination = static_cast<int>(std::clamp<std::int64_t>(text.integer("illum"), 0, 10));
 }
 
-/// MeshLab writes Tr 1 for opaque materials; nobody defines one that is not seen.
+/// MeshLab writes Tr 1 for opaque materials; nobody defines an invisible one.
 bool is_opaque_by_tr(const MtlStatements& m) { return !m.opacity && m.transparency == 1; }
 
 /// Some programs write Tr for d, the format's own keyword.
@@ -128,7 +127,8 @@ void add_relief_maps(const MtlStatements& m, const Source& obj, MtlTextures& tex
     }
 }
 
-// Illumination models 0 and 1 have none. Exporters write "Ns 0" for dull materials, whatever Ks they write.
+// Illumination models 0 and 1 have no highlight. Exporters write "Ns 0" for dull materials, whatever Ks they
+// write.
 bool has_highlight(const MtlStatements& m) { return m.illumination >= 2 && m.exponent > 0; }
 
 void add_opacity_map(const MtlStatements& m, const Source& obj, MtlTextures& textures,
@@ -171,7 +171,7 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
   const bool glass = opacity < 1 || (m.filter && (traced || illum == 9) && *m.filter != dvec3(0));
   MaterialDescription out;
   out.name = m.name;
-  if (m.diffuse) out.ambient *= *m.diffuse / out.diffuse;  // without Ka: of Kd's colour
+  if (m.diffuse) out.ambient *= *m.diffuse / out.diffuse;  // without Ka: Kd's colour
   out.ambient = m.ambient.value_or(out.ambient);
   out.diffuse = m.diffuse.value_or(out.diffuse);
   out.specular = m.specular.value_or(out.specular);
@@ -199,7 +199,7 @@ MaterialDescription make_material(const MtlStatements& m, Model& model) {
   return out;
 }
 
-/// A material of PBR statements with its relief and opacity.
+/// Adds a material of PBR statements with its relief and opacity.
 int add_pbr_material(const MtlStatements& m, const Source& obj, MtlTextures& textures, Model& model) {
   const double opacity = opacity_of(m);
   const int index = add_pbr(m, m.has_map("map_d") ? 1 : opacity, obj, textures, model);

@@ -23,8 +23,8 @@ class MaterialLibrary {
   /// the folder of `obj` without permission. Throws SceneError with the MTL file's line.
   void load(const Source& obj, const TextReader& line, std::string_view names);
 
-  /// The material's index, added to the model at its first use; -1 for an unknown name, and one warning for
-  /// all of these.
+  /// The material's index, added to the model at its first use; -1 for an unknown name. One warning covers
+  /// all unknown names.
   int find(const Source& obj, std::string_view name);
 
  private:
@@ -37,7 +37,7 @@ class MaterialLibrary {
   std::map<std::string, MtlStatements, std::less<>> stated_;
   std::map<std::string, int, std::less<>> index_;
   std::size_t undefined_ = 0, warning_ = 0;  // undefined materials; index of the warning about them
-  std::string names_;                        // the first few
+  std::string names_;                        // the first few of them
 };
 
 }  // namespace sundog::models

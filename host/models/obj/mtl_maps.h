@@ -30,8 +30,8 @@ class MtlTextures {
  public:
   explicit MtlTextures(Model& model) : model_(model) {}
 
-  /// Adds a texture whose file lies beside `library`; -1, with a warning, if the file is missing or, if not
-  /// allowed, outside the folder of `obj`.
+  /// Adds a texture whose file lies beside `library`; -1, with a warning, if the file is missing or lies
+  /// outside the folder of `obj` without permission.
   int use(const MtlMap& map, bool srgb, const Source& obj, const std::filesystem::path& library);
 
  private:

@@ -28,7 +28,7 @@ class PbrTextures final : public TextureSource {
     return texture;
   }
 
-  /// glTF has roughness in green and metalness in blue, MTL usually a file for each.
+  /// glTF has roughness in green and metalness in blue; MTL usually has a file for each.
   int use(const TextureDescription& texture, bool, Model& model) override {
     if (texture.image == base_color) return one("map_kd", true);
     if (texture.image == emission) return one("map_ke", true);
@@ -47,7 +47,7 @@ class PbrTextures final : public TextureSource {
     return textures_.use(map, srgb, obj_, stated_.library);
   }
 
-  /// The texture with 1 in the other channels.
+  /// The texture, with the other channels replaced by 1.
   int only(int channel, const char* key, Model& model) {
     const int index = one(key, false);
     if (index < 0) return -1;
@@ -63,7 +63,7 @@ class PbrTextures final : public TextureSource {
   MtlTextures& textures_;
 };
 
-/// A number in [0, 1]; 1 if a texture alone is stated.
+/// A number in [0, 1]; 1 if only a texture is stated.
 double share(const MtlStatements& m, const char* key, const char* map, double absent) {
   const auto found = m.pbr.find(key);
   if (found == m.pbr.end()) return m.has_map(map) ? 1 : absent;

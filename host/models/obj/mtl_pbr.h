@@ -28,14 +28,14 @@ struct MtlStatements {
   bool has_map(const char* key) const { return maps.contains(key); }
 };
 
-/// The keywords of numbers, in lower case.
+/// Keywords of statements with numbers, in lower case.
 inline constexpr std::string_view pbr_numbers[] = {"pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"};
 
-/// Whether such statements make a material. Numbers that are all zeros mean that they are unused.
+/// Whether the statements define a physically based material. Numbers that are all 0 count as unused.
 bool has_pbr(const MtlStatements& m);
 
-/// Adds the material that glTF has for the statements (gltf/gltf_materials.h), without relief and a texture
-/// of opacity; returns its index. Kd is the base colour, `opacity` its alpha, Ni the index above 1, Tf
+/// Converts the statements to a glTF material (gltf/gltf_materials.h), without relief and opacity texture,
+/// adds it, and returns its index. Kd is the base colour, `opacity` its alpha, Ni the index if above 1; Tf
 /// transmits through a thin wall. Without Pr, Ns gives the roughness by Blender's formula.
 int add_pbr(const MtlStatements& m, double opacity, const Source& obj, MtlTextures& textures, Model& model);
 

@@ -26,7 +26,7 @@ struct Corner {
   bool operator==(const Corner&) const = default;
 };
 
-/// Statements that affect the picture.
+/// Statements that affect the picture but are not read.
 constexpr std::pair<std::string_view, const char*> unread_statements[] = {{"l", "lines"},
                                                                           {"p", "points"},
                                                                           {"curv", "curves"},
@@ -130,7 +130,7 @@ class ObjReader {
     newest_.push_back(none);
   }
 
-  // References to what the file has not defined.
+  // Counts references to values that the file does not define, or that are not numbers, and keeps the first.
   struct Lost {
     std::size_t count = 0;
     std::string place, what;  // of the first

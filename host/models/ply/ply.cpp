@@ -56,7 +56,7 @@ class DataReader {
         skip(element);
       }
     }
-    // Some of several elements of faces may have neither.
+    // Some elements of faces may have neither colours nor texture coordinates.
     const std::size_t triangles = content_.mesh.triangles.size();
     if (!content_.face_colors.empty()) content_.face_colors.resize(triangles, glm::vec3(1));
     if (!content_.corner_uvs.empty()) content_.corner_uvs.resize(3 * triangles);
@@ -136,8 +136,8 @@ class DataReader {
     }
   }
 
-  // Reads faces in parallel if all are triangles. False, with nothing read, if one is none or has a corner
-  // that read_faces() would refuse.
+  // Reads faces in parallel if all are triangles. Returns false, with nothing read, if one is not a triangle
+  // or has a corner that read_faces() would refuse.
   bool read_triangles(const PlyElement& element, std::size_t list) {
     const std::size_t bytes = Cursor::bytes_of_triangles(element);
     if (bytes == 0 || cursor_.bytes_left() / bytes < element.count) return false;
@@ -249,7 +249,7 @@ std::vector<std::uint32_t> split_by_corners(const Content& content, Mesh& mesh) 
   return original;
 }
 
-// A material for each of the header's textures, or one of the vertices' colours.
+// Adds a material for each of the header's textures, or one that shows vertex colours.
 void add_materials(const Source& source, const PlyHeader& header, const Content& content, Mesh& mesh,
                    Model& model) {
   if (mesh.triangles.empty()) return;

@@ -37,9 +37,9 @@ class AsciiPlyCursor {
   void end_element(std::string_view element) { text_.expect_line_end(element); }
   /// Minimum bytes of a value: a digit and a blank.
   static std::size_t least_bytes(PlyType) { return 2; }
-  /// Bytes of an element whose lists have three values each; 0 where elements differ.
+  /// Bytes of an element whose lists have three values each; 0 if elements differ in size.
   static std::size_t bytes_of_triangles(const PlyElement&) { return 0; }
-  /// Bytes of an element without lists; 0 where elements differ.
+  /// Bytes of an element without lists; 0 if elements differ in size.
   static std::size_t bytes_of_scalars(const PlyElement&) { return 0; }
   void skip(std::size_t) {}
   std::size_t bytes_left() const { return text_.bytes_left() + 1; }  // the last line may lack its newline

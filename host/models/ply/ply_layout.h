@@ -1,4 +1,4 @@
-// Maps the properties of a PLY's elements to the ones that are read.
+// Maps the properties of PLY elements to the values that are read.
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
@@ -51,7 +51,7 @@ using Values = std::array<double, slot_count + 1>;
 /// Converts a property's value: colours to linear, alpha to 0..1.
 double slot_value(Slot slot, PlyType type, double value);
 
-/// White if NaN.
+/// The colour of an element; white if NaN.
 glm::vec3 color_of(const Values& values);
 
 }  // namespace sundog::models::ply

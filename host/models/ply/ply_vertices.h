@@ -1,4 +1,4 @@
-// Reads the vertices of a PLY: in parallel where each has the same number of bytes.
+// Reads the vertices of a PLY file, in parallel if all have the same size in bytes.
 #pragma once
 #include <tbb/parallel_for.h>
 
@@ -21,10 +21,10 @@
 
 namespace sundog::models::ply {
 
-// The result so far.
+// The content read so far.
 struct Content {
   Mesh mesh;
-  dvec3 origin{0};                     // of the positions
+  dvec3 origin{0};                     // origin of the positions
   std::vector<glm::vec3> face_colors;  // per triangle, if faces have colours and vertices have none
   std::vector<glm::vec2> corner_uvs;   // three per triangle, if faces have them and vertices have none
   std::vector<std::uint32_t> images;   // per triangle, if faces name them
@@ -53,14 +53,14 @@ void read_element(Cursor& cursor, const PlyElement& element, const Layout& layou
   cursor.end_element(element.name);
 }
 
-/// The file must be known to hold that many vertices.
+/// Reads the vertices of an element. The file must be known to hold that many.
 template <class Cursor>
 class VertexReader {
  public:
   VertexReader(const PlyElement& element, Content& content)
       : element_(element), layout_(element), content_(content) {}
 
-  /// Moves the cursor behind the vertices.
+  /// Moves the cursor past the vertices.
   void read(Cursor& cursor) {
     if (!layout_.has[px] || !layout_.has[py] || !layout_.has[pz])
       cursor.fail("a vertex needs the properties x, y and z");
@@ -101,7 +101,7 @@ class VertexReader {
   void read_ranges(Cursor& cursor) {
     const std::size_t count = element_.count, bytes = Cursor::bytes_of_scalars(element_);
     if (bytes == 0) return read_range(cursor, 0, count);
-    // The first bad vertex is named, whichever thread finds one first.
+    // The first bad vertex of the file is reported, whichever thread fails first.
     std::vector<std::exception_ptr> failures((count + range_size - 1) / range_size);
     tbb::parallel_for(std::size_t{0}, failures.size(), [&](std::size_t range) {
       Cursor own = cursor;

@@ -1,4 +1,4 @@
-// A light, as a scene file or a model has it.
+// A light, as a scene file or a model describes it.
 #pragma once
 #include <glm/glm.hpp>
 #include <string>

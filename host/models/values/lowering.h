@@ -1,4 +1,4 @@
-// kernels/plain/shade/lowering.h in doubles.
+// Types and functions with which the host computes kernels/plain/shade/lowering.h in double precision.
 #pragma once
 #include <algorithm>
 #include <cmath>

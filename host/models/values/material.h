@@ -1,4 +1,4 @@
-// Materials and media, as a scene file or a model has them.
+// Materials and media, as a scene file or a model describes them.
 #pragma once
 #include <glm/glm.hpp>
 #include <optional>
@@ -54,7 +54,7 @@ struct MaterialDescription {
   MaterialTextures textures{};  // factors on the values above
   std::optional<MetalRough> metal_rough{};  // replaces ambient, diffuse, specular and reflection
   double normal_scale = 1;                  // factor on the slopes of a normal map
-  double bump = 1;                          // height of a 1 of the height texture, object space
+  double bump = 1;                          // height of texture value 1, object space
   double bump_uv = 0;                       // likewise, in units of u and v; added
   double parallax = 0;                      // depth of height 0 below height 1, object space; 0: none
   int displaced_by = -1;                    // index into textures: height map that displaces meshes' vertices
@@ -63,7 +63,7 @@ struct MaterialDescription {
   double displacement_edge = 0;             // edge length of the triangles, object space; 0: about a texel
   double occlusion = 1;                     // strength of the occlusion texture, [0, 1]
   double coat = 0;                          // reflectance of a clear layer on top, [0, 1], times its texture
-  std::string group{};                      // of lights, that its emission belongs to; empty: none
+  std::string group{};                      // light group of its emission; empty: none
   std::optional<OpenPbr> layers{};          // layers over these terms, and their base: set_openpbr()
 };
 

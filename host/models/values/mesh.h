@@ -32,7 +32,8 @@ bool is_finite(const glm::vec<N, T>& v) {
   return std::isfinite(glm::dot(v, glm::vec<N, T>(0)));
 }
 
-/// A triangle's normal, twice its area long; in double precision, so that tiny and huge triangles have one.
+/// A triangle's normal with twice its area as length; in double precision, so that tiny and huge triangles
+/// have one.
 inline glm::dvec3 face_normal(const Mesh& mesh, const glm::uvec3& triangle) {
   const glm::dvec3 p(mesh.positions[triangle.x]);
   return glm::cross(glm::dvec3(mesh.positions[triangle.y]) - p, glm::dvec3(mesh.positions[triangle.z]) - p);

@@ -5,7 +5,7 @@
 
 namespace sundog {
 
-// Keys in scene files that no texture takes the place of: members of OpenPbr.
+// Keys in scene files that no texture can replace: members of OpenPbr.
 //   KEY(type, name, default)
 #define OPENPBR_PLAIN_KEYS(KEY)                                                                           \
   KEY(double, base_weight, 1)                                                                             \
@@ -63,7 +63,7 @@ struct MediumDescription;
 
 /// Converts `values` to the material's terms, and stores them as its layers:
 ///   diffuse       base_weight base_color, also the metal's colour; a tenth of it ambient where matte
-///   reflection    transmission_weight (1 - base_metalness) specular_color, by Fresnel: what covers a medium
+///   reflection    transmission_weight (1 - base_metalness) specular_color, by Fresnel: a medium's interface
 ///   transmission  the same share of transmission_color, or of 1 if the medium has that colour at a depth
 ///   roughness, emission, opacity by their names
 /// If a texture sets metalness, these are the terms of the non-metal part; if one sets transmission, the

@@ -54,7 +54,7 @@ dvec2 ProfileCubic::bend(double t) const {
 }
 
 std::vector<ProfileCubic> monotone_parts(const ProfileCubic& cubic) {
-  constexpr double least = 1e-6;  // the length of a part
+  constexpr double least = 1e-6;  // minimum length of a part
   const Powers p = powers_of(cubic);
   std::vector<double> cuts;
   for (const int axis : {0, 1}) {

@@ -15,7 +15,7 @@ struct ProfileCubic {
   ProfileCubic reversed() const { return {d, c, b, a}; }
 };
 
-/// The cubic in parts, each with monotone coordinates and derivatives of both; the ends of neighbours are
+/// Cuts the cubic into parts on which both coordinates and their derivatives are monotone; adjacent ends are
 /// equal.
 std::vector<ProfileCubic> monotone_parts(const ProfileCubic& cubic);
 

@@ -12,7 +12,7 @@ float4 row(double x, double y, double z, double w) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
 }
 
-/// By Gauss' rule of five points, on four pieces.
+/// The length by Gauss' rule of five points, on four pieces.
 double length_of(const ProfileCubic& p) {
   constexpr double places[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                0.9061798459386640},
@@ -28,7 +28,7 @@ double length_of(const ProfileCubic& p) {
 ProfileArc arc_of(const ProfileCubic& p) {
   const dvec2 one = 3.0 * (p.b - p.a), size = p.d - p.a;
   dvec2 two = 3.0 * (p.a - 2.0 * p.b + p.c), three = size + 3.0 * (p.b - p.c);
-  for (dvec2* bend : {&two, &three})  // a line is one, in spite of rounding
+  for (dvec2* bend : {&two, &three})  // keep lines straight in spite of rounding
     if (glm::length(*bend) < 1e-12 * glm::length(one)) *bend = dvec2(0);
   return {row(p.a.x, one.x, two.x, three.x), row(p.a.y, one.y, two.y, three.y), row(p.d.x, p.d.y, 0, 0), {}};
 }
@@ -53,7 +53,7 @@ double greatest_curvature(const ProfileCubic& part) {
   return most;
 }
 
-/// The distance of q from a part: from the nearest of eight chords, by Newton's method.
+/// The distance of q from a part, by Newton's method from the nearest of eight chords.
 double distance_from(const ProfileCubic& p, const dvec2& q) {
   constexpr int chords = 8;
   double best = 0, least = INFINITY;
@@ -75,7 +75,7 @@ double distance_from(const ProfileCubic& p, const dvec2& q) {
   return std::min({glm::length(p.at(best) - q), glm::length(p.a - q), glm::length(p.d - q)});
 }
 
-/// Whether the line from q away from the axis crosses a part.
+/// Whether a ray from q away from the axis crosses a part.
 bool is_beside(const ProfileCubic& p, const dvec2& q) {
   if ((p.a.y <= q.y) == (p.d.y <= q.y)) return false;
   if (std::max(p.a.x, p.d.x) <= q.x) return false;
@@ -113,7 +113,7 @@ double Revolution::reach(double across, double along) const {
   for (const ProfileCubic& part : parts_) {
     offer(part.a);
     offer(part.d);
-    // Where the slope along the direction changes its sign, at most once: it is monotone, or has an extremum.
+    // The maximum lies where the slope along the direction changes from rising to falling.
     constexpr int pieces = 16;
     const auto slope = [&](double t) { return part.slope(t).x * across + part.slope(t).y * along; };
     for (int i = 0; i < pieces; ++i) {

@@ -20,12 +20,12 @@ class Revolution {
   Revolution(const std::vector<ProfileCubic>& profile, bool closed, double scale);
 
   const std::vector<ProfileArc>& arcs() const { return arcs_; }
-  /// The support along a direction across the axis and one along it.
+  /// The maximum of across * radius + along * height over the profile.
   double reach(double across, double along) const;
-  /// The distance of a point from the surface; below 0 inside. That of a sheet is nowhere below 0.
+  /// The distance of a point from the surface, negative inside; a sheet has no inside.
   double distance(const dvec3& q) const;
-  /// The greatest of both principal curvatures on the parts of the profile that come as near to a point as
-  /// this; infinite at a cone's tip.
+  /// The greatest principal curvature on the parts of the profile that may come within `within` of `near`;
+  /// infinite at a cone's tip.
   double greatest_curvature(const dvec3& near, double within) const;
   /// Heights and outer radii of flat rings (x: radius).
   std::vector<dvec2> rings() const;
@@ -33,7 +33,7 @@ class Revolution {
  private:
   std::vector<ProfileCubic> parts_;  // monotone
   std::vector<ProfileArc> arcs_;
-  std::vector<double> curvatures_;  // the greatest of each part
+  std::vector<double> curvatures_;  // greatest curvature of each part
   bool closed_;
 };
 

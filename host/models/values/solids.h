@@ -1,5 +1,5 @@
-// The exact solids of shared/shapes.h, a struct each: its sizes, the unit shape that it is after its
-// transform, and, as static functions, the geometry of that.
+// The exact solids of shared/shapes.h, one struct each: its sizes, its unit shape and the transform from
+// there, and, as static functions, the unit shape's geometry.
 #pragma once
 #include <fmt/format.h>
 
@@ -44,9 +44,9 @@ struct Curvature {
 
 double box_distance(const dvec3& p, const dvec3& half, double round);
 
-/// Throws std::domain_error, for a size that is no number above 0.
+/// Throws std::domain_error unless `size` is finite and above 0.
 void want_positive(double size, const char* name);
-/// Throws std::domain_error that says what is `wanted`.
+/// Throws std::domain_error that names `wanted` unless `fine`.
 inline void want(bool fine, const std::string& wanted) {
   if (!fine) throw std::domain_error("wanted " + wanted);
 }
@@ -54,10 +54,10 @@ inline void want(bool fine, const std::string& wanted) {
 inline float to_float(double x) { return static_cast<float>(x); }
 inline double across(const dvec3& d) { return std::hypot(d.x, d.z); }
 
-// half_size(): of the bounding box about the origin. open(): has no inside. unit() throws std::domain_error
-// for sizes that the solid cannot have. reach(): the support, the maximum of dot(d, p) over its points p; not
-// of unbounded ones. distance(): a lower bound, zero on the surface, negative inside, slope at most 1; a
-// cylinder or cone counts as capped; not of those that are always open.
+// half_size(): half the size of the bounding box about the origin. open(): has no inside. unit() throws
+// std::domain_error for sizes that the solid cannot have. reach(): the support, the maximum of dot(d, p) over
+// its points p; unbounded solids have none. distance(): a lower bound, zero on the surface, negative inside,
+// slope at most 1; a cylinder or cone counts as capped; solids that are always open have none.
 
 struct PlaneShape {  // y = 0, normal +y, inside below
   bool open() const { return false; }
@@ -230,16 +230,16 @@ struct RoundBoxShape {  // outer half sizes, edge radius
   }
 };
 
-/// A surface of revolution about y, to the right of its profile; of the profile the middle height is 0.
+/// A surface of revolution about y. Its outside is to the right of the profile, whose middle height is 0.
 struct LatheShape {
   std::vector<ProfileCubic> profile{{{0, -1}, {0, -1}, {1, -1}, {1, -1}},
                                     {{1, -1}, {0.2, -0.4}, {0.2, 0.4}, {1, 1}},
                                     {{1, 1}, {1, 1}, {0, 1}, {0, 1}}};
-  bool closed = true;  // it ends on the axis, or where it began, and encloses a solid
+  bool closed = true;  // the profile ends on the axis, or where it began, and encloses a solid
   double radius = 1, half_height = 1;
   dvec3 half_size() const { return {radius, half_height, radius}; }
   bool open() const { return !closed; }
-  UnitShape unit() const {  // its rows begin at 0
+  UnitShape unit() const {  // its profile rows begin at 0
     constexpr std::size_t most_arcs = 1024;
     const double widest = std::max(radius, half_height);
     want_positive(radius, "radius");

@@ -16,7 +16,7 @@ struct PatternFormula;
 
 /// An image and its pixels. Colour bytes are sRGB; data (`srgb` false) is linear.
 struct ImageDescription {
-  std::string name;         // the file's, or its place in a file
+  std::string name;         // the file's name, or its place in a file
   std::string file, place;  // for messages
   std::string encoded;      // the file's bytes until decode_images() has decoded `pixels`
   int file_width = 0, file_height = 0;

@@ -1,4 +1,5 @@
-// Rounds boxes outwards to steps of a power of two per axis; children are relative to the first of a kind.
+// Rounds boxes outwards to a grid with a power-of-two step per axis; stores children relative to the first of
+// their kind.
 #include "render/device/compact_nodes.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int bias = 127, steps = 255;
 
-/// The smallest power of two, as a biased exponent, such that 255 of them cover `extent`.
+/// The smallest power of two, as a biased exponent, such that 255 steps of it cover `extent`.
 u32 step_exponent(double extent) {
   int exponent = 0;
   if (extent > 0) std::frexp(extent / steps, &exponent);  // extent / steps < 2^exponent

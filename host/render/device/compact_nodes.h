@@ -1,4 +1,4 @@
-// The BVH for devices with one ray per lane: each node has its own grid, see CompactNode.
+// Converts a BVH for devices with one ray per lane: each node gets its own grid, see CompactNode.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,4 +1,4 @@
-// Uploads the tables that differ from those on the device.
+// Uploads the tables that differ from those on the device, after checking that they fit.
 #include "render/device/device_scene.h"
 
 #include <fmt/format.h>
@@ -63,7 +63,8 @@ class Uploader {
     figures_.bytes += bytes;
     figures_.tables += bytes > 0;
   }
-  /// Shares large tables in place if the device can; copies of small tables can change in their buffers.
+  /// Shares large tables in place if the device can; small ones are copied, so that their buffers can be
+  /// rewritten.
   template <class T>
   void put(const char* label, const SharedTable<T>& table, Buffer<T>& buffer) {
     constexpr std::size_t large = std::size_t{1} << 20;

@@ -21,10 +21,10 @@ struct DeviceScene {
 /// Statistics of an upload.
 struct UploadFigures {
   std::uint64_t tables = 0, bytes = 0;
-  bool numbers = false;  // whether SceneInfo was written, which is not counted
+  bool numbers = false;  // whether SceneInfo was written; not counted above
 };
 
-/// Size of the scene on a device, in bytes.
+/// The scene's size on a device in bytes.
 std::size_t scene_bytes(const CompiledScene& scene);
 
 /// Throws DeviceError if the device cannot hold the scene. camera_media is empty.

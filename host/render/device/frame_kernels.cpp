@@ -1,5 +1,5 @@
-// In order: the integrator's kernel, those of first surfaces and photons, the scene's tables, the media
-// around the camera.
+// Builds or reuses, in this order: the integrator's kernel, the kernels of first surfaces and photons, the
+// scene's tables, the media around the camera.
 #include "render/device/frame_kernels.h"
 
 #include <fmt/format.h>
@@ -72,16 +72,16 @@ void build_integrator(Device& device, const Integrator& integrator, FrameKernels
   update.changed = true;
 }
 
-/// Generates its machine code while another process builds.
+/// Generates the integrator's machine code while another process builds the photon kernel.
 void make_integrator_ready(Device& device, FrameKernels& kernels) {
   try {
     device.make_ready(kernels.integrator, first_group(kernels.config));
   } catch (const DeviceError&) {
-    // the first launch that draws will report it
+    // the first real launch will report it
   }
 }
 
-/// Kernels for `wanted`: its own, which are waited for where a builder makes them, or stand-ins.
+/// Chooses kernels for `wanted`: its own, waiting until a builder has built them, or stand-ins.
 KernelConfig choose_config(Device& device, const Integrator& integrator, KernelConfig wanted, bool photons,
                            KernelStore& store, KernelUpdate& update) {
   KernelPick picked = store.pick(device, {integrator.entry, integrator.kernel, std::move(wanted)});

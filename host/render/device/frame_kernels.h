@@ -20,29 +20,29 @@ struct FrameKernels {
   DeviceScene tables;
   IntegratorKernel integrator;
   SceneKernel<Buffer<u32>, Buffer<u32>, Buffer<float4>, Buffer<u32>, u32, u32, u32, u32, u32>
-      first_surfaces;          // only with AOVs
-  PhotonKernel trace_photons;  // only with caustics
+      first_surfaces;          // with AOVs
+  PhotonKernel trace_photons;  // with caustics
   struct MoreAovs {
     bool all = false, features = false;  // vectors
     friend bool operator==(const MoreAovs&, const MoreAovs&) = default;
-  } wanted_aovs, there_aovs;  // of first_surfaces
-  bool mattes = false;        // the integrator notes what covers pixels
-  bool light = false;         // and keeps the parts of their light apart,
-  bool groups = false;        // or that of groups of lights
+  } wanted_aovs, there_aovs;  // AOVs of first_surfaces
+  bool mattes = false;        // the integrator records which objects cover pixels,
+  bool light = false;         // separates their light by parts,
+  bool groups = false;        // or by light groups
   bool counts_rays = false;   // the integrator counts rays per pixel
   KernelChoice choice = KernelChoice::own;
-  SceneKernel<Buffer<u32>> find_media;  // only if the camera has been inside a solid
-  std::string entry;                    // of the integrator
-  bool camera_inside = false;           // tables.camera_media are not the outside's
+  SceneKernel<Buffer<u32>> find_media;  // built once the camera has been inside a solid
+  std::string entry;                    // the integrator's kernel file
+  bool camera_inside = false;           // tables.camera_media differ from those outside all solids
   unsigned most_run = 1;                // items that a work-item of the integrator can process
   std::size_t most_group = 0;           // maximum work-group size; 0: unknown
   std::vector<std::string> notes;       // why a cache was not usable
-  KernelStore* store = nullptr;         // others may draw while the scene's are built; null: they do not
+  KernelStore* store = nullptr;         // supplies stand-ins while the scene's kernels are built; null: none
 };
 
 IntegratorKernel integrator_kernel(const Program& program, const std::string& name);
 
-/// Whether the frame's kernels must be built on the device, while those of its draft are in its cache.
+/// Whether the frame's kernels still have to be built on the device, while its draft's kernels are cached.
 bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning);
 
 /// The result of an update.
@@ -53,9 +53,9 @@ struct KernelUpdate {
 };
 
 /// Builds the integrator's kernel and, with `aovs`, the AOV kernel; uploads the scene and determines the
-/// media around the camera; fills `times`. `kernels` are empty or built on this device for another scene:
-/// then only kernels whose definitions differ are built, and only tables that differ written. After an
-/// exception they are invalid. Throws DeviceError, BuildError; UsageError if the requested group is not
+/// media around the camera; fills `times`. `kernels` is empty or was built on this device for another scene:
+/// then only kernels whose definitions differ are built, and only tables that differ are written. After an
+/// exception it is invalid. Throws DeviceError, BuildError; UsageError if the requested work-group is not
 /// possible.
 KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning,
                                   const WorkGroup& asked, bool aovs, FrameKernels& kernels,

@@ -1,5 +1,5 @@
-// Runs a band's launches one after the other, reads its counts, which are whole numbers and so need no order,
-// and adds them to HaloSum.
+// Launches the bands in turn, reads their counts, which are integers and therefore independent of order, and
+// adds them to HaloSum.
 #include "render/device/halo_tracer.h"
 
 #include <algorithm>

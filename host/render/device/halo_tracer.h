@@ -1,4 +1,4 @@
-// Traces halos on a device; the map equals trace_halo()'s (compile/halo/halo_map.h) to the bit.
+// Traces halos on a device; the map equals trace_halo()'s (compile/halo/halo_map.h) bit for bit.
 #pragma once
 #include <functional>
 
@@ -8,7 +8,7 @@
 
 namespace sundog {
 
-/// Local sizes and number of lanes, for tests: maps do not depend on them. 0: the device's default.
+/// Local sizes and number of lanes, for tests; maps do not depend on them. 0: the device's default.
 struct HaloLaunchSizes {
   unsigned lanes = 0, local = 0;
 };

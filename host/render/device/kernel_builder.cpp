@@ -1,4 +1,4 @@
-// One thread takes the newest request first, then what may come later; another serves a caller that waits.
+// One thread builds the newest order first, then orders for later; another serves a caller that waits.
 #include "render/device/kernel_builder.h"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ bool is_among(const std::vector<KernelOrder>& list, const KernelOrder& order) {
   return std::ranges::any_of(list, [&](const KernelOrder& other) { return same(order, other); });
 }
 
-/// Builds a kernel and launches it for no pixel, because some drivers compile at the first launch of a local
-/// size.
+/// Builds a kernel and launches it over no pixels, because some drivers compile at the first launch of a
+/// local size.
 void build(const DeviceInfo& info, const KernelOrder& order) {
   Device device(info);
   device.build_with({.tuned = order.config.options});
@@ -37,7 +37,7 @@ void build(const DeviceInfo& info, const KernelOrder& order) {
 
 std::size_t first_group(const KernelConfig& config) { return config.tile_w * config.tile_h > 1 ? 1 : 64; }
 
-// The thread shares it, so that destroying the builder does not wait for a compiler.
+// Shared with the threads, so that destroying the builder does not wait for a compiler.
 struct KernelBuilder::State {
   explicit State(DeviceInfo device) : info(std::move(device)) {}
 

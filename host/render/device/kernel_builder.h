@@ -28,17 +28,16 @@ class KernelBuilder {
   KernelBuilder& operator=(const KernelBuilder&) = delete;
 
   // Call from the worker's thread only, unless stated otherwise.
-  /// Builds `order` next, before those that wait already; skips orders that were built or failed.
+  /// Builds `order` next, before the waiting orders; skips orders that were built or failed.
   void want(KernelOrder order);
-  /// Builds these in turn once nothing else has been wanted for a second. Replaces earlier orders of this
-  /// kind.
+  /// Builds these in turn once no other order has come for a second. Replaces earlier orders of this kind.
   void want_later(std::vector<KernelOrder> orders);
   /// Cancels want_later().
   void forget_later();
-  /// Builds it next and waits for it. Returns false if the build fails, or if wants_no_more() ends the wait;
-  /// the build then continues.
+  /// Builds the order next and waits for it. Returns false if the build fails, or if wants_no_more() ends the
+  /// wait; the build then continues.
   bool wait_for(KernelOrder order);
-  /// Allows wait_for() to wait until the next wants_no_more().
+  /// Allows wait_for() to wait again, until the next wants_no_more().
   void may_wait();
   /// Ends the wait of wait_for(). Thread-safe.
   void wants_no_more();

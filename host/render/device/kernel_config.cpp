@@ -1,4 +1,5 @@
-// Definitions are numbers by name; effect_of() says which kernels may draw a scene that wants other numbers.
+// Makes definitions, which are numbers by name; effect_of() determines which kernels may draw a scene that
+// asks for other numbers.
 #include "render/device/kernel_config.h"
 
 #include <algorithm>
@@ -16,13 +17,13 @@ namespace sundog {
 namespace {
 
 // A CPU's driver keeps a whole group's private memory on a thread's stack, 8 MiB by default, and crashes on
-// overflow. A work-item holds its ray stack and its batch.
+// overflow. A work-item's private memory is its ray stack and its batch.
 constexpr std::size_t group_memory = std::size_t{6} << 20, ray_bytes = 80, batch_bytes = 640;
 
-// The file with the fields' code.
+// The generated file with the fields' code.
 constexpr const char* fields_file = "generated/sdf.cl";
 
-// A field's own flags apply within the kernel's.
+// The kernel's flags permit features; each field's own flags select among them.
 constexpr unsigned all_field_flags = SDF_SMOOTH | SDF_CUT_SPHERE;
 
 constexpr unsigned most_touching = 16;  // faces that a ray may cross together
@@ -40,8 +41,8 @@ unsigned light_room(const CompiledScene& scene) {
   return (lights + step - 1) / step * step;
 }
 
-/// Faces that a ray may cross together (kernels/lib/trace/stretch.cl): up to four of each solid that touches
-/// others, and one of each field (kernels/lib/path/touching.cl).
+/// Room for faces that a ray may cross together (kernels/lib/trace/stretch.cl): up to four of each solid that
+/// touches others, and one of each field (kernels/lib/path/touching.cl).
 unsigned touching_room(const CompiledScene& scene) {
   constexpr unsigned of_solid = 4, of_field = 1;
   unsigned faces = 0;
@@ -55,7 +56,7 @@ unsigned touching_room(const CompiledScene& scene) {
   return std::max(faces, 1u);
 }
 
-/// Nodes on the longest way from `root` to a leaf.
+/// Nodes on the longest path from `root` to a leaf.
 u32 levels(const std::vector<Bvh8Node>& nodes, u32 root) {
   u32 below = 0;
   for (u32 slot = 0; slot < BVH_WIDTH && (nodes[root].valid >> slot & 1u); ++slot)
@@ -64,8 +65,8 @@ u32 levels(const std::vector<Bvh8Node>& nodes, u32 root) {
   return below + 1;
 }
 
-/// Entries of the compact tracer's stack (kernels/lib/trace/single.cl): one a level of the scene's BVH and of
-/// the deepest mesh's, a leaf's other instances, and four for the ray in world space.
+/// Entries of the compact tracer's stack (kernels/lib/trace/single.cl): one per level of the scene's BVH and
+/// of the deepest mesh's, a leaf's other instances, and four for the ray in world space.
 unsigned waiting_levels(const CompiledScene& scene) {
   constexpr unsigned instances_and_ray = 5;
   std::set<u32> meshes;
@@ -78,7 +79,7 @@ unsigned waiting_levels(const CompiledScene& scene) {
          instances_and_ray;
 }
 
-/// Rays marched together: all of a work-item's, if vectors of that size exist.
+/// Rays marched together: the largest vector size that divides a work-item's batch.
 unsigned marched_lanes(unsigned batch) {
   for (const unsigned lanes : {16u, 8u, 4u})
     if (batch % lanes == 0) return lanes;
@@ -120,14 +121,14 @@ Effect effect_of(const std::string& definition) {
   return found == effects.end() ? Effect::alters : found->second;
 }
 
-/// Whether kernels with the definition draw a scene of `numbers`, which has none of it, to the same bits.
+/// Whether kernels with the definition draw a scene of `numbers`, which does not use it, to the same bits.
 bool is_harmless(const std::string& definition, const KernelNumbers& numbers) {
   const Effect effect = effect_of(definition);
   return effect == Effect::same || (effect == Effect::unlayered && numbers.at("HAS_LAYERS") == 0);
 }
 
-/// Whether kernels with the number `has` of a definition draw a scene that wants another: to the same bits
-/// or, if they may round, up to rounding.
+/// Whether kernels with the number `has` of a definition draw a scene that asks for `wants`: to the same bits
+/// or, if `may_round`, up to rounding.
 bool covers(const std::string& definition, unsigned has, unsigned wants, bool may_round,
             const KernelNumbers& wanted) {
   const Effect effect = effect_of(definition);
@@ -146,7 +147,7 @@ bool cover(const KernelConfig& has, const KernelConfig& wanted, bool may_round) 
   return has.options == wanted.options && std::ranges::equal(has.numbers, wanted.numbers, covers_it);
 }
 
-/// The kernels of the scene's features with secondary rays of at least `depth` levels.
+/// Kernels with the scene's features, and secondary rays of at least `depth` levels.
 KernelConfig deep_config(const CompiledScene& scene, const DeviceInfo& device, const Tuning& tuning,
                          unsigned depth) {
   CompiledScene deep;
@@ -288,9 +289,9 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define("TILE_H", config.tile_h);
   define("WIDE_VECTORS", vectors);
   if (tuning.packet_least > 0) define("PACKET_LEAST", tuning.packet_least);
-  // Depth first, `batch` rays at a time, at most that many wait per level, plus one batch of children. Of a
-  // single ray at most one waits per level. Beyond 34 levels, the kernel counts rays that do not fit and the
-  // frame reports them.
+  // Depth first, `batch` rays at a time: at most that many wait per level, plus one batch of children. With
+  // single rays, at most one waits per level. Beyond 34 levels, the kernel counts rays that do not fit, and
+  // the frame reports them.
   const bool waits = scene.features.secondary_rays && integrator_of(scene.integrator).branches;
   const unsigned levels = std::min(scene.info.max_depth + (batch > 1 ? 2u : 0u), 34u);
   const unsigned rays = waits ? batch * levels : batch;
@@ -307,7 +308,7 @@ KernelConfig make_kernel_config(const CompiledScene& scene, const DeviceInfo& de
   define_features(scene.features, define);
   const unsigned lanes = marched_lanes(batch), few_solids = std::max(2u, lanes * 3 / 2);
   define("FEW_SOLIDS", few_solids);
-  // Packets profit from a tree of fewer solids, but not of very few, and its kernels compile slowly.
+  // Packets benefit from a tree over fewer solids, but not over very few; its kernels compile slowly.
   const unsigned without_tree = vectors && batch == 16 ? 6 : few_solids;
   define("HAS_BVH", scene.features.shapes[SHAPE_MESH] || scene.info.bounded_count > without_tree);
   define("LANES", lanes);

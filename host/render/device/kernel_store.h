@@ -1,5 +1,5 @@
-// The kernels of integrators that a device has built or can load, and those that are being built beside the
-// work. It picks the ones that draw a scene.
+// The integrator kernels that a device has built or can load, and those being built in the background. Picks
+// the kernels that draw a scene.
 #pragma once
 #include <optional>
 #include <vector>
@@ -15,8 +15,8 @@ struct NotWantedAnyMore : DeviceError {
   using DeviceError::DeviceError;
 };
 
-/// How the kernels that draw relate to those that the scene wants: they are these, or others that give the
-/// same bits, or others that round differently.
+/// How the kernels that draw relate to those that the scene asks for: the same, others that give the same
+/// bits, or others that round differently.
 enum class Fit { own, exact, draft };
 
 struct KernelPick {
@@ -30,30 +30,30 @@ class KernelStore {
  public:
   explicit KernelStore(const DeviceInfo& device) : builder_(device) {}
 
-  /// Begins another scene, for whose kernels `general` may stand in besides those that have drawn before.
+  /// Begins another scene, for whose kernels `general` may stand in, besides kernels that have drawn before.
   void begin_scene(std::vector<KernelConfig> general);
 
-  /// The wanted kernels if they are built or nothing can stand in for them, not even a draft.
+  /// Returns the wanted kernels if they are built or nothing can stand in for them, not even a draft.
   KernelPick pick(const Device& device, KernelOrder wanted);
 
-  /// Waits until the builder's thread has built the kernels, unless the device keeps no programs; throws
-  /// NotWantedAnyMore when the scene is replaced. Returns the number of kernels built.
+  /// Waits until the builder's thread has built the kernels, unless the device keeps no programs. Throws
+  /// NotWantedAnyMore if the scene is replaced meanwhile. Returns the number of kernels built.
   unsigned wait_for(const Device& device, const KernelOrder& order);
 
-  /// Kernels that draw may stand in for later ones.
+  /// Records kernels that draw, so that they may stand in for later ones.
   void remember(const KernelConfig& config) { known_.push_back(config); }
 
-  /// Builds the kernels for which others stand in.
+  /// Orders the kernels for which others stand in.
   void build_wanted();
 
-  /// Those, once they are built: they take over from stand-ins that give the same bits.
+  /// The wanted kernels, once they are built: they replace stand-ins that give the same bits.
   std::optional<KernelOrder> take_wanted(const Device& device);
 
-  /// Whether a draft stands in, and whether its scene's kernels are built, or cannot be.
+  /// Whether a draft stands in, and whether its scene's kernels are built or have failed to build.
   bool draws_draft() const { return fit_ == Fit::draft; }
   bool may_end_draft() const { return draws_draft() && builder_.has_tried(*wanted_); }
 
-  /// The session rests: builds the general kernels, which draw while an edit's own are built.
+  /// Called when the session rests: orders the general kernels, which draw while an edit's own are built.
   void build_general(const Device& device, const KernelOrder& own);
 
   KernelBuilder& builder() { return builder_; }
@@ -62,10 +62,10 @@ class KernelStore {
  private:
   KernelBuilder builder_;
   Fit fit_ = Fit::own;
-  std::optional<KernelOrder> wanted_;        // of the scene, while others stand in
-  std::vector<KernelConfig> known_;          // that this device has built
+  std::optional<KernelOrder> wanted_;        // the scene's, while others stand in
+  std::vector<KernelConfig> known_;          // built by this device
   std::vector<KernelConfig> general_;        // stand-ins for the scene's kernels
-  std::vector<KernelConfig> built_general_;  // those of them known to be built
+  std::vector<KernelConfig> built_general_;  // stand-ins known to be built
 };
 
 }  // namespace sundog

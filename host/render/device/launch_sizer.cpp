@@ -1,5 +1,5 @@
-// Each launch's time decides the size of the next one, towards 50 ms; failures lower samples, work-groups or
-// sizes for good.
+// Each launch's time determines the next launch's size, aiming at 50 ms; failures permanently reduce samples,
+// work-groups or sizes.
 #include "render/device/launch_sizer.h"
 
 #include <fmt/format.h>
@@ -11,16 +11,17 @@
 namespace sundog {
 namespace {
 
-// Short enough for a watchdog and for Ctrl-C, long relative to the overhead of some microseconds.
+// Seconds: short enough for a watchdog and for Ctrl-C, long compared with the overhead of some microseconds.
 constexpr double launch_seconds = 0.05;
-// Minimum work-items per unit and launch, so that units finish together.
+// Minimum work-items per compute unit and launch, so that units finish together.
 constexpr unsigned unit_work_items = 16;
-// Initial pixel-samples; those of fields may take a thousand times as long.
+// Initial pixel-samples; samples of fields may take a thousand times as long.
 constexpr std::size_t first_launch_size = 4096, first_launch_size_of_fields = 512;
-// Launches grow in a quick sky: on a CPU so many among slow fields behind it do not look like a hang yet.
+// Launches grow in a fast sky. On a CPU, launches of this size among slow fields behind it do not yet look
+// like a hang.
 constexpr std::size_t most_launch_size_of_fields = 65536;
 
-// Groups above this size may be the reason when resources run out.
+// Groups larger than this may be the reason when resources run out.
 constexpr std::size_t small_group = 64;
 
 unsigned divide_up(unsigned a, unsigned b) { return (a + b - 1) / b; }
@@ -40,7 +41,7 @@ LaunchSizer::LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, con
   if (most_group_ > 0 && tuning_.surfaces_group.x > most_group_) tuning_.surfaces_group = {};
 }
 
-// The user's, else the tuned, else the default group.
+// The user's group, else the tuned group, else the default.
 const WorkGroup& LaunchSizer::work_group() const {
   return asked_.kind == WorkGroup::Kind::automatic ? tuning_.work_group : asked_;
 }
@@ -54,7 +55,7 @@ LaunchSize LaunchSizer::within_limits(LaunchSize size) const {
   return size;
 }
 
-// columns x rows work-items: a grid if the user requested a two-dimensional group, else one row.
+// Groups columns x rows work-items: a grid if the user requested a two-dimensional group, else one row.
 LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const {
   const WorkGroup& group = work_group();
   const std::size_t items = columns * rows;
@@ -63,8 +64,9 @@ LaunchSize LaunchSizer::group_items(std::size_t columns, std::size_t rows) const
     return within_limits(group.y > 1 ? LaunchSize{columns, rows, group.x, group.y}
                                      : LaunchSize{items, 1, group.x, 1});
   if (alone_) return {items, 1, 1, 1};
-  // One ray per lane needs a full group, at least to fill the driver's vectors. With many pixels per
-  // work-item, PoCL's groups of one are free: it hands them out 32 at a time, and compiles for a single size.
+  // One ray per lane needs a full group, or at least one that fills the driver's vectors. With many pixels
+  // per work-item, groups of one cost nothing on PoCL, which hands them out 32 at a time and compiles for a
+  // single size.
   std::size_t wanted = 64;
   if (limits_.device_class == DeviceClass::cpu) {
     const bool many_pixels = limits_.tile_w * limits_.tile_h > 1;
@@ -91,7 +93,7 @@ void LaunchSizer::begin(const Tile& tile, unsigned samples) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned item_pixels = limits_.tile_w * limits_.tile_h;
   grid_ = work_group().kind == WorkGroup::Kind::fixed && work_group().y > 1;
-  // Rows of items: of tiles, or of blocks of 8x4 pixels (lane_pixel() in render_whitted.cl).
+  // A row of items covers tiles, or blocks of 8x4 pixels (lane_pixel() in render_whitted.cl).
   const bool blocks = item_pixels == 1 && !grid_;
   row_height_ = blocks ? 4 : limits_.tile_h;
   columns_ = blocks ? divide_up(width, 8) * 32 : divide_up(width, limits_.tile_w);
@@ -175,7 +177,7 @@ std::optional<std::string> LaunchSizer::shrink_group(const std::string& why, std
   return fmt::format("{}: work-groups of at most {} from here on", why, most_group_);
 }
 
-// Finally gives each work-item its own group, so that no other shares its loops.
+// As a last resort, gives each work-item its own group, so that no other shares its loops.
 std::optional<std::string> LaunchSizer::fewer_samples(const std::string& why) {
   if (limits_.most_run > 1) {
     limits_.most_run = 1;

@@ -1,4 +1,4 @@
-// Divides a tile into launches: pixels and samples of each, work-group sizes, and reductions after failures.
+// Divides a tile into launches: pixels, samples and work-group size of each, and reductions after failures.
 // Pure arithmetic; others run and time the launches.
 #pragma once
 #include <optional>
@@ -22,7 +22,7 @@ struct LaunchLimits {
 
 /// The cause of a failed launch.
 enum class LaunchFailure {
-  group_too_large,   // for the kernel's registers or stack
+  group_too_large,   // too large for the kernel's registers or stack
   out_of_resources,  // a smaller group or launch may fit
   loops_cut_short    // the driver ended loops early: fewer samples may stay within its limit
 };
@@ -37,17 +37,17 @@ struct SizedLaunch {
 
 class LaunchSizer {
  public:
-  /// `fields`: start with small launches, since a field's sample may take a thousand times as long.
+  /// `fields`: starts with small launches, because a field's samples may take a thousand times as long.
   LaunchSizer(const LaunchLimits& limits, const WorkGroup& asked, const Tuning& tuning, bool fields);
 
   /// Changes the work-group. Measured launch times are kept.
   void ask_for(const WorkGroup& group);
-  /// Returns to short launches, because the next work may cost more.
+  /// Returns to short launches, because the next scene may cost more.
   void calm();
   /// Starts or restarts a tile.
   void begin(const Tile& tile, unsigned samples);
-  /// The next launch of the tile; nothing when all samples are done. The samples of a pixel are consecutive,
-  /// so dividing them changes no bit.
+  /// The next launch of the tile; nothing when all samples are done. The samples of a pixel are taken in
+  /// order, so dividing them among launches changes no bit.
   std::optional<SizedLaunch> next();
   /// Reports the time of the launch from next(); later launches aim at the target time.
   void note_time(double seconds);

@@ -1,4 +1,4 @@
-// Sets the time after which a launch counts as hung, by its expected and longest times.
+// Times launches, and sets the time after which a launch counts as hung from its expected and longest times.
 #include "render/device/launch_watch.h"
 
 #include <algorithm>

@@ -1,17 +1,17 @@
-// Measures the current launch, so that another thread can detect a hanging driver.
+// Times the current launch, so that another thread can detect a hanging driver.
 #pragma once
 #include <atomic>
 
 namespace sundog {
 
-/// The time limit of a launch: a hundred times the expected time, at least 30 s; 5 min for the first launches
-/// of a kernel, in which a driver may compile. At least three times the longest launch so far: on a busy
-/// machine llvmpipe took 67 s for a later launch, after a first one that compiled.
+/// The time limit of a launch in seconds: a hundred times the expected time, at least 30 s; 5 min for the
+/// first launches of a kernel, in which a driver may compile. At least three times the longest launch so far:
+/// on a busy machine llvmpipe took 67 s for a later launch, after a first one that compiled.
 double launch_limit(double expected_seconds, bool first, double longest_seconds);
 
 class LaunchWatch {
  public:
-  /// `first`: first launch of its kernel, in which a driver may compile.
+  /// `first`: this is the first launch of its kernel, in which a driver may compile.
   void begin(double limit_seconds, bool first);
   void end();
   /// Seconds since the launch began if it exceeds its limit, else 0. Thread-safe.

@@ -1,4 +1,4 @@
-// Opens the device for a scene, renders tiles with it and sums its figures over scenes.
+// Opens the device for a scene, renders tiles with it, and totals its figures over reopenings.
 #include "render/device/local_worker.h"
 
 #include <utility>

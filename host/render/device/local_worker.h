@@ -1,4 +1,4 @@
-// Serves tiles with a device of this process.
+// A worker that renders tiles with a device of this process.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -34,7 +34,7 @@ class LocalWorker : public SceneWorker {
   void close() override;
   double overdue() const override { return watch_.overdue(); }
   bool compiles() const override { return watch_.compiles(); }
-  /// For the calling thread and threads that the driver starts from it.
+  /// Applies to the calling thread and to threads that the driver starts from it.
   void be_nice() override;
 
  private:

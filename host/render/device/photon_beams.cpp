@@ -1,4 +1,4 @@
-// Draws beams by the light that media scatter of them, and puts those that lie together into groups.
+// Draws beams in proportion to the light that media scatter from them, and groups beams that lie together.
 #include "render/device/photon_beams.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ Beam beam_of(const std::array<float4, 3>& rows) {
   return {rows, point_of(rows[0]), glm::normalize(point_of(rows[1])), rows[0].w};
 }
 
-/// Selects the photons' beams that are there, in order; if there are more than `most`, it draws so many at
-/// even steps in the light that media scatter of them.
+/// Selects the existing beams, in order; if there are more than `most`, draws that many at even steps of the
+/// light that media scatter from them.
 std::vector<Beam> draw_beams(std::span<const float4> beams, std::size_t most, u32 number) {
   const auto light_of = [&](std::size_t i) {
     const glm::dvec3 sum = point_of(beams[i - 2]) + point_of(beams[i - 1]);
@@ -52,13 +52,14 @@ std::vector<Beam> draw_beams(std::span<const float4> beams, std::size_t most, u3
   return drawn;
 }
 
-/// The coordinates of both ends, of endless ones at the distance `reach`.
+/// The coordinates of both ends; endless beams end at the distance `reach`.
 std::array<double, 6> ends_of(const Beam& beam, double reach) {
   const glm::dvec3 &a = beam.begin, b = a + std::min(beam.length, reach) * beam.way;
   return {a.x, a.y, a.z, b.x, b.y, b.z};
 }
 
-/// Orders beams so that those of a group lie together: halves the list where the ends are farthest apart.
+/// Sorts beams so that each group's beams lie together: halves the list along the coordinate in which the
+/// ends are farthest apart.
 void sort_beams(std::span<Beam> beams, double reach) {
   if (beams.size() <= BEAM_GROUP) return;
   std::array<double, 6> low = ends_of(beams[0], reach), high = low;
@@ -77,7 +78,8 @@ void sort_beams(std::span<Beam> beams, double reach) {
   sort_beams(beams.subspan(half), reach);
 }
 
-/// Appends a group: the rows of the cone about the beams, all within `radius` of them, and the beams'.
+/// Appends a group: the rows of the cone that encloses the beams and everything within `radius` of them, then
+/// the beams' rows.
 void append_group(std::span<const Beam> beams, double radius, std::vector<float4>& rows) {
   glm::dvec3 middle(0), axis(0);
   for (const Beam& beam : beams) middle += beam.begin / double(beams.size()), axis += beam.way;
@@ -86,7 +88,7 @@ void append_group(std::span<const Beam> beams, double radius, std::vector<float4
   for (const Beam& beam : beams) {
     const double cosine = glm::dot(beam.way, axis);
     growth = std::max(growth, glm::length(beam.way - cosine * axis) / cosine);
-    if (cosine < 0.1) at_middle = INFINITY;  // no cone has beams of all directions
+    if (cosine < 0.1) at_middle = INFINITY;  // no cone holds beams of all directions
   }
   for (const Beam& beam : beams) {
     const glm::dvec3 to = beam.begin - middle;

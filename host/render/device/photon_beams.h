@@ -1,4 +1,4 @@
-// Beams of photons, in groups for the search of kernels/plain/pathtracer/gather_beams.cl.
+// Groups the beams of a photon map for the search in kernels/plain/pathtracer/gather_beams.cl.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace sundog {
 
-/// The groups (shared/photons.h) of at most `most` of a map's beams, three rows each, drawn by their light:
-/// as many groups for each sample of the map, of beams apart. `number`: the map's, which chooses; `radius`:
-/// of a beam.
+/// Draws at most `most` of a map's beams in proportion to their light, divides them among the map's samples,
+/// and sorts each sample's beams into the same number of groups (shared/photons.h). A beam is three rows.
+/// `number`: the map's index, which seeds the draw. `radius`: of a beam.
 std::vector<float4> group_beams(std::span<const float4> beams, std::size_t most, u32 number, double radius);
 
 }  // namespace sundog

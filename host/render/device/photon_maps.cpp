@@ -17,15 +17,15 @@
 namespace sundog {
 namespace {
 
-constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, less shrinks it faster
+constexpr double kept_part = 2.0 / 3;       // alpha: 1 keeps the radius, smaller values shrink it faster
 constexpr u32 photons_a_launch = 1u << 16;  // a launch stays well below a second on any device
 constexpr u32 least_cells = 1024;
 constexpr std::size_t most_lanes = 16;
-// With default settings, one holds the photons of 1024 samples, the other those of 30,000.
+// With default settings, the smaller holds the photons of 1024 samples, the larger those of 30,000.
 constexpr std::uint64_t least_room = std::uint64_t{608} << 20, most_room = std::uint64_t{2} << 30;
 
-/// Memory budget of all maps on the device: a quarter of its memory, within these bounds, and at most one
-/// buffer's maximum.
+/// Memory budget of all maps on the device: a quarter of its memory, within these bounds, and at most its
+/// largest allocation.
 std::uint64_t room_on(const DeviceInfo& info) {
   const auto kibibytes = fault(value_of(info.environment).faults, "photons", info.place());
   if (kibibytes) return static_cast<std::uint64_t>(*kibibytes) << 10;
@@ -33,15 +33,16 @@ std::uint64_t room_on(const DeviceInfo& info) {
   return info.max_allocation > 0 ? std::min(room, info.max_allocation) : room;
 }
 
-/// Sorts photons by cell, then by number: the places of all, then their light. `begins` receives the start of
-/// each cell and the end of the last. The first cell follows the last one too, for rows that end there.
+/// Sorts photons by cell, then by number: first all positions, then their light. `begins` receives the start
+/// of each cell and the end of the last. A copy of the first cell follows the last one, for rows that end
+/// there.
 std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::vector<u32>& cells, u32 mask,
                                  std::vector<u32>& begins) {
   begins.assign(std::size_t{mask} + 2, 0);
   for (const u32 cell : cells)
     if (cell != NO_PHOTON) ++begins[(cell & mask) + 1];
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  std::vector<u32> next(begins.begin(), begins.end() - 1);  // of each cell
+  std::vector<u32> next(begins.begin(), begins.end() - 1);  // next free place of each cell
   const std::size_t landings = begins.back(), again = begins[1], count = landings + again;
   begins.push_back(static_cast<u32>(count));
   std::vector<float4> sorted(2 * count);
@@ -56,7 +57,7 @@ std::vector<float4> sort_photons(const std::vector<float4>& landed, const std::v
   return sorted;
 }
 
-/// Each sample of a map looks at all of its share of the beams.
+/// Beams of a map. Each sample of the map searches its whole share of them.
 std::size_t beams_of(u32 photons) { return std::max(photons / 64, 256u); }
 
 template <class T>
@@ -162,7 +163,7 @@ bool PhotonMaps::fill(const PhotonTracer& tracer, const StopFlags& flags, u32 nu
     append(cells, made.cells);
     append(photons, made.photons);
   }
-  photons.resize(photons.size() + most_lanes);  // read, but not used, after the last ones
+  photons.resize(photons.size() + most_lanes);  // kernels read these past the end, but do not use them
   DeviceScene& tables = tracer.kernels.tables;
   tables.photon_maps = tracer.device.upload(std::span<const PhotonMap>(maps));
   tables.photon_cells = tracer.device.upload(std::span<const u32>(cells));

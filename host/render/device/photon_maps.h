@@ -1,5 +1,5 @@
-// Photon maps (kernels/shared/photons.h), made by a device when its samples need them: each is a function of
-// the scene and its number only.
+// Photon maps (kernels/shared/photons.h), which a device makes when its samples need them. Each map depends
+// only on the scene and the map's number.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace sundog {
 
-/// Device and kernels that trace photons.
+/// The device and kernels that trace photons.
 struct PhotonTracer {
   Device& device;
   FrameKernels& kernels;
@@ -26,11 +26,11 @@ class PhotonMaps {
         scatters_(scene.features.scattering),
         lights_(scene.lights.size()) {}
 
-  /// Makes the maps for the samples [first, last) and stores them in `tracer.kernels.tables`, as far as there
-  /// is room. Returns false if stopped. Throws DeviceError.
+  /// Makes the maps for samples [first, last) and stores them in `tracer.kernels.tables`, as many as fit.
+  /// Returns false if stopped. Throws DeviceError.
   bool prepare(const PhotonTracer& tracer, const StopFlags& flags, u32 first, u32 last);
 
-  /// The end of the first samples of [first, last) whose maps are in the tables.
+  /// The end of the leading samples of [first, last) whose maps are in the tables.
   u32 end_of_maps(u32 first, u32 last) const;
 
  private:

@@ -1,4 +1,4 @@
-// Lists the integrator's program and the AOVs', then those for media, photons and rays as needed.
+// Lists the programs of the integrator and AOVs, then those of media, photons and rays as needed.
 #include "render/device/scene_programs.h"
 
 #include "render/device/kernel_config.h"

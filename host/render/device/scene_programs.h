@@ -1,4 +1,4 @@
-// All programs that drawing a scene may need.
+// Lists all programs that drawing a scene may need.
 #pragma once
 #include <compare>
 #include <string>
@@ -17,7 +17,7 @@ struct SceneProgram {
 };
 
 /// The programs of the integrator and of AOVs; of photons and camera media if the scene has them; of `bench
-/// rays` if something is traced. Pure.
+/// rays` if there is anything to trace. Pure.
 std::vector<SceneProgram> scene_programs(const CompiledScene& scene, const DeviceInfo& device);
 
 }  // namespace sundog

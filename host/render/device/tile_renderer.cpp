@@ -1,5 +1,5 @@
-// A tile: write its initial values, launch samples, read the sums. After a failure it begins anew, in smaller
-// launches.
+// Renders a tile: writes its initial values, launches samples, reads the sums. After a failure it restarts
+// the tile with smaller launches.
 #include "render/device/tile_renderer.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ struct LoopsCutShort : DeviceError {
   using DeviceError::DeviceError;
 };
 
-/// First samples look for the surfaces.
+/// Whether the request's samples find the surfaces: a pixel's first samples do.
 bool looks(const TileRequest& request) { return request.surfaces && request.first_sample == 0; }
 
 /// The counters of a tile's launches, in blocks.
@@ -132,8 +132,8 @@ void TileRenderer::prepare_surfaces() {
   add_first_surfaces(device_, kernels_, times);
 }
 
-// Returns the rows with all samples. With photons, all pixels get the samples of the current maps before
-// further maps are made.
+// Returns the number of rows that have all samples. With photons, all pixels get the samples of the current
+// maps before further maps are made.
 unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlags& flags) {
   u32 first = request.first_sample;
   const u32 end = first + request.sample_count;
@@ -156,7 +156,7 @@ unsigned TileRenderer::launch_samples(const TileRequest& request, const StopFlag
   return 0;
 }
 
-// Returns its seconds, excluding the driver's preparation of a first launch.
+// Returns the launch's seconds, excluding the driver's preparation of a first launch.
 double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& sized) {
   const double first_launches = first_launch_seconds(device_.times());
   const Stopwatch clock;
@@ -168,7 +168,8 @@ double TileRenderer::launch_integrator(const Launch& launch, const SizedLaunch& 
   return clock.seconds() - (first_launch_seconds(device_.times()) - first_launches);
 }
 
-// Puts `from`, `count` a pixel, into the pixels' `vectors` float4 from `first` on.
+// Copies `count` vectors per pixel from `from` to the pixels' AOVs, which have `vectors` each, starting at
+// vector `first`.
 static void put_vectors(std::span<const float4> from, std::size_t count, std::size_t first,
                         std::size_t vectors, std::vector<float4>& aovs) {
   for (std::size_t i = 0; count > 0 && i < from.size() / count; ++i)
@@ -244,7 +245,7 @@ TileResult TileRenderer::render(const TileRequest& request, const StopFlags& fla
 void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const auto pixels = static_cast<std::size_t>(pixel_count(request.tile));
   if (weights_.count < pixels) weights_ = device_.make<float>(pixels);
-  const std::size_t sums = layout_.sums();  // the kernel writes them, wanted or not
+  const std::size_t sums = layout_.sums();  // the kernel writes these sums, requested or not
   if (film_.count < (1 + sums) * pixels) film_ = device_.make<float4>((1 + sums) * pixels);
   if (pixels_.count < std::max<std::size_t>(1, request.pixels.size()))
     pixels_ = device_.make<u32>(std::max<std::size_t>(1, request.pixels.size()));
@@ -254,7 +255,7 @@ void TileRenderer::write_start(const TileRequest& request, TileResult& result) {
   const std::size_t counted = kernels_.counts_rays || request.costs ? pixels : 0;
   if (rays_.count < pixels) rays_ = device_.make<u32>(pixels);
   result.rays.resize(counted);
-  if (request.first_sample > 0) {  // kernels initialise the others to 0
+  if (request.first_sample > 0) {  // otherwise kernels start from 0
     device_.begin_write(film_, std::span<const float4>(request.sums));
     if (sums > 0 && request.surfaces) write_sums(request);
     device_.begin_write(weights_, std::span<const float>(request.weights));
@@ -293,7 +294,7 @@ std::uint64_t TileRenderer::count_lost_pixels(std::size_t pixels) {
       std::ranges::count_if(rays, [](u32 count) { return (count & LOST_PIXEL) != 0; }));
 }
 
-// Waits once for all arrays.
+// Waits only once, for all arrays.
 void TileRenderer::read_result(unsigned samples, TileResult& result) {
   const Stopwatch reading;
   LaunchCounts counts;
@@ -311,7 +312,7 @@ void TileRenderer::read_result(unsigned samples, TileResult& result) {
   readback_seconds_ += reading.seconds();
 }
 
-// A failed launch may have added some samples, so a tile always restarts from its initial values.
+// A failed launch may have added some samples, so every attempt starts from the tile's initial values.
 TileResult TileRenderer::try_render(const TileRequest& request, const StopFlags& flags) {
   TileResult result;
   result.tile = request.tile;

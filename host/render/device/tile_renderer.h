@@ -25,7 +25,7 @@ class TileRenderer {
   /// after an exception. Throws like the constructor.
   void change_scene(const CompiledScene& scene, const RenderOptions& options, RenderTimes& times);
 
-  /// Caches the driver's compiled programs for the next start.
+  /// Writes the driver's compiled programs to the cache for the next start.
   void keep_programs();
 
   /// Call when idle: caches compiled programs, and starts building general kernels.
@@ -74,14 +74,14 @@ class TileRenderer {
   PhotonMaps photons_;
   LaunchSizer sizer_;
   LaunchWatch& watch_;
-  AovLayout layout_;  // of the options
+  AovLayout layout_;  // for the options' AOVs
   bool aovs_launched_ = false;
   Buffer<u32> pixels_;
-  Buffer<float4> film_;  // the sums of a tile's pixels, then those of its AOVs
+  Buffer<float4> film_;  // the sums of a tile's pixels, then their AOV sums
   Buffer<float> weights_;
   Buffer<float4> aovs_;
   Buffer<u32> rays_;          // per pixel, with LOST_PIXEL
-  std::vector<u32> no_rays_;  // zeros, for passes that do not count them
+  std::vector<u32> no_rays_;  // zeros, for passes that do not count rays
   Buffer<u32> counters_;
   double readback_seconds_ = 0;
 };

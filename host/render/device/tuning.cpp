@@ -1,5 +1,5 @@
-// Names files by a hash of platform, device, driver and units, keeps one entry per kernel and class of scene,
-// and takes damaged files as missing.
+// Names files by a hash of platform, device, driver and units, keeps one entry per kernel and scene class,
+// and treats damaged files as missing.
 #include "render/device/tuning.h"
 
 #include <nlohmann/json.hpp>
@@ -130,7 +130,8 @@ Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {
   const std::optional<TuningFile> file = load_tuning(device);
   if (!file) return {};
   const std::string own = scene_class(scene);
-  std::string whitteds = own;  // which serves paths too, but for options, which it did not compare
+  // Used for paths too, except `options`, which whitted's tuning did not compare for paths.
+  std::string whitteds = own;
   if (const std::size_t at = own.find(of_paths); at != std::string::npos)
     whitteds.erase(at, std::string_view(of_paths).size());
   Tuning tuning;

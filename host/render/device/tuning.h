@@ -17,15 +17,15 @@ namespace sundog {
 /// "64", "8x4", "default", "driver".
 std::string work_group_text(const WorkGroup& group);
 
-/// "group 8x2, 16x1 pixels a work-item, ..."; or "the defaults".
+/// "work-group 8x2, 16x1 pixels a work-item, ..."; or "the defaults".
 std::string tuning_text(const Tuning& tuning);
 
 /// The kernels that are tuned, each separately.
 constexpr const char* frame_kernel = "render_whitted";
 constexpr const char* surfaces_kernel = "first_surfaces";  // the AOV kernel; only its surfaces_group is tuned
 
-/// A kernel's Tuning with its measurement: the scene, and milliseconds of the whole frame (frame_kernel) or
-/// of the kernel, by default and tuned.
+/// A kernel's Tuning with its measurements: the scene, and the milliseconds of the whole frame (frame_kernel)
+/// or of the kernel, with default and tuned settings.
 struct TuningEntry {
   std::string kernel = frame_kernel, scene_class, scene;
   Tuning tuning;
@@ -34,12 +34,12 @@ struct TuningEntry {
 
 struct TuningFile {
   std::string platform, device, driver, kernels;  // kernels: hash of their sources
-  unsigned units = 0;                             // of a sub-device; 0: the whole device
+  unsigned units = 0;                             // a sub-device's compute units; 0: the whole device
   std::vector<TuningEntry> entries;               // one per kernel and class
 };
 
-/// The class of scenes that share a tuning: "meshes", "solids", "fields", with "+wide" or "+compact" where
-/// the scene asks for a tracer, "+paths" for the integrator path, "+rays" for reflections or refractions.
+/// The class of scenes that share a tuning: "meshes", "solids", "fields"; plus "+wide" or "+compact" if the
+/// scene asks for a tracer, "+paths" for the integrator path, "+rays" for reflections or refractions.
 std::string scene_class(const CompiledScene& scene);
 
 /// The hash of all current kernel sources.
@@ -51,16 +51,16 @@ std::filesystem::path tuning_path(const DeviceInfo& device);
 
 nlohmann::json to_json(const TuningFile& file);
 
-/// Throws SceneError with the reason and the place.
+/// Throws SceneError with the reason and the place in the file.
 TuningFile read_tuning(const JsonValue& value);
 
 /// Reads a tuning file. Throws SceneError.
 TuningFile read_tuning_file(const std::filesystem::path& file);
 
-/// The device's file; nothing if it is missing, damaged, or for other kernels.
+/// The device's stored tuning; nothing if its file is missing, damaged, or for other kernels.
 std::optional<TuningFile> load_tuning(const DeviceInfo& device);
 
-/// Stores the entry in the device's file, replacing one of the same kernel and class. Throws IoError.
+/// Stores the entry in the device's file, replacing the entry for the same kernel and class. Throws IoError.
 void keep_tuning(const DeviceInfo& device, const TuningEntry& entry);
 
 /// The stored tuning for the device and the scene's class; the default if there is none.

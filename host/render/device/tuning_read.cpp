@@ -1,4 +1,4 @@
-// Reads tuning results from JSON: the device's own, and those for `sundog tune --import`. Errors name the
+// Reads tuning results from JSON: the device's own, and files for `sundog tune --import`. Errors name the
 // file and the place.
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kept = "one as in an export of tunings";
 
-/// Reads a value of scene_class().
+/// Reads a string that scene_class() may return.
 std::string scene_class_from(const JsonValue& value) {
   const std::string found = value.text();
   for (const char* kind : {"fields", "meshes", "solids"})
@@ -65,7 +65,7 @@ TuningEntry entry_from(JsonObject& entry) {
   tuning.surfaces_group = work_group_from(entry.at("surfaces_group", kept));
   tuning.tile_w = whole("tile_w", 16);
   tuning.tile_h = whole("tile_h", 16);
-  // Batch sizes with matching vectors.
+  // Batch sizes for which vectors exist.
   constexpr std::array<unsigned, 5> batches = {0, 1, 4, 8, 16};
   const unsigned batch = tuning.tile_w * tuning.tile_h;
   if ((tuning.tile_w == 0) != (tuning.tile_h == 0) || std::ranges::find(batches, batch) == batches.end())

@@ -1,4 +1,4 @@
-// Compares a pixel's size with the spacing of floats at the camera and at each field.
+// Compares a pixel's size with the precision of floats at the camera and at each field.
 #include "render/device/view_warnings.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace sundog {
 namespace {
 
-constexpr float least_angle = 4e-7f;  // of a pixel: a few float spacings at 1
+constexpr float least_angle = 4e-7f;  // a pixel's angle: a few float spacings at 1
 
 float pixel_angle(const CompiledScene& scene) {
   const float4& dx = scene.info.camera_dx;
@@ -20,7 +20,7 @@ float pixel_angle(const CompiledScene& scene) {
   return std::sqrt(dx.x * dx.x + dx.y * dx.y + dx.z * dx.z) * spread;
 }
 
-// Relative to the largest coordinate: the error of estimates in doubles.
+// The error of estimates in doubles, relative to the largest coordinate.
 constexpr double double_footprint = 8e-15;
 
 bool ends_doubles(const FieldView& view) {

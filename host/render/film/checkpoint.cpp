@@ -1,5 +1,5 @@
-// A checkpoint is a header, then arrays, each behind its length, then a checksum, in the machine's own byte
-// order (sundog runs on little-endian hosts).
+// A checkpoint is a header, then arrays, each preceded by its length, then a checksum, in the machine's own
+// byte order (sundog runs on little-endian hosts).
 #include "render/film/checkpoint.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ struct Header {
   char magic[8];
   std::uint64_t key;
   std::int32_t width, height, pass_width, pass_height;
-  std::uint32_t needs, aovs;  // of the film; aovs: code() of its layout, 0: none
+  std::uint32_t needs, aovs;  // the film's; aovs: code() of its layout, 0: none
   std::uint32_t first_sample, sample_count, surfaces, costs, has_block_rays;
   std::uint32_t stage, step, unused;
   std::uint64_t surfaces_seen;
@@ -40,7 +40,7 @@ std::uint32_t code_of(const FilmNeeds& needs) {
 
 std::uint32_t aovs_of(const FilmNeeds& needs) { return needs.shows_surfaces ? needs.layout.code() : 0; }
 
-/// Calls visit(array) for each array of the file, in its order.
+/// Calls visit(array) for each array of the file, in file order.
 template <class Whole, class Pixels, class Visit>
 void for_each_array(Whole& film, Pixels& pixels, Whole& made, const Visit& visit) {
   visit(film.sums), visit(film.weights), visit(film.aovs), visit(film.rays), visit(film.done);
@@ -49,9 +49,10 @@ void for_each_array(Whole& film, Pixels& pixels, Whole& made, const Visit& visit
   visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
 }
 
-constexpr std::size_t sample_bytes = sizeof(float4) + sizeof(float) + 1;  // sums, weight, whether it is done
+constexpr std::size_t sample_bytes = sizeof(float4) + sizeof(float) + 1;  // sums, weight, done flag
 
-/// Throws SceneError where the file is too short for the pixels of its pass: no memory is taken for them.
+/// Throws SceneError if the file is too short for the pixels of its pass, before memory is allocated for
+/// them.
 void check_memory(const std::filesystem::path& path, const Film& film, const Pass& pass,
                   std::size_t file_bytes) {
   const auto pixels = static_cast<std::uintmax_t>(pass.width) * static_cast<std::uintmax_t>(pass.height);
@@ -63,7 +64,7 @@ void check_memory(const std::filesystem::path& path, const Film& film, const Pas
                     pass.width, pass.height, file_bytes));
 }
 
-/// More than a checkpoint of that frame has: a list of pixels is padded to rows of whole blocks.
+/// An upper bound for a checkpoint of this frame: a list of pixels is padded to rows of whole blocks.
 std::uintmax_t most_bytes(const Film& film) {
   const std::uintmax_t of_film =
       sample_bytes + (film.shows_surfaces ? sizeof(float4) * film.layout.vectors() : 0) + sizeof(u32);
@@ -83,11 +84,11 @@ UsageError other_checkpoint(const std::filesystem::path& path) {
       "with, or remove it to start anew");
 }
 
-/// The file's bytes without their checksum, which is right. A file that is longer than the frame's longest
-/// is not read.
+/// Returns the file's bytes without their checksum, after verifying it. Refuses a file longer than `most`
+/// without reading it.
 std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most) {
   std::error_code failed;
-  if (std::filesystem::is_regular_file(path, failed)) {  // else a pipe: read_input() says so
+  if (std::filesystem::is_regular_file(path, failed)) {  // otherwise a pipe, which read_input() refuses
     std::string start(sizeof magic, ' ');
     std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
     if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
@@ -108,7 +109,7 @@ std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most
   return bytes;
 }
 
-/// Whether the pixels are the image's own, or a list as list_pass() makes it: each pixel once.
+/// Whether the pixels are the whole image, or a list as list_pass() makes it, with each pixel once.
 bool are_pixels_of(const Film& film, const Pass& pass) {
   if (pass.pixels.empty()) return pass.width == film.width && pass.height == film.height;
   if (!is_list_size(pass.width, pass.height)) return false;
@@ -125,14 +126,14 @@ bool are_pixels_of(const Film& film, const Pass& pass) {
   return true;
 }
 
-/// Whether the arrays hold what a film may.
+/// Whether the arrays hold only values that are possible in a film.
 bool are_true(const Film& film, const Pass& pass, const Film& made) {
   const auto known = [](PixelState state) { return state <= PixelState::interpolated; };
   return all_flags(film.done) && all_flags(made.done) && std::ranges::all_of(film.states, known) &&
          (pass.is_none() ? pass.pixels.empty() : are_pixels_of(film, pass));
 }
 
-/// Takes the header's values for `film` and `pass`; whether a frame with this film has them.
+/// Copies the header's values to `film` and `pass`; false if no frame with this film can have them.
 bool take_header(const Header& header, Film& film, Pass& pass) {
   film.stage = header.stage, film.step = header.step;
   film.surfaces_seen = header.surfaces_seen;

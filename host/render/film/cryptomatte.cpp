@@ -1,5 +1,5 @@
-// Hashes names by MurmurHash3 to ids as floats, splits pairs into layers of two, and writes the manifests;
-// "default" stands for surfaces without an entry.
+// Hashes names to float ids, splits pairs into layers of two, and writes the manifests; "default" stands for
+// surfaces without an entry.
 #include "render/film/cryptomatte.h"
 #include "base/json_text.h"
 
@@ -16,7 +16,7 @@ constexpr std::uint32_t first_factor = 0xcc9e2d51u, second_factor = 0x1b873593u;
 
 std::uint32_t mixed(std::uint32_t block) { return std::rotl(block * first_factor, 15) * second_factor; }
 
-/// Up to four bytes, the first of them lowest.
+/// Up to four bytes, the first lowest.
 std::uint32_t block_of(std::string_view bytes) {
   std::uint32_t block = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -24,8 +24,8 @@ std::uint32_t block_of(std::string_view bytes) {
   return block;
 }
 
-/// Names unnamed entries by their index, so that each has an id of its own. Appends "default", for surfaces
-/// without an entry.
+/// Names unnamed entries by their index, so that each has its own id. Appends "default", for surfaces without
+/// an entry.
 std::vector<std::string> completed(std::vector<std::string> names, std::string_view kind) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i].empty()) names[i] = fmt::format("{} {}", kind, i);
@@ -33,7 +33,7 @@ std::vector<std::string> completed(std::vector<std::string> names, std::string_v
   return names;
 }
 
-/// Two of the pairs as a layer; what covers nothing has neither id nor share.
+/// Two of the pairs as a layer; unused pairs have id and share 0.
 Image layer_of(const Image& pairs, std::size_t first, const std::vector<std::string>& names) {
   std::vector<float> ids;
   for (const std::string& name : names) ids.push_back(std::bit_cast<float>(id_bits(name)));

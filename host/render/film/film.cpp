@@ -1,4 +1,5 @@
-// The table `places` says where each AOV stands among a pixel's vectors.
+// Allocates a film's arrays, stores finished tiles, and develops them into the image and AOVs. The table
+// `places` locates each AOV among a pixel's vectors.
 #include "render/film/film.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ void copy_rows(const Film& film, const Tile& tile, std::size_t per_pixel, std::s
 
 enum class AovKind { surface, matte, light };
 
-/// Where an AOV stands in a pixel's vectors: `count` floats from `first` on among those of its kind.
+/// An AOV's place in a pixel's vectors: `count` floats from `first` among the vectors of its kind.
 struct AovPlace {
   const char* name;
   std::size_t first, count;
@@ -65,7 +66,7 @@ static_assert(all_parts == LIGHT_PART_COUNT && 3 * all_parts <= std::size_t{4} *
 #define PLACE_OF_PART(name) {#name, 3 * part_##name, 3, AovKind::light},
 
 constexpr AovPlace places[] = {LIGHT_PARTS(PLACE_OF_PART){"depth", 3, 1},
-                               {motion_aov, 3, 5},  // find_motion() makes it of depth and object
+                               {motion_aov, 3, 5},  // find_motion() computes it from depth and object
                                {"normal", 0, 3},
                                {"position", 4, 3},
                                {"albedo", 8, 3},
@@ -79,8 +80,8 @@ constexpr AovPlace places[] = {LIGHT_PARTS(PLACE_OF_PART){"depth", 3, 1},
                                {"crypto_object", 0, matte_floats, AovKind::matte},
                                {"crypto_material", matte_floats, matte_floats, AovKind::matte}};
 
-/// A pixel's pairs of id + 1 and sum of shares become pairs of id (-1: none) and coverage, the greatest
-/// first, of equal ones the smaller id.
+/// Converts a pixel's pairs of (id + 1, sum of shares) to (id, coverage), sorted by coverage, then by id; an
+/// unused pair has id -1.
 void rank_mattes(float* pairs, float weight) {
   struct Pair {
     float id, share;
@@ -108,7 +109,7 @@ std::size_t first_float(const AovLayout& layout, const AovPlace& place) {
   return place.first + (place.kind == AovKind::matte ? of_mattes : 4 * layout.first_light());
 }
 
-/// The parts of a channel of pixel `i`, which has samples.
+/// One channel of the light parts of pixel `i`, which has samples.
 PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
   const auto* sums = reinterpret_cast<const float*>(&film.sums[i]);
   const auto* of_parts =
@@ -120,7 +121,7 @@ PartValues parts_of(const Film& film, std::size_t i, std::size_t channel) {
 }
 
 const AovPlace* find_place(const std::string& name) {
-  if (is_light_group(name)) return &places[number_of_group(name)];  // in place of a part of light
+  if (is_light_group(name)) return &places[number_of_group(name)];  // groups replace the parts of light
   const auto* place =
       std::find_if(std::begin(places), std::end(places), [&](const AovPlace& p) { return name == p.name; });
   return place == std::end(places) ? nullptr : place;
@@ -227,7 +228,7 @@ Image Film::develop(int channels) const {
     pixel[0] = sums[i].x / weights[i];
     pixel[1] = sums[i].y / weights[i];
     pixel[2] = sums[i].z / weights[i];
-    // Where floats have no sum of parts with these bits, the picture takes the sum's.
+    // If no float parts sum to exactly this colour, the image shows their sum, so that the two agree.
     for (std::size_t c = 0; c < 3 && layout.light && !aovs.empty(); ++c)
       pixel[c] = sum_of(parts_of(*this, i, c));
     if (channels == 4) pixel[3] = sums[i].w / weights[i];
@@ -235,7 +236,7 @@ Image Film::develop(int channels) const {
   return image;
 }
 
-/// A number of each pixel that is done.
+/// An image of one number per finished pixel.
 template <class T>
 static Image pixel_numbers(const Film& film, const std::vector<T>& numbers) {
   Image image(film.width, film.height, 1);

@@ -1,4 +1,4 @@
-// Sums the bytes a pixel of film, AOVs, passes, denoiser and encoders.
+// Sums the bytes per pixel of film, AOVs, passes, denoiser and encoders.
 #include "render/film/frame_memory.h"
 
 #include <fmt/format.h>
@@ -15,14 +15,14 @@
 namespace sundog {
 namespace {
 
-// Sums, weight, and whether it is done; the vectors of AOVs that passes ask for.
+// Sums, weight and done flag; the AOV vectors that passes request.
 constexpr std::uint64_t own_bytes = 16 + 4 + 1, film_aov_bytes = 48;
 
-/// Bytes of the AOVs in the film.
+/// Bytes per pixel of the film's AOVs.
 std::uint64_t film_aovs(const FrameOutput& output) { return film_bytes(output.aovs) - film_bytes({}); }
 
-/// Bytes a pixel that an encoder allocates beside the image: converted samples, and the file, taken as
-/// incompressible noise. A growing buffer counts twice.
+/// Bytes per pixel that an encoder allocates besides the image: converted samples, and the file, assumed to
+/// be incompressible noise. A growing buffer counts twice.
 std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
   const std::string extension = lower_extension(output.file);
   if (output.file.empty()) return 0;
@@ -32,18 +32,19 @@ std::uint64_t encoder_bytes(const FrameOutput& output, std::uint64_t aovs) {
   return extension == ".pfm" ? 12 : 3 + 2 * 3;
 }
 
-// Further bytes a pixel of a frame in passes: the film of all passes, surfaces, states, colours; between
+// Further bytes per pixel of a frame in passes: the film of all passes, surfaces, states, colours; between
 // passes the expected errors and the list of pixels that get more samples.
 constexpr std::uint64_t passes_bytes = own_bytes + film_aov_bytes + 4 + 1 + 16 + 4 + 20 + 8 + 8;
 
-// Tiles that are on their way, on the device and off it, and what the allocator keeps of them: measured where
-// frames are drawn so fast that tiles are large.
+// Bytes per pixel of tiles in flight, on the device and off it, including memory that the allocator retains.
+// Measured with frames that are drawn so fast that tiles are large.
 constexpr std::uint64_t tile_bytes = 10;
 
-// The denoised colours, albedo and normal; alpha as a picture of its own, and its denoised copy.
+// Bytes per pixel of the denoised colours, albedo and normal; of alpha as its own picture, with its denoised
+// copy.
 constexpr std::uint64_t denoised_bytes = 36, denoised_alpha_bytes = 24;
 
-// Bytes a pixel that Open Image Denoise 2.5 takes for its network's layers with a small picture.
+// Bytes per pixel that Open Image Denoise 2.5 needs for its network's layers with a small picture.
 constexpr std::uint64_t denoiser_bytes = 600;
 
 }  // namespace

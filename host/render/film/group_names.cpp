@@ -1,4 +1,4 @@
-// Numbers groups by their place in the scene's list, the rest 0, expands the AOV of all groups, and refuses
+// Numbers groups by their place in the scene's list (0: the rest), expands the AOV of all groups, and refuses
 // parts of light beside groups.
 #include "render/film/group_names.h"
 

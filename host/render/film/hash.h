@@ -1,4 +1,5 @@
-// A 64-bit hash of bytes and of a compiled scene, to recognise a checkpoint's scene. Not cryptographic.
+// 64-bit hashes of bytes and of a compiled scene, by which a checkpoint's scene is recognised. Not
+// cryptographic.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,7 +16,7 @@ std::uint64_t hash_of(const std::vector<T>& values) {
   return hash_bytes(values.data(), values.size() * sizeof(T));
 }
 
-/// Everything that the image depends on.
+/// Hashes everything that the image depends on.
 std::uint64_t hash_scene(const CompiledScene& scene);
 
 }  // namespace sundog

@@ -11,8 +11,8 @@ float sum_of(const PartValues& parts) { return std::accumulate(parts.begin(), pa
 
 namespace {
 
-/// Whether part `k` alone can make the sum `whole`; it stays as it is if not: sums round to even numbers, so
-/// that those of neighbouring values may lie on both sides of `whole`.
+/// Whether changing part `k` alone can make the sum `whole`; otherwise restores it. Sums round to even, so
+/// the sums for adjacent floats may lie on either side of `whole`.
 bool fits(PartValues& parts, std::size_t k, float whole) {
   constexpr float far = std::numeric_limits<float>::infinity();
   const float before = parts[k];
@@ -26,7 +26,7 @@ bool fits(PartValues& parts, std::size_t k, float whole) {
   return false;
 }
 
-/// Whether one of the parts can that are not 0, the greatest first.
+/// Whether changing one nonzero part is enough; tries the largest first.
 bool one_fits(PartValues& parts, float whole) {
   std::array<bool, LIGHT_PART_COUNT> tried{};
   for (std::size_t count = 0; count < parts.size(); ++count) {
@@ -47,7 +47,7 @@ void fit_sum(PartValues& parts, float whole) {
   if (sum_of(parts) == whole || !std::isfinite(whole)) return;
   for (std::size_t k = 0; k < 2 * parts.size(); ++k) {
     if (one_fits(parts, whole)) return;
-    // Another last bit moves the sums off the middles between floats.
+    // Changing another part's last bit moves the sums away from the midpoints between floats.
     float& other = parts[k % parts.size()];
     if (other != 0) other = std::nextafter(other, std::numeric_limits<float>::infinity());
   }

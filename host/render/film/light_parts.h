@@ -1,4 +1,4 @@
-// The parts of a pixel's light (shared/light_parts.h), which sum to its colour.
+// Corrects the parts of a pixel's light (shared/light_parts.h) so that they sum exactly to its colour.
 #pragma once
 #include <array>
 
@@ -11,9 +11,9 @@ using PartValues = std::array<float, LIGHT_PART_COUNT>;
 /// ((parts[0] + parts[1]) + parts[2]) + ... in floats.
 float sum_of(const PartValues& parts);
 
-/// Changes the parts by what rounding has lost, so that their sum is `whole`, to the bit. The greatest part
-/// that can takes the difference; those that are 0 stay so. Where parts cancel that are far greater than
-/// `whole`, floats may have no such sum.
+/// Corrects the parts for rounding, so that their sum is `whole`, bit for bit. The largest part that can
+/// absorb the difference does; parts that are 0 stay 0. If parts much larger than `whole` cancel, floats may
+/// have no such sum.
 void fit_sum(PartValues& parts, float whole);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// Passes over some of the image's pixels.
+// Lists an image's pixels along Z-curves, and packs lists of pixels into passes of 4x4 blocks.
 #include <algorithm>
 #include <array>
 
@@ -7,13 +7,13 @@
 namespace sundog {
 namespace {
 
-// Pixels of a row of a pass over a list, in blocks of 4x4.
+// Width of a list pass in pixels, a multiple of its 4x4 blocks.
 constexpr std::size_t list_width = 256, block = 4, pixels_of_block = block * block;
 
-// The image is gone through in squares of so many pixels a side.
+// Edge, in pixels, of the squares in which the image is traversed.
 constexpr std::size_t side = 16;
 
-/// The places of a square along a Z-curve (Morton 1966), x | y << 16: neighbours in the order are neighbours
+/// The pixels of a square along a Z-curve (Morton 1966), x | y << 16: neighbours in this order are neighbours
 /// in the image.
 constexpr std::array<u32, side * side> z_curve = [] {
   std::array<u32, side * side> places{};
@@ -23,7 +23,7 @@ constexpr std::array<u32, side * side> z_curve = [] {
   return places;
 }();
 
-/// Whether a value of the block is above the limit. The compiler makes vectors of it.
+/// Whether any value of the block exceeds the limit. Without branches, so that the compiler vectorises it.
 bool any_above(float limit, const float* corner, std::size_t width) {
   unsigned above = 0;
   for (std::size_t y = 0; y < block; ++y)
@@ -31,7 +31,7 @@ bool any_above(float limit, const float* corner, std::size_t width) {
   return above;
 }
 
-/// Calls visit(x, y) for the upper left corners of the image's blocks of 4x4, in the order of all_pixels().
+/// Calls visit(x, y) for the upper left corner of each 4x4 block, in the order of all_pixels().
 template <class Visit>
 void for_all_blocks(u32 width, u32 height, const Visit& visit) {
   for (u32 top = 0; top < height; top += side)
@@ -40,7 +40,7 @@ void for_all_blocks(u32 width, u32 height, const Visit& visit) {
         visit(left + (z_curve[i] & 0xffffu), top + (z_curve[i] >> 16));
 }
 
-/// Where the i-th pixel of a list stands in its pass.
+/// The index in the pass of the i-th pixel of a list.
 std::size_t place_in_list(std::size_t i, std::size_t pass_width) {
   const std::size_t columns = pass_width / block, at = i / pixels_of_block, in = i % pixels_of_block;
   return (at / columns * block + in / block) * pass_width + at % columns * block + in % block;

@@ -1,5 +1,5 @@
-// Finds each pixel's world point by its depth, moves it with its object or with the face that covers it, and
-// projects it by the next camera.
+// Computes each pixel's world point from its depth, moves it with its object or with the mesh face that
+// covers it, and projects it with the next camera.
 #include "render/film/motion.h"
 
 #include <algorithm>
@@ -16,9 +16,9 @@ using glm::dmat4;
 using glm::dvec2;
 using glm::dvec4;
 
-/// The world point, or with w = 0 the direction of the sky, that a pixel shows at this place and depth.
+/// The world point that a pixel shows at this place and depth, or the direction of the sky, with w = 0.
 dvec4 seen(const Shot& shot, const dmat4& world_from_ndc, const dvec2& ndc, double depth) {
-  // An orthographic camera sees no part of the sky move.
+  // An orthographic camera sees no motion of the sky.
   const auto& m = shot.world_to_ndc;
   const bool parallel = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0;
   if (std::isinf(depth)) return parallel ? dvec4(0) : world_from_ndc * dvec4(ndc, 1, 1);
@@ -27,17 +27,17 @@ dvec4 seen(const Shot& shot, const dmat4& world_from_ndc, const dvec2& ndc, doub
   return world_from_ndc * dvec4(ndc * depth, depth - near, depth);
 }
 
-/// A face that covers the middle of a pixel, nearest to the depth that the pixel shows.
+/// The face that covers a pixel's centre and is nearest to the depth that the pixel shows.
 struct Covering {
   const MovingFace* face = nullptr;
-  glm::dvec3 shares{0};  // of the corners
+  glm::dvec3 shares{0};  // barycentric, of the corners
   double off = std::numeric_limits<double>::infinity();
 };
 
-/// Takes the face for the pixels of `shown` whose middles it covers and whose object it belongs to.
+/// Notes the face for each pixel of `shown` whose centre it covers, if that pixel shows the face's object.
 void cover(const Image& surfaces, const Shot& shot, const Region& shown, int object, const MovingFace& face,
            std::vector<Covering>& pixels) {
-  glm::dmat3 corners;  // x, y in pixels of `shown`, times w; w
+  glm::dmat3 corners;  // x and y in pixels of `shown`, times w; w
   glm::dvec3 depths;
   dvec2 low(1e9), high(-1e9);
   for (int c = 0; c < 3; ++c) {
@@ -68,7 +68,7 @@ void cover(const Image& surfaces, const Shot& shot, const Region& shown, int obj
     }
 }
 
-/// For each pixel the face of a mesh that changes its shape, where it shows one.
+/// For each pixel, the face it shows of a mesh that changes shape, if any.
 std::vector<Covering> moving_pixels(const Image& surfaces, const Shot& shot, const Region& shown) {
   std::vector<Covering> pixels(surfaces.data.size() / static_cast<std::size_t>(surfaces.channels));
   for (const auto& [object, faces] : shot.next->faces)

@@ -1,4 +1,5 @@
-// A part has bands of rows from all over the frame, so that parts take about as long.
+// Divides a frame into parts of row bands from all over it, so that they take about equally long, and merges
+// parts after checking that they belong together.
 #include "render/film/part.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ std::string cut(const std::string& text) {
   return text.size() > longest_setting ? text.substr(0, longest_setting) + "..." : text;
 }
 
-/// "samples 16, the other samples 4": the settings that differ.
+/// The differing settings: "samples 16, the other samples 4".
 std::string settings_difference(const PartFile& a, const PartFile& b) {
   const auto text = [](const PartFile& part, const std::string& name) {
     const auto found = part.settings.find(name);
@@ -45,7 +46,7 @@ std::string settings_difference(const PartFile& a, const PartFile& b) {
   return of_a.empty() ? "" : fmt::format("{}, the other {}", listed(of_b), listed(of_a));
 }
 
-/// Why two parts cannot belong to one frame; empty when they can.
+/// Why two parts cannot belong to one frame; empty if they can.
 std::string difference(const PartFile& a, const PartFile& b) {
   if (a.part.count != b.part.count)
     return fmt::format("one of {} parts, the other one of {}", b.part.count, a.part.count);
@@ -84,7 +85,7 @@ void check_all_there(const std::map<int, std::string>& found, int count) {
         Remedy::part);
 }
 
-/// Copies the pixels that are done.
+/// Copies the finished pixels.
 void add(Film& whole, const Film& part) {
   const std::size_t aovs = whole.aovs.empty() ? 0 : whole.layout.vectors();
   for (std::size_t i = 0; i < part.done.size(); ++i) {

@@ -1,5 +1,5 @@
-// A part's file: a line of JSON with the sizes, a byte for each pixel that tells whether it is there, the
-// done pixels' sums, weights and AOVs, and a checksum of all that in 16 digits.
+// A part's file: a line of JSON, a byte per pixel that says whether the pixel is done, the done pixels' sums,
+// weights, AOVs and rays, and a checksum of it all in 16 digits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void append_done(std::string& bytes, const std::vector<T>& values, const std::ve
     if (done[i]) bytes.append(reinterpret_cast<const char*>(values.data() + each * i), each * sizeof(T));
 }
 
-/// Takes what append_done() has put; false when there is too little of it.
+/// Reads values that append_done() wrote; false if the file is too short.
 template <class T>
 bool take_done(const std::string& bytes, std::size_t& at, std::vector<T>& values,
                const std::vector<std::uint8_t>& done) {
@@ -53,7 +53,7 @@ std::string checksum(const std::string& bytes) {
   return fmt::format("{:016x}", hash_bytes(bytes.data(), bytes.size()));
 }
 
-/// A whole number of the header; none where it is anything else or not within the bounds.
+/// An integer of the header; nothing unless it lies within the bounds.
 std::optional<int> whole(const json& head, const char* key, int least, int most) {
   const json& value = head.at(key);
   if (!value.is_number_unsigned()) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<int> whole(const json& head, const char* key, int least, int most)
   return static_cast<int>(number);
 }
 
-/// The values are distinct names of AOVs.
+/// Whether the values are distinct names of AOVs.
 bool are_aovs(const std::vector<std::string>& names) {
   const auto known = [](const std::string& name) {
     return std::ranges::count(aov_names(), name) == 1 || is_light_group(name);
@@ -88,7 +88,7 @@ json next_json(const std::optional<NextShot>& next) {
   if (!next) return {};
   json moves = json::array();
   for (const auto& [object, matrix] : next->moves) moves.push_back({object, matrix_json(matrix)});
-  json faces = json::array();  // an object's index, and 18 numbers a face
+  json faces = json::array();  // an object's index, and 18 numbers per face
   for (const auto& [object, moving] : next->faces) {
     json numbers = json::array();
     for (const MovingFace& face : moving)
@@ -141,8 +141,8 @@ Shot read_shot(const json& value) {
   return shot;
 }
 
-/// The header's values, with a film without pixels of its size; none where they cannot be true. Throws what
-/// JSON throws.
+/// Reads the header, with an empty film of its size; nothing if the values are impossible. Throws json
+/// exceptions.
 std::optional<PartFile> read_header(const json& head) {
   const auto count = whole(head, "parts", 1, most_parts);
   const auto index = whole(head, "part", 1, count.value_or(0));
@@ -165,7 +165,7 @@ std::optional<PartFile> read_header(const json& head) {
   return file;
 }
 
-/// A frame of few pixels done is small as a file.
+/// A nearly empty part is a small file for a large frame, so memory is checked before the film is allocated.
 void check_memory(const std::filesystem::path& path, const PartFile& file) {
   const auto pixels =
       static_cast<std::uint64_t>(file.film.width) * static_cast<std::uint64_t>(file.film.height);
@@ -178,8 +178,8 @@ void check_memory(const std::filesystem::path& path, const PartFile& file) {
                     static_cast<double>(there) / (1 << 30)));
 }
 
-/// The film after the header, of a file whose checksum is right. Memory is taken for no more pixels than the
-/// file has flags for.
+/// Reads the film behind the header; the checksum has been verified. Allocates only if the file has a flag
+/// for each pixel.
 bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::string>& aovs, Film& film) {
   const auto pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
   if (pixels > bytes.size() - at) return false;

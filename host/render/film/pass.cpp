@@ -1,4 +1,5 @@
-// A pixel's error is estimated from how far its mean moved with its last samples.
+// Adds finished passes to the film, and estimates each pixel's error from how far its last samples moved its
+// mean.
 #include "render/film/pass.h"
 
 #include <tbb/blocked_range.h>
@@ -13,8 +14,8 @@
 namespace sundog {
 namespace {
 
-/// The mean of a pixel's samples, to which alpha adds without a change of their light: what looks alike and
-/// covers less differs.
+/// The mean of a pixel's samples with missing alpha mixed in, which leaves the light unchanged: two pixels of
+/// equal colour but different coverage differ.
 Color watched(const float4& sum, float weight) {
   Color color = mean_of(sum, weight);
   const float clear = weight > 0 ? 1 - sum.w / weight : 0;
@@ -23,7 +24,7 @@ Color watched(const float4& sum, float weight) {
   return color;
 }
 
-/// The square of pixel_errors() of a pixel whose watched() was `then` before its last samples.
+/// The square of pixel_errors() for a pixel whose watched() colour was `then` before its last samples.
 float squared_error(const Color& now, const Color& then) {
   const float moved = std::abs(now.r - then.r) + std::abs(now.g - then.g) + std::abs(now.b - then.b);
   return moved * moved / std::sqrt(seen_light(now));
@@ -42,14 +43,14 @@ Seen seen_of(const Color& color) {
 
 float moved_by_one(float moved, u32 taken) { return taken > 1 ? moved / share_of_squares(taken) : 0; }
 
-/// Puts the samples of pixel `i` of a pass into its place `p`.
+/// Copies the samples of pixel `i` of a pass to pixel `p` of the film.
 void add_samples(Film& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
   const float4 sum = made.sums[i], before = film.sums[p];
   const float weight = made.weights[i], weight_before = film.weights[p];
   const u32 taken = pass.first_sample + pass.sample_count;
   const Color color = watched(sum, weight);
   if (weight > 0 && weight_before > 0) {
-    // One doubling may move it little by chance, so earlier ones count too.
+    // One doubling may move the mean little by chance, so earlier ones count too.
     const Seen& then = film.seen[p];
     const float square = squared_error(color, {then[0], then[1], then[2]});
     const float earlier = squares_of_doubling * film.moved[p];
@@ -68,7 +69,7 @@ void add_samples(Film& film, const Pass& pass, const Film& made, std::size_t i, 
   film.states[p] = PixelState::sampled;
 }
 
-/// Puts pixel `i` of a pass into its place `p`.
+/// Copies pixel `i` of a pass to pixel `p` of the film.
 void add_pixel(Film& film, const Pass& pass, const Film& made, std::size_t i, std::size_t p) {
   const std::size_t vectors = film.layout.vectors();
   if (pass.surfaces && !film.aovs.empty())
@@ -90,7 +91,7 @@ void prefetch(const Film& film, const Pass& pass, std::size_t i) {
   __builtin_prefetch(&film.taken[p], 1);
 }
 
-/// The sums of the blocks of cost_block pixels a side.
+/// Sums the rays of each block of cost_block x cost_block pixels.
 std::vector<u32> add_up_blocks(const std::vector<u32>& rays, int width, int height) {
   const int columns = (width + cost_block - 1) / cost_block;
   std::vector<u32> sums(cost_blocks(width, height));
@@ -103,7 +104,7 @@ std::vector<u32> add_up_blocks(const std::vector<u32>& rays, int width, int heig
   return sums;
 }
 
-/// Gives a film without pixels those of a pass over all of them.
+/// Moves the arrays of a full-image pass into an empty film.
 void take_pixels(Film& film, const Pass& pass, Film made) {
   film.sums = std::move(made.sums), film.weights = std::move(made.weights), film.done = std::move(made.done);
   if (pass.costs) film.block_rays = add_up_blocks(made.rays, film.width, film.height);
@@ -121,8 +122,8 @@ void take_pixels(Film& film, const Pass& pass, Film made) {
   }
 }
 
-/// Writes the variance of the colours of the 3x3 pixels around `p`, for a pixel whose one sample says nothing
-/// of its error. Infinite where no other pixel is known.
+/// Writes the variance of the colours of the 3x3 pixels around `p`, whose one sample says nothing about its
+/// error. Infinite if no other pixel is known.
 void write_variance_around(const Film& film, std::size_t p, float* variance) {
   const int width = film.width, x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
   float count = 0, sums[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
@@ -153,7 +154,7 @@ Film film_of_pass(const Film& film, const Pass& pass) {
 }
 
 void prefetch_sums(const Film& film, const Pass& pass, std::size_t i) {
-  if (pass.pixels.empty() || i >= pass.pixels.size()) return;  // the rows of an image lie in order
+  if (pass.pixels.empty() || i >= pass.pixels.size()) return;  // an image's rows are contiguous
   const std::int64_t p = image_index(film, pass, i);
   if (p < 0) return;
   __builtin_prefetch(&film.sums[static_cast<std::size_t>(p)], 1);

@@ -8,7 +8,7 @@
 namespace sundog {
 
 std::vector<RowRange> divide_rows(int height, std::span<const double> shares) {
-  constexpr int align = 4;  // as tiles are aligned
+  constexpr int align = 4;  // the tiles' alignment
   const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
   const int bands = (height + align - 1) / align;
   std::vector<RowRange> ranges;

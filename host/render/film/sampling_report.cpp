@@ -1,4 +1,4 @@
-// Sums the samples taken, and draws their logarithm as brightness; pixels without samples are dark blue.
+// Sums the samples, and draws their logarithm as brightness; pixels without samples are dark blue.
 #include "render/film/sampling_report.h"
 
 #include <algorithm>

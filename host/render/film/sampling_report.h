@@ -1,4 +1,4 @@
-// Where the samples of a frame in passes went: figures, and a picture.
+// How a frame in passes distributed its samples: statistics, and a picture.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,19 +9,20 @@
 namespace sundog {
 
 struct SamplingFigures {
-  std::uint64_t samples = 0;      // taken
-  double mean = 0;                // a pixel
-  u32 most = 0;                   // of any pixel
-  double share_interpolated = 0;  // of the pixels: done without a sample of their own
-  double saved = 0;               // share of the camera's rays that `each` samples a pixel would have taken
+  std::uint64_t samples = 0;      // samples taken
+  double mean = 0;                // samples per pixel
+  u32 most = 0;                   // maximum of all pixels
+  double share_interpolated = 0;  // share of pixels finished without samples of their own
+  double saved = 0;               // share of the camera rays saved, compared with `each` samples per pixel
 };
 
-/// `taken`: samples of each pixel; `done`: 1 for each pixel that is complete, as Film::done; `surfaces`:
-/// further camera rays; `each`: the samples a pixel of a frame in which all have the same.
+/// `taken`: samples of each pixel; `done`: 1 for each finished pixel, as in Film::done; `surfaces`: further
+/// camera rays; `each`: samples per pixel of a frame that samples all pixels equally.
 SamplingFigures sampling_figures(const std::vector<u32>& taken, const std::vector<std::uint8_t>& done,
                                  std::uint64_t surfaces, u32 each);
 
-/// Blue: no sample (interpolated); then the more samples, the brighter, by their logarithm.
+/// Blue: no samples (interpolated); otherwise brightness is the square of the logarithm of the samples,
+/// relative to the maximum.
 Image sampling_picture(const std::vector<u32>& taken, int width, int height);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// The interface of workers, which render tiles: on a device of this process, in a worker process, or on
+// The interface of workers, which render tiles on a device of this process, in a worker process, or on
 // another machine.
 #pragma once
 #include <atomic>
@@ -14,31 +14,31 @@
 
 namespace sundog {
 
-/// The work of one tile of a pass.
+/// A tile of a pass to be rendered.
 struct TileRequest {
   Tile tile;
-  std::vector<u32> pixels;                 // each pixel's of the image (Pass::pixels); empty: its own
-  u32 first_sample = 0, sample_count = 0;  // samples to add to what follows
-  bool surfaces = false;                   // AOVs
-  bool costs = false;                      // rays, at least of each work-item's pixels together
-  std::vector<float4> sums;                // of each pixel's earlier samples; empty: none
+  std::vector<u32> pixels;  // image pixel of each tile pixel (Pass::pixels); empty: the tile's own
+  u32 first_sample = 0, sample_count = 0;  // samples to add to the sums below
+  bool surfaces = false;                   // also render AOVs
+  bool costs = false;                      // count rays, at least per work-item
+  std::vector<float4> sums;                // each pixel's earlier samples; empty: none
   std::vector<float> weights;
-  std::vector<u32> rays;     // of each pixel so far, where they are counted
-  std::vector<float4> aovs;  // of each pixel so far, where `surfaces` holds sums over samples
+  std::vector<u32> rays;     // rays per pixel so far, if counted
+  std::vector<float4> aovs;  // per pixel so far, if `surfaces` includes sums over samples
 };
 
-/// A tile's pixels and ray counts. `tile` is what was finished: less rows than asked for when it was stopped
-/// on the way.
+/// A tile's pixels and ray counts. `tile` is the finished part: fewer rows than requested if rendering was
+/// stopped.
 struct TileResult {
   Tile tile;
   std::vector<float4> sums;
   std::vector<float> weights;
   std::vector<float4> aovs;
-  std::vector<u32> rays;  // of each pixel where they are counted, or with `costs` of groups at one of theirs
+  std::vector<u32> rays;  // per pixel if counted; with `costs`, perhaps all of a group's at one pixel
   RayCounts counts{};
 };
 
-/// Asked between launches: whether to return the finished part.
+/// Checked between launches: whether to return the part finished so far.
 struct StopFlags {
   const std::atomic<bool>* stop = nullptr;       // the frame is over
   const std::atomic<bool>* cancelled = nullptr;  // another device has finished the tile
@@ -49,59 +49,59 @@ struct StopFlags {
 struct WorkerFigures {
   std::map<std::string, KernelTimes> kernels;
   double readback_seconds = 0;
-  std::vector<std::string> notes;  // what did not stop it: smaller launches, a cache that could not be used
+  std::vector<std::string> notes;  // problems that did not stop it: smaller launches, an unusable cache
   std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
-  std::uint64_t kernels_built = 0;  // programs, by the driver's compiler
+  std::uint64_t kernels_built = 0;  // programs compiled by the driver
 };
 
-/// Used by one thread, overdue() and compiles() by any.
+/// A worker is used by one thread; overdue() and compiles() may be called by any.
 class DeviceWorker {
  public:
   virtual ~DeviceWorker() = default;
   virtual const DeviceInfo& info() const = 0;
-  /// Makes it ready: kernels built, scene uploaded. Called again after a failure, to begin afresh. Throws
+  /// Builds the kernels and uploads the scene. Called again after a failure, to start afresh. Throws
   /// DeviceError, BuildError.
   virtual RenderTimes open() = 0;
-  /// Makes what is asked for. Throws DeviceError; then it must be opened again.
+  /// Renders the requested tile. Throws DeviceError; then the worker must be opened again.
   virtual TileResult render(const TileRequest& request, const StopFlags& flags) = 0;
   virtual WorkerFigures figures() const = 0;
   /// Writes compiled kernels to the cache and stays open.
   virtual void keep_programs() {}
-  /// Lets go of the device, and keeps its compiled kernels for the next time.
+  /// Releases the device, and keeps its compiled kernels for the next time.
   virtual void close() = 0;
-  /// Seconds that a launch has run when it has passed its limit, else 0: the driver hangs.
+  /// Seconds that a launch has been running if it exceeds its limit, because the driver hangs; otherwise 0.
   virtual double overdue() const { return 0; }
-  /// Whether a kernel's first launch is in hand, in which its driver may compile for long.
+  /// Whether a kernel's first launch is running, in which the driver may compile for a long time.
   virtual bool compiles() const { return false; }
-  /// Asked before open(): to use only time that nobody else wants.
+  /// Called before open(): use only time that nothing else needs.
   virtual void be_nice() {}
-  /// After so many failures it is not tried again.
+  /// The worker is given up after this many failures.
   virtual unsigned failures_allowed() const { return 3; }
-  /// Which cores it runs on (DeviceSpeed::processor).
+  /// Identifies the cores that it runs on (DeviceSpeed::processor).
   virtual int processor() const { return info().shares_cores() ? 0 : -1; }
 };
 
 /// A worker that stays open from one scene to the next.
 class SceneWorker : public DeviceWorker {
  public:
-  /// From the next open() on: another scene, for which it keeps what suits it. Its figures begin anew.
+  /// Sets the scene for the next open(), which reuses everything that still fits. Resets the figures.
   /// `options` must outlive their use.
   virtual void show(std::shared_ptr<const CompiledScene> scene, const RenderOptions& options) = 0;
-  /// Makes it, while it is open, ready for requests that ask for surfaces. Throws BuildError.
+  /// Prepares an open worker for requests with surfaces. Throws BuildError.
   virtual void prepare_surfaces() = 0;
-  /// It was opened, and nothing has failed since.
+  /// Whether it was opened and nothing has failed since.
   virtual bool is_open() const = 0;
   /// Makes open() throw DeviceError instead of waiting for a compiler, until the next show(). Any thread may
   /// call it.
   virtual void hurry() {}
-  /// Whether the open scene is a draft, which rounds otherwise than its picture and must be drawn anew, and
-  /// whether the kernels for that are there (or cannot be built, which the next open() reports). Any thread
-  /// may ask the first.
+  /// draws_draft(): whether the open scene is a draft, which rounds differently from the final picture and
+  /// must be redrawn; any thread may call it. may_end_draft(): whether the kernels for redrawing are built
+  /// (or cannot be built, which the next open() reports).
   virtual bool draws_draft() const { return false; }
   virtual bool may_end_draft() const { return false; }
-  /// Nothing has to be drawn now. The worker may prepare for later work, as long as it delays none.
+  /// Called when nothing has to be drawn. The worker may prepare later work, as long as it delays none.
   virtual void rest() {}
-  /// Kernels that are being built beside the work. Any thread.
+  /// Kernels being built in the background. Any thread may call it.
   virtual std::size_t kernels_waiting() const { return 0; }
 };
 

@@ -1,5 +1,5 @@
-// The story of a frame: plan, passes, film, image. The threads of its workers (frame_loop.h: run_frame())
-// make the passes between begin_frame() and finish_frame().
+// A frame's steps: plan, passes, film, image. The threads of its workers (frame_loop.h: run_frame()) render
+// the passes between begin_frame() and finish_frame().
 #include "render/frame/frame.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector
     continues = continue_checkpoint(*frame);
   } catch (const std::exception& error) {
     if (!options.renews_checkpoint) throw;
-    frame.reset();  // its workers are made again
+    frame.reset();  // its workers are created again
     frame = plan_frame(scene, devices, options);
     frame->checkpoint_left = error.what();
   }
@@ -33,7 +33,8 @@ std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector
   return frame;
 }
 
-// The passes: each is cut into tiles, which workers take; the film takes each tile, and plans the next pass.
+// The passes: each is cut into tiles that workers render; finished tiles enter the film, from which the next
+// pass is planned.
 
 void begin_pass(Frame& frame, std::optional<Pass> next) {
   frame.pass = next ? std::move(*next) : Pass();
@@ -53,7 +54,7 @@ void continue_pass(Frame& frame) {
 
 namespace {
 
-/// Puts a tile, or the finished rows of one, into the film. The caller holds the frame's mutex.
+/// Copies a tile, or its finished rows, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   if (frame.over || made.tile.height == 0) return;
   frame.pixels_done += frame.pass_film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
@@ -65,7 +66,7 @@ void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   stop_at_time_limit(frame);
 }
 
-/// Makes one tile; throws what the worker throws.
+/// Renders one tile; throws the worker's exceptions.
 void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
   const Stopwatch busy;
@@ -74,7 +75,7 @@ void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
   const TileResult made = render_in_picture(frame, *frame.workers[i].device, std::move(*request), flags);
   const double seconds = busy.seconds();
   const bool whole = made.tile == job.tile;
-  // The queue has all tiles when the film has them.
+  // Queue and film change under one lock: when the queue has no tiles left, the film has them all.
   const std::lock_guard lock(frame.mutex);
   const bool first = whole ? frame.queue.finished(i, job, seconds) : frame.queue.given_up(i, job);
   if (first) keep_tile(frame, i, made);
@@ -97,7 +98,7 @@ void make_tiles(Frame& frame, std::size_t i) {
 
 namespace {
 
-/// The film takes the complete pass. Returns the one after it, as the film wants it.
+/// Adds the complete pass to the film. Returns the next pass, as the film requires it.
 std::optional<Pass> following_pass(Frame& frame) {
   if (frame.coarse.block > 0) {
     if (std::optional<Pass> finer = finer_pass(frame)) return finer;
@@ -108,7 +109,7 @@ std::optional<Pass> following_pass(Frame& frame) {
   return next_pass(frame.film, frame.plan, frame.pass);
 }
 
-/// Puts what is done of the pass in hand into the film of the passes before.
+/// Adds the finished pixels of the current pass to the film of the earlier passes.
 Film joined(const Frame& frame, Film film, Film made) {
   if (!made.done.empty() && frame.coarse.block == 0) add_pass(film, frame.pass, std::move(made), false);
   if (film.sums.empty()) film.allocate();
@@ -137,7 +138,7 @@ RenderResult finish_frame(Frame& frame) {
   const bool is_lost = result.failure && !(frame.options.keep_failed && has_pixels(frame));
   keep_checkpoint(frame, result);
   if (is_lost) std::rethrow_exception(result.failure);
-  // With what there is of another pass, parts of the picture would have twice the samples of others.
+  // Drops the unfinished pass, with which parts of the picture would have twice the samples of others.
   if (result.time_limited && frame.film.stage > 0) frame.pass_film = Film();
   result.film = take_film(frame);
   develop(frame, result);

@@ -1,5 +1,5 @@
-// A frame from its plan to its image: threads, one a worker, take tiles from the queue, while another watches
-// for the end, for an interrupt and for drivers that hang. Internal to the render layer.
+// A frame from its plan to its image: one thread per worker takes tiles from the queue, while another watches
+// for the end, interrupts and hanging drivers. Internal to the render layer.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -19,19 +19,18 @@
 
 namespace sundog {
 
-/// Coarse passes before a frame's own, where somebody waits for it.
+/// Coarse passes before a frame's own passes, for an interactive viewer.
 struct CoarsePasses {
-  CoarsePicture picture;     // what is complete
-  int block = 0;             // the pass in hand is of such blocks; 0: it is one of the frame's own
-  unsigned count = 0;        // that are complete
-  double pixel_seconds = 0;  // a sample's of a pixel, by the last pass over coarse or all pixels or the frame
-                             // before; 0: not known
+  CoarsePicture picture;     // the last complete coarse picture
+  int block = 0;             // block edge of the current pass; 0: it is one of the frame's own
+  unsigned count = 0;        // complete coarse passes
+  double pixel_seconds = 0;  // seconds per pixel and sample in the last pass or frame; 0: unknown
 };
 
-/// State that the frame's threads share. It lives until the last thread has left, perhaps after the frame's
-/// end.
+/// State that the frame's threads share. It lives until the last thread has left, which may be after the
+/// frame's end.
 struct Frame : std::enable_shared_from_this<Frame> {
-  /// `film` is empty: begin_pass() or continue_pass() come next.
+  /// `film` is empty; begin_pass() or continue_pass() must follow.
   Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::vector<DeviceSpeed>& speeds);
 
   enum class Phase { opening, working, closing, gone };
@@ -39,112 +38,111 @@ struct Frame : std::enable_shared_from_this<Frame> {
     std::shared_ptr<DeviceWorker> device;
     DeviceReport report = {};
     Phase phase = Phase::opening;
-    bool failed = false;  // for good
+    bool failed = false;  // permanently
   };
 
   const RenderOptions options;
   const SamplingPlan plan;
-  std::function<TilePlan(const Film&)> tiles;  // of a pass, whose finished tiles are given
-  Tile area, inner;  // of the picture, that the film holds; of the film, that are the region
+  std::function<TilePlan(const Film&)> tiles;  // plans a pass's tiles, given its finished pixels
+  Tile area, inner;                            // the film's part of the picture; the region within the film
   std::vector<Worker> workers;
-  std::mutex mutex;  // for everything below, and the workers' reports and phases
+  std::mutex mutex;  // guards everything below, and the workers' reports and phases
   std::condition_variable changed;
-  Film film;       // of the passes that are complete
-  Pass pass;       // the one in hand; none where the film is complete
-  Film pass_film;  // the finished tiles of that pass
+  Film film;       // complete passes
+  Pass pass;       // the current one; none if the film is complete
+  Film pass_film;  // finished tiles of the current pass
   CoarsePasses coarse;
   TileQueue queue;
   RayCounts counts{};
-  RenderTimes times;                 // of the first worker to be ready
-  std::optional<std::size_t> timed;  // that worker
+  RenderTimes times;                 // of the worker that was ready first
+  std::optional<std::size_t> timed;  // that worker's index
   double readback = 0;
   std::exception_ptr last_error;
-  // Pixels of the pass: all, those that are done, those in the checkpoint.
+  // Pixels of the pass: all, finished, in the checkpoint.
   std::uint64_t pass_pixels = 0, pixels_done = 0, pixels_kept = 0;
   std::uint64_t key = 0;        // the checkpoint's
   std::string checkpoint_left;  // RenderResult::checkpoint_left
   Stopwatch clock, since_checkpoint, since_picture, since_pass;
-  Stopwatch since_progress;                        // was reported; guarded by the mutex
-  std::function<void(std::size_t)> between_tiles;  // called by each worker's thread, with its index
+  Stopwatch since_progress;                        // last report; guarded by the mutex
+  std::function<void(std::size_t)> between_tiles;  // called by each worker's thread, with the worker's index
   bool live = false;                               // the workers' figures are kept up to date
-  bool over = false;                               // the result is being gathered: nothing more goes in
-  bool limited = false;                            // the time limit ended it
+  bool over = false;     // the result is being gathered; tiles are no longer accepted
+  bool limited = false;  // ended by the time limit
   std::atomic<bool> stop{false};
 };
 
-/// Where a frame that does not come to its end is kept; empty: nowhere.
+/// The file in which an unfinished frame is saved; empty: none.
 inline const std::filesystem::path& checkpoint_path(const RenderOptions& options) {
   return options.checkpoint.empty() ? options.resume : options.checkpoint;
 }
 
 // frame.cpp
 
-/// Plans the frame and begins its first pass, or continues its checkpoint. Throws what render() does
-/// (render.h).
+/// Plans the frame and begins its first pass, or continues from its checkpoint. Throws the same exceptions as
+/// render() (render.h).
 std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                                    const RenderOptions& options);
 
-/// Gathers what was made of a frame that is over. Throws the failure of the last device when the frame is
-/// lost.
+/// Gathers the result of a frame that is over. Rethrows the last device's failure if the frame is lost.
 RenderResult finish_frame(Frame& frame);
 
-/// Plans the next pass when all tiles of the one in hand are done; without another the frame is complete.
-/// The caller holds the frame's mutex, or is alone with it, here and below.
+/// Plans the next pass if all tiles of the current one are done; without a next pass the frame is complete.
+/// Here and below, the caller holds the frame's mutex or has the only thread.
 void plan_next_pass(Frame& frame);
 
-/// Begins a pass; without one the frame is complete.
+/// Begins a pass; with none, the frame is complete.
 void begin_pass(Frame& frame, std::optional<Pass> next);
 
-/// Begins the rest of a pass of which Frame::pass_film has a part.
+/// Begins the rest of the current pass, whose finished pixels are in Frame::pass_film.
 void continue_pass(Frame& frame);
 
-/// Makes tiles by worker i until there are none, the frame is stopped, or the worker has failed too often
-/// (which throws).
+/// Renders tiles with worker i until none are left, the frame is stopped, or the worker has failed too often
+/// (then throws its failure).
 void make_tiles(Frame& frame, std::size_t i);
 
-/// The film of the complete passes, with the finished tiles of the pass in hand.
+/// The film of the complete passes, plus the finished tiles of the current pass.
 Film film_so_far(const Frame& frame);
 
 /// Moves film_so_far() out of a frame that is over.
 Film take_film(Frame& frame);
 
-/// Whether there is a pixel of the frame.
+/// Whether any pixel of the frame is finished.
 inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || frame.film.stage > 0; }
 
 // frame_coarse.cpp
 
-/// Puts the passes of a frame that somebody waits for behind coarse ones, from `block` on (0: none).
+/// Begins the frame with coarse passes before its own, starting with blocks of edge `block` (0: none).
 void begin_coarse(Frame& frame, int block);
 
-/// Ends a coarse pass, whose picture may now be looked at. Returns the next one, or nothing when the frame's
-/// own follow.
+/// Ends a coarse pass, whose picture may now be displayed. Returns the next coarse pass, or nothing when the
+/// frame's own passes follow.
 std::optional<Pass> finer_pass(Frame& frame);
 
-/// Notes how long a pixel of the frame's first pass took.
+/// Records how long a pixel of the frame's first pass took.
 void measure_pixels(Frame& frame);
 
 // frame_worker.cpp
 
-/// Takes part with worker i until the frame is over: opens it, makes tiles, notes what it did. A worker that
-/// fails too often is retired. What it throws is kept in the frame.
+/// Has worker i render until the frame is over: opens it, renders tiles, records its figures. Retires a
+/// worker that fails too often, and stores its exception in the frame.
 void work_on_frame(Frame& frame, std::size_t i);
 
-/// Takes a worker out of the frame: what it holds goes to others; without any other, the frame ends.
+/// Removes a worker from the frame: its tiles go to others; if it was the last, the frame ends.
 void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error);
 
-/// Called by a worker's thread after work_on_frame(), for a frame that watch_frame() watches. Closes the
+/// Called by a worker's thread after work_on_frame(), in a frame that watch_frame() watches. Closes the
 /// worker if `closes`; otherwise writes its compiled kernels to the cache.
 void leave_frame(Frame& frame, std::size_t i, bool closes);
 
 // frame_end.cpp
 
-/// Passes on the caller's wish to stop (options.stop); before the first tile is taken, none is.
+/// Stops the frame if the caller wishes it (options.stop), even before its first tile.
 void stop_if_asked(Frame& frame);
 
-/// Ends the frame at its time limit. The caller holds its mutex.
+/// Ends the frame if its time limit has passed. The caller holds its mutex.
 void stop_at_time_limit(Frame& frame);
 
-/// Reports how far the frame is. The caller holds its mutex.
+/// Reports the frame's progress. The caller holds its mutex.
 void report_progress(Frame& frame);
 
 /// Retires workers whose launches are overdue.

@@ -1,4 +1,4 @@
-// Reads and writes a frame's checkpoint.
+// Continues a frame from its checkpoint, and renews the checkpoint while the frame is rendered.
 #include "render/frame/frame_checkpoint.h"
 
 #include "base/error.h"
@@ -15,7 +15,7 @@ bool continue_checkpoint(Frame& frame) {
     begin_pass(frame, std::nullopt);
     return true;
   }
-  if (frame.pass.is_none()) {  // complete, perhaps of another part: keep its pixels, make those missing
+  if (frame.pass.is_none()) {  // complete, perhaps of another part: keep its pixels, render the missing ones
     frame.pass_film = std::exchange(frame.film, Film(frame.film.width, frame.film.height, frame.film));
     frame.pass = *next_pass(frame.film, frame.plan);
   }
@@ -43,7 +43,7 @@ void renew_checkpoint(Frame& frame) {
   try {
     write_checkpoint(checkpoint_path(options), film, pass, made, frame.key, options.faults);
   } catch (const IoError&) {
-    // If the frame is interrupted, the last write reports the same error.
+    // If the frame is interrupted, the final write reports the same error.
   }
 }
 

@@ -1,18 +1,19 @@
-// The checkpoint of a frame. Internal to the render layer.
+// Reads and writes a frame's checkpoint. Internal to the render layer.
 #pragma once
 #include "render/frame/frame.h"
 
 namespace sundog {
 
-/// Continues the frame from its checkpoint. Returns whether there is one. Throws for one that is damaged or
+/// Continues the frame from its checkpoint. Returns false if there is none. Throws for a damaged one or one
 /// of another frame.
 bool continue_checkpoint(Frame& frame);
 
-/// Keeps what is done, every so often or when the caller wishes it, against what gives no warning: a process
-/// killed, a machine that goes down.
+/// Saves a checkpoint periodically, or when the caller asks, so that a killed process or a power failure
+/// loses little.
 void renew_checkpoint(Frame& frame);
 
-/// Keeps what an interrupted frame has; a disk that is full must not take the image along.
+/// Saves an interrupted frame. Records a full disk in `result` instead of throwing, so that the image can
+/// still be written.
 void keep_checkpoint(const Frame& frame, RenderResult& result);
 
 }  // namespace sundog

@@ -1,4 +1,4 @@
-// The coarse passes of a frame that somebody waits for, before its own.
+// The coarse passes of an interactive frame, which precede its own.
 #include "render/frame/frame.h"
 
 namespace sundog {

@@ -1,4 +1,4 @@
-// How far a frame is, what ends it early, and what is made of it then.
+// Reports a frame's progress, ends it early if asked, and gathers its result.
 #include "render/frame/frame_end.h"
 
 #include <fmt/format.h>
@@ -10,9 +10,9 @@
 namespace sundog {
 namespace {
 
-/// Whether the frame may end at its time limit. In several passes it first makes a whole one to show, and
-/// gets further than a checkpoint that it began with: else it would not if its kernels are compiled for
-/// longer. The caller holds its mutex.
+/// Whether the frame may end at its time limit. A frame in passes first completes a pass that can be shown,
+/// and gets further than its checkpoint; otherwise it would never progress if compiling its kernels takes
+/// longer than the limit. The caller holds its mutex.
 bool may_end(const Frame& frame) {
   if (!in_passes(frame.plan.settings)) return true;
   return frame.film.stage > 0 && std::ranges::any_of(frame.workers, [](const Frame::Worker& worker) {
@@ -40,7 +40,7 @@ double frame_efficiency(const Frame& frame) {
   return efficiency(work);
 }
 
-/// Leaves an area alone of what the frame has made.
+/// Crops film, image and AOVs to an area.
 void cut_to(const Tile& area, RenderResult& result) {
   const auto cut = [&](Image& image) {
     image.data = cut_pixels(image.data, image.width, area, static_cast<std::size_t>(image.channels));

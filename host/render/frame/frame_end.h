@@ -1,16 +1,16 @@
-// The end of a frame: reports, image, AOVs. Internal to the render layer.
+// Gathers the result of a frame that is over: image, AOVs, statistics. Internal to the render layer.
 #pragma once
 #include "render/frame/frame.h"
 
 namespace sundog {
 
-/// Whether it is complete, and why not.
+/// Records whether the frame is complete, and if not, why.
 void note_end(const Frame& frame, RenderResult& result);
 
-/// Makes image and AOVs of the film; leaves the frame's region alone of all of them.
+/// Develops the film into image and AOVs; crops them all to the frame's region.
 void develop(const Frame& frame, RenderResult& result);
 
-/// Times, ray counts, and each worker's part.
+/// Records times, ray counts, and each worker's share.
 void note_figures(const Frame& frame, RenderResult& result);
 
 }  // namespace sundog

@@ -1,11 +1,11 @@
-// Starts the threads, gives each its turn in the frame, and leaves those in a driver behind at the end.
+// Starts the threads, runs the current frame in each, and at the end leaves behind those inside a driver.
 #include "render/frame/frame_loop.h"
 #include "render/frame/frame_watch.h"
 
 namespace sundog {
 namespace {
 
-// Time for a driver to return from a launch when the loop ends.
+// How long a driver may take to return from a launch when the loop ends.
 constexpr std::chrono::seconds ending_grace{10};
 
 }  // namespace
@@ -55,7 +55,7 @@ void FrameLoop::end() {
   }
   for (const auto& thread : all) {
     std::unique_lock lock(mutex);
-    // A thread that a frame did not wait for may only be about to end.
+    // A thread that a frame did not wait for may be about to end.
     const bool in_driver = thread->abandoned || (thread->opening && thread->worker->compiles());
     const bool joins =
         changed.wait_for(lock, in_driver ? look_again : ending_grace, [&] { return thread->gone; });
@@ -94,7 +94,7 @@ void FrameLoop::run_thread(DeviceThread& thread) {
   try {
     if (!thread.closed) thread.worker->close();
   } catch (const std::exception&) {
-    // Released as well as possible.
+    // The device is released as far as possible.
   }
   lock.lock();
   thread.gone = true;
@@ -108,7 +108,7 @@ void FrameLoop::serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread, 
   lock.unlock();
   Frame& frame = *mine->frame;
   if (mine->flat && thread.of_scenes) thread.of_scenes->show(mine->flat, frame.options);
-  before.reset();  // outside the lock
+  before.reset();  // may destroy the old frame: outside the lock
   work_on_frame(frame, index);
   if (mine->final) leave_frame(frame, index, mine->closes);
   lock.lock();

@@ -1,4 +1,4 @@
-// Checks AOVs, sampling and memory; makes the frame's film, passes and workers.
+// Checks AOVs, sampling and shares; creates the frame's film, passes and workers.
 #include "render/frame/frame_plan.h"
 
 #include <fmt/format.h>
@@ -22,14 +22,14 @@ void check_aovs(const std::vector<std::string>& names) {
           fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
 }
 
-/// A variance is known where samples were doubled.
+/// The variance is known only if samples are doubled in passes.
 void check_variance(const std::vector<std::string>& names, const Sampling& sampling) {
   if (std::ranges::count(names, "variance") > 0 && !in_passes(sampling))
     throw UsageError(
         "the AOV 'variance' wants a frame in passes: make it adaptive, or set /render/progressive to true");
 }
 
-/// Only the path tracer knows which lobes light has come by.
+/// Only the path tracer knows which lobes the light has passed.
 void check_light(const std::vector<std::string>& names, const CompiledScene& scene) {
   for (const std::string& name : names)
     if (is_light(name) && !integrator_of(scene.integrator).light_parts)
@@ -49,7 +49,7 @@ void check_shares(const Split& split, const std::vector<WorkerPlan>& devices) {
                                devices.size() == 1 ? "" : "s", fmt::join(labels, "; ")));
 }
 
-/// The key of the frame's checkpoint, by scene and region; 0 without a checkpoint.
+/// The key of the frame's checkpoint, a hash of scene and region; 0 without a checkpoint.
 std::uint64_t frame_key(const CompiledScene& scene, const RenderOptions& options) {
   if (checkpoint_path(options).empty()) return 0;
   const std::uint64_t key = hash_scene(scene);

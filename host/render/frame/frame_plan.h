@@ -1,4 +1,4 @@
-// Plans a frame: checks its options, then makes its film, passes, tiles and workers. Internal to the render
+// Plans a frame: checks its options, then creates its film, passes, tiles and workers. Internal to the render
 // layer.
 #pragma once
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace sundog {
 
-/// Throws UsageError for options that no frame of the scene can have, DeviceError without devices.
+/// Throws UsageError for options that no frame of the scene supports, DeviceError without devices.
 void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                  const RenderOptions& options);
 
-/// A frame with its plan of passes and tiles and its workers. No pass has begun.
+/// Creates a frame with its plan of passes and tiles and its workers. No pass has begun.
 std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                                   const RenderOptions& options);
 

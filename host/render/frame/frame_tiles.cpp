@@ -12,14 +12,14 @@
 namespace sundog {
 namespace {
 
-/// The rows of each list of tiles: all, or a device's part of a fixed split.
+/// The rows of each list of tiles: all rows, or each device's rows in a fixed split.
 std::vector<RowRange> row_ranges(const Split& split, int height, std::span<const double> estimates) {
   if (split.kind == Split::Kind::dynamic) return {{0, height}};
   if (!split.shares.empty()) return divide_rows(height, split.shares);
   return divide_rows(height, estimates);
 }
 
-/// The unfinished tiles of a part of the frame within `range`.
+/// The unfinished tiles of a part of the frame that lie within `range`.
 std::vector<Tile> unfinished_rows(const Film& film, const RowRange& range, const PartOfFrame& part) {
   std::vector<Tile> tiles;
   for (const RowRange& rows : part_rows(film.height, part)) {

@@ -8,14 +8,14 @@
 
 namespace sundog {
 
-/// Throws UsageError for a region that a picture of that size does not contain.
+/// Throws UsageError unless the region lies within a picture of this size.
 void check_region(const std::optional<Tile>& region, int width, int height);
 
-/// The pixels of such a picture that a frame makes: the region grown to whole blocks of tile_align, so that
-/// its pixels have the bits that they have in the whole picture; without a region all.
+/// The pixels of the picture that a frame renders: the region grown to whole blocks of tile_align, so that
+/// its pixels have the same bits as in the whole picture; without a region, the whole picture.
 Tile frame_area(const std::optional<Tile>& region, int width, int height);
 
-/// The unfinished tiles of `film`. `estimates` of device speeds divide a fixed split without shares.
+/// The unfinished tiles of `film`. A fixed split without shares is divided by the devices' speed `estimates`.
 TilePlan plan_tiles(const RenderOptions& options, const Film& film, std::span<const double> estimates);
 
 }  // namespace sundog

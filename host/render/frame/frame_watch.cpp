@@ -1,5 +1,5 @@
-// Looks every 20 ms until the frame is over, then waits a moment for launches and for devices that close, and
-// leaves the threads that stay.
+// Polls every 20 ms until the frame is over, then waits briefly for launches and for devices that close, and
+// abandons the remaining threads.
 #include <algorithm>
 
 #include "render/frame/frame_checkpoint.h"
@@ -10,15 +10,15 @@ namespace {
 
 using Phase = Frame::Phase;
 
-// A launch in flight may take this long after the frame's end before its thread is left behind; keeping the
-// compiled kernels for the next time may take longer, unless someone waits for the program to stop.
+// How long a launch may run on after the frame's end before its thread is abandoned; saving the compiled
+// kernels for the next time may take longer, unless someone waits for the program to stop.
 constexpr double launch_grace = 0.15, stop_grace = 0.5, closing_grace = 10;
 constexpr double look_seconds = 0.02;
 
-// Progress is reported with each tile, and this often while tiles take longer.
+// Progress is reported with each tile, and at this interval while tiles take longer.
 constexpr double progress_seconds = 0.1;
 
-/// Shows the picture so far, every so often.
+/// Shows the picture so far, every `picture_seconds`.
 void show_picture(Frame& frame) {
   if (!frame.options.on_picture || frame.since_picture.seconds() < frame.options.picture_seconds) return;
   Film film;
@@ -31,13 +31,13 @@ void show_picture(Frame& frame) {
   frame.since_picture = Stopwatch();
 }
 
-/// Tells how far the frame is while no tile is finished, so that a callback can end it.
+/// Reports progress even while no tile is finished, so that the callback can end the frame.
 void show_progress(Frame& frame) {
   const std::lock_guard lock(frame.mutex);
   if (frame.since_progress.seconds() >= progress_seconds) report_progress(frame);
 }
 
-/// Waits until the frame is over, and retires workers that hang.
+/// Waits until the frame is over; meanwhile does everything that is due and retires workers that hang.
 void watch(Frame& frame) {
   while (!frame.queue.wait(look_seconds)) {
     show_progress(frame);
@@ -52,7 +52,7 @@ void watch(Frame& frame) {
   }
 }
 
-/// Gives those that may soon be gone the time for it.
+/// Waits briefly for workers that may leave soon.
 void wait_for_threads(Frame& frame, bool stopped) {
   const bool in_haste = stopped && frame.options.in_haste;
   std::unique_lock lock(frame.mutex);

@@ -1,4 +1,4 @@
-// A worker's part of a frame, on its own thread: it is opened, fails, is opened again, and is left.
+// A worker's part in a frame, on its own thread: opening it, reopening it after failures, and leaving.
 #include "render/frame/frame_worker.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using Phase = Frame::Phase;
 
-// Below so many pixels, a tile for which resources do not suffice is not made smaller.
+// A tile of at most this many pixels is not made smaller when resources do not suffice.
 constexpr std::uint64_t least_pixels = 1024;
 
 void set_phase(Frame& frame, std::size_t i, Phase phase) {
@@ -20,7 +20,7 @@ void set_phase(Frame& frame, std::size_t i, Phase phase) {
   frame.changed.notify_all();
 }
 
-/// The pixels of a tile, one each.
+/// Calls visit(index in the tile, index in the film) for each pixel of a tile.
 template <class Visit>
 void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   std::size_t at = 0;
@@ -30,7 +30,7 @@ void for_each_pixel(const Film& film, const Tile& tile, const Visit& visit) {
   }
 }
 
-/// Takes a failure down. Returns false when the worker has failed too often.
+/// Records a failure. Returns false if the worker has failed too often.
 bool note_failure(Frame& frame, std::size_t i, const char* what) {
   const std::lock_guard lock(frame.mutex);
   DeviceReport& report = frame.workers[i].report;
@@ -38,8 +38,8 @@ bool note_failure(Frame& frame, std::size_t i, const char* what) {
   return ++report.failures < frame.workers[i].device->failures_allowed();
 }
 
-/// Opens the worker; an OpenCL call that fails meanwhile is a failure like a later one. What no second time
-/// would mend is thrown at once: kernels that do not build, a process that is gone.
+/// Opens the worker; counts failed OpenCL calls like later failures. Throws at once if a retry cannot help:
+/// kernels that do not build, a process that is gone.
 RenderTimes open(Frame& frame, std::size_t i) {
   while (true) {
     try {
@@ -50,7 +50,7 @@ RenderTimes open(Frame& frame, std::size_t i) {
   }
 }
 
-/// A device that is expected to be of little use beside a fast one on the same cores takes only idle ones.
+/// A device expected to be of little use beside a fast one on the same cores gets only idle cores.
 void be_nice(const Frame& frame, std::size_t i) {
   const auto estimate = [&](std::size_t k) { return frame.workers[k].device->info().estimate; };
   const int processor = frame.workers[i].device->processor();
@@ -139,7 +139,7 @@ bool recover(Frame& frame, std::size_t i, const TileJob& job, const DeviceError&
   frame.queue.failed(i, job);
   if (frame.stop) return false;
   if (!too_large && !note_failure(frame, i, error.what())) throw;
-  open(frame, i);  // a driver that has failed once may have lost more than the launch
+  open(frame, i);  // a failed driver may have lost more than the launch
   return true;
 }
 

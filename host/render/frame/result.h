@@ -15,25 +15,25 @@
 namespace sundog {
 
 struct RenderResult {
-  Image image;  // linear RGBA; alpha is coverage: 0 where only background was seen or nothing was rendered
+  Image image;  // linear RGBA; alpha is coverage: 0 if only background was seen or nothing was rendered
   AovImages aovs;
   bool complete = true;  // false: stopped before the end
   RayCounts counts{};
   std::vector<DeviceReport> devices;
-  double efficiency = 1;  // work done over what the devices could have done (plan.h)
+  double efficiency = 1;  // work done, divided by the devices' capacity (plan.h)
   RenderTimes times;
-  Film film;                     // what the image was developed from
+  Film film;                     // from which the image was developed
   bool time_limited = false;     // it ended at the time limit
-  std::uint64_t key = 0;         // of the scene, for write_checkpoint; 0 without a checkpoint
-  std::exception_ptr failure;    // every device failed: what the last one threw (options.keep_failed)
-  bool checkpoint_kept = false;  // an interrupted frame is in the checkpoint
-  std::string checkpoint_left;   // why the frame did not continue from one (options.renews_checkpoint)
-  std::string checkpoint_error;  // why it could not be written there
+  std::uint64_t key = 0;         // hash of the scene, for write_checkpoint; 0 without a checkpoint
+  std::exception_ptr failure;    // every device failed: the last one's exception (options.keep_failed)
+  bool checkpoint_kept = false;  // an interrupted frame was saved as a checkpoint
+  std::string checkpoint_left;   // why the old checkpoint was not used (options.renews_checkpoint)
+  std::string checkpoint_error;  // why the checkpoint could not be written
 };
 
 class DeviceWorker;
 
-/// A worker to open, and what is known of its device and speed before.
+/// A worker to be opened, and prior knowledge about its device and speed.
 struct WorkerPlan {
   DeviceInfo info;
   int processor = -1;  // devices with the same number run on the same cores (plan.h)

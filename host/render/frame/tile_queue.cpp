@@ -1,4 +1,4 @@
-// Hands tiles to threads under one lock, and takes back those whose device failed.
+// Hands tiles to threads under one lock, and takes back tiles whose device failed.
 #include "render/frame/tile_queue.h"
 
 #include <algorithm>
@@ -150,7 +150,7 @@ std::optional<TileJob> TileQueue::take(std::size_t device) {
 void TileQueue::measure(std::size_t device, const Tile& tile, double seconds) {
   State& state = *devices_[device];
   const auto pixels = static_cast<double>(pixel_count(tile));
-  // The first tile includes a driver's startup cost: it counts only until there is another.
+  // The first tile includes a driver's startup cost, so it is forgotten once there is a second.
   const bool second = state.work.pixels > 0 && state.recent_pixels == static_cast<double>(state.work.pixels);
   const double memory = second ? 0 : 0.5;
   state.recent_pixels = memory * state.recent_pixels + pixels;

@@ -1,5 +1,5 @@
-// The frame's tiles, shared by the threads that serve devices: plan.h decides who gets what, failed tiles go
-// to others, and duplicates count once.
+// The frame's tiles, shared by the threads that serve devices: plan.h decides which device gets which pixels,
+// failed tiles go to others, and duplicates count once.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -23,10 +23,10 @@ struct TileJob {
 
 /// How tiles are distributed.
 struct TilePlan {
-  /// One list for all devices, or one a device (a static split).
+  /// One list for all devices, or one per device (a static split).
   std::vector<WaitingTiles> lists;
   bool whole = false;  // tiles are not divided
-  bool exact = false;  // with a list per device: nobody repeats another's tile, not even the last
+  bool exact = false;  // in a static split, no device repeats another's tile, not even the last
 };
 
 class TileQueue {
@@ -34,11 +34,11 @@ class TileQueue {
   /// `devices` contain estimates; none is working yet.
   TileQueue(TilePlan plan, std::vector<DeviceSpeed> devices);
 
-  /// The frame has passes: finished tiles are followed by refill() until no_more().
+  /// Expects passes: after finished tiles come refill() or no_more().
   void expect_more();
   void refill(TilePlan plan);
   void no_more();
-  /// Whether the tiles are done and more are expected.
+  /// Whether all tiles are done but more are expected.
   bool waits_for_more() const;
 
   /// Waits while the device should not be started (is_spared); false if it never should, because the frame is
@@ -49,17 +49,17 @@ class TileQueue {
   /// The next tile for a device: a waiting one or, if none is left, one that another device is rendering and
   /// this one would finish sooner. Waits while one may come; nullopt when the frame is finished or closed.
   std::optional<TileJob> take(std::size_t device);
-  /// A tile was rendered in `seconds`. True: it is the first result and counts; the others' cancelled() is
-  /// set.
+  /// Records that a tile was rendered in `seconds`. Returns true if it is the first result, which counts;
+  /// then sets cancelled() for the other devices.
   bool finished(std::size_t device, const TileJob& job, double seconds);
-  /// Only a part of the tile was rendered, because the frame was stopped or another was faster. True: no
-  /// other device has finished the tile or returned a part of it.
+  /// Records that only part of the tile was rendered, because the frame was stopped or another device was
+  /// faster. Returns true if no other device has finished the tile or returned a part of it.
   bool given_up(std::size_t device, const TileJob& job);
-  /// The device could not render the tile, which waits again for any device.
+  /// Records that the device could not render the tile, which waits again for any device.
   void failed(std::size_t device, const TileJob& job);
   /// Limits the device's future tiles to half the pixels of `tile`.
   void halve(std::size_t device, const Tile& tile);
-  /// The device takes no more tiles. Others may take those that it holds or that were reserved for it.
+  /// Gives the device no more tiles. Others may take the tiles that it holds or that were reserved for it.
   void retire(std::size_t device);
   /// Hands out no more tiles.
   void close();

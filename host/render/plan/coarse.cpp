@@ -1,4 +1,4 @@
-// Chooses block sizes by the time that a pixel takes.
+// Chooses block sizes by the time that a pixel takes, and lists the blocks' centre pixels.
 #include "render/plan/coarse.h"
 
 #include <algorithm>
@@ -6,11 +6,11 @@
 namespace sundog {
 namespace {
 
-// Seconds for the first picture; a frame that takes less than `soon` needs no coarse one.
+// Seconds for the first picture; a frame faster than `soon` needs no coarse picture.
 constexpr double first_seconds = 0.05, soon = 0.12;
-// Longer frames have blocks of 4, and of 2.
+// Frames longer than this many seconds have blocks of 4, and of 2.
 constexpr double long_frame = 1.2, very_long_frame = 2.0;
-// Relative cost of a coarse pass's pixels, which neighbours do not share.
+// Relative cost of a coarse pass's pixels, because they share no work with neighbours.
 constexpr double coarse_cost = 4;
 constexpr int unknown_block = 8, greatest_block = 32;
 
@@ -41,7 +41,7 @@ double expected_pixel_seconds(double coarse, double before) {
 }
 
 Pass coarse_pass(int width, int height, int block) {
-  // In the order of all_pixels(), with blocks as the pixels of a smaller image.
+  // In the order of all_pixels(), treating the blocks as pixels of a smaller image.
   std::vector<u32> middles = all_pixels((width + block - 1) / block, (height + block - 1) / block);
   const auto middle = [&](u32 at, int size) {
     return static_cast<u32>(std::min(static_cast<int>(at) * block + block / 2, size - 1));

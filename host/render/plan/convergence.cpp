@@ -1,5 +1,5 @@
-// Weighs a pixel's change, its neighbours' change and the variance of colours around it; after one sample it
-// has the variance alone.
+// Weighs a pixel's change, its neighbours' change and the variance of colours around it; after one sample
+// only the variance is known.
 #include "render/plan/convergence.h"
 
 #include <tbb/blocked_range.h>
@@ -95,7 +95,7 @@ float color_variance(const Seen& pixel, const Around<Seen>& around) {
          std::sqrt(seen_light({pixel[0], pixel[1], pixel[2]}));
 }
 
-/// Infinite pixels have unknown errors, but sorting needs numbers.
+/// Infinite colours make the error NaN; it becomes infinite, because sorting needs ordered numbers.
 float known(float square) { return std::isnan(square) ? std::numeric_limits<float>::infinity() : square; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Deals each device to the rank with the fewest, and divides a processor among its ranks.
+// Deals each device to the rank with the fewest, and divides a CPU among its ranks.
 #include "render/plan/deal_devices.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Place place(const DeviceInfo& device) {
   return {device.host, "", device.platform, device.device, device.name};
 }
 
-/// A sub-device of `units`, or the whole device if that is as much.
+/// A sub-device of `units`, or the whole device if it has no more.
 DeviceInfo part(DeviceInfo device, unsigned units) {
   if (units >= device.compute_units) return device;
   device.estimate *= static_cast<double>(units) / device.compute_units;

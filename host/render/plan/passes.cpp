@@ -88,7 +88,7 @@ std::vector<u32> unconverged(const Film& film, const SamplingPlan& plan, const P
   return pixels;
 }
 
-/// Doubles the samples of pixels that have not converged; those of the last pass have `level` samples.
+/// Doubles the samples of pixels that have not converged; the last pass's pixels have `level` samples.
 std::optional<Pass> double_samples(const Film& film, const SamplingPlan& plan, const Pass& last) {
   const u32 level = last.first_sample + last.sample_count;
   if (level >= plan.samples) return std::nullopt;

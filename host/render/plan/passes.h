@@ -14,10 +14,10 @@ namespace sundog {
 struct SamplingPlan {
   Sampling settings;
   u32 samples = 1;                       // maximum per pixel
-  double noise = 0;                      // the frame ends when its mean error is below; 0: never
+  double noise = 0;                      // the frame ends when its mean error is below this; 0: never
   bool surfaces = false;                 // AOVs are needed for every pixel
-  bool sums = false;                     // and have sums over all of its samples
-  std::vector<std::uint8_t> panes = {};  // of materials; 1: partly clear, see clear_materials()
+  bool sums = false;                     // those AOVs include sums over all samples
+  std::vector<std::uint8_t> panes = {};  // per material; 1: partly clear, see clear_materials()
 };
 
 /// Marks materials through which the camera sees other surfaces straight on.

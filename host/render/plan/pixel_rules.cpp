@@ -1,4 +1,4 @@
-// Divides the difference of colours by the fourth root of light; compares object, material, albedo, normal.
+// Divides colour differences by the fourth root of light; compares object, material, albedo and normal.
 #include "render/plan/pixel_rules.h"
 
 #include <algorithm>

@@ -9,23 +9,23 @@
 namespace sundog {
 namespace {
 
-constexpr double longest_tile = 0.25;  // seconds: a progress bar moves, a checkpoint loses little
-// Seconds: long against what a tile costs beside its launches (0.1 ms), short enough that each device has
-// several tiles of a frame of 30 ms.
+constexpr double longest_tile = 0.25;  // seconds; keeps progress bars moving and checkpoints fresh
+// Seconds: long compared with a tile's overhead besides its launches (0.1 ms), short enough that each device
+// gets several tiles of a 30 ms frame.
 constexpr double shortest_tile = 0.001;
-constexpr double unknown_tile = 0.02;     // seconds that a tile may take a device of unknown speed
-constexpr double growth = 4;              // of a tile over those that its speed was measured by
-constexpr std::uint64_t cell = 16;        // pixels: a tile of 4x4 is the smallest there is
-constexpr std::uint64_t probe = 4096;     // pixels of a first tile
-constexpr std::uint64_t tiny_probe = 64;  // of a device that is expected to be a burden
-// A device that takes so many times longer than expected, and so many seconds, is stuck.
+constexpr double unknown_tile = 0.02;  // seconds assumed for a tile on a device of unknown speed
+constexpr double growth = 4;           // a tile's pixels relative to those in the speed measurement, at most
+constexpr std::uint64_t cell = 16;     // pixels of the smallest tile, 4x4
+constexpr std::uint64_t probe = 4096;  // pixels of a device's first tile
+constexpr std::uint64_t tiny_probe = 64;  // pixels if the device is expected to be a burden
+// A device is stuck if it takes this many times longer than expected, and this many seconds.
 constexpr double stuck_factor = 4, stuck_seconds = 1;
-constexpr double dearer = 8;  // pixels of one place take so many times as long as another's
-// A repeated tile must be likely to win: speeds differ over the image.
+constexpr double dearer = 8;  // pixels of one place may take this many times as long as pixels of another
+// A repeated tile must be likely to win, because speeds differ over the image.
 constexpr double clear_win = 0.8;
 
-/// The sum of the speeds of the others that work, or of all that have not failed. Estimates do not count: a
-/// device that boasts would leave crumbs to the others.
+/// The total speed of the other devices: those that work, or all that have not failed. Only measured speeds
+/// count: an overestimated device would leave crumbs for the others.
 double others_speed(std::span<const DeviceSpeed> devices, std::size_t device, bool working) {
   double total = 0;
   for (std::size_t i = 0; i < devices.size(); ++i)
@@ -33,7 +33,7 @@ double others_speed(std::span<const DeviceSpeed> devices, std::size_t device, bo
   return total;
 }
 
-/// Seconds that a device can be expected to need for so many pixels; 0 when there is nothing to go by.
+/// Seconds that a device is expected to need for this many pixels; 0 if unknown.
 double expected_seconds(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t pixels) {
   const double speed = expected_speed(devices, device);
   return speed > 0 ? static_cast<double>(pixels) / speed : 0;
@@ -49,8 +49,8 @@ bool is_fastest(std::span<const DeviceSpeed> devices, std::size_t device) {
   return true;
 }
 
-/// Whether a device on the same cores that is many times faster is at work. Before the device's own speed is
-/// known, by its estimate.
+/// Whether a much faster device works on the same cores. Before the device's own speed is measured, its
+/// estimate is used.
 bool is_burden(std::span<const DeviceSpeed> devices, std::size_t device) {
   const double own = expected_speed(devices, device);
   if (devices[device].processor < 0 || own <= 0) return false;
@@ -88,16 +88,16 @@ std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t de
     const double working = others_speed(devices, device, true);
     if (working > 0 && static_cast<double>(std::min(cell, left)) / own > waiting / working) return 0;
   }
-  // A device measured in the frame before counts before it is ready: else the first ready takes all of a
-  // short frame.
+  // A device measured in the previous frame counts before it is ready; otherwise the first ready device would
+  // take all of a short frame.
   const double others = others_speed(devices, device, false), total = own + others;
-  // Half its share where there are equals to even out with; all of it beside those that hardly count, however
-  // much dearer their pixels were.
+  // Half its share if there are equals to balance with; all of it beside devices that hardly count, however
+  // much more expensive their pixels are.
   double pixels = waiting * own / total / (1 + std::min(1.0, dearer * others / own));
   const double longest = devices[device].tile_seconds > 0 ? devices[device].tile_seconds : longest_tile;
   pixels = std::clamp(pixels, own * std::min(shortest_tile, longest), own * longest);
   if (devices[device].sample > 0) pixels = std::min(pixels, growth * devices[device].sample);
-  // Never more than brings all devices to the end together.
+  // At most its share, with which all devices finish together.
   pixels = std::min(pixels, waiting * own / total);
   return std::min(left, std::max(cell, static_cast<std::uint64_t>(pixels)));
 }

@@ -1,5 +1,5 @@
-// Divides a frame among devices, from speeds, pixels and seconds. Pure functions that know no device and no
-// clock.
+// Divides a frame among devices by their speeds, pixels and seconds. Pure functions, independent of devices
+// and clocks.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace sundog {
 
-/// From this ratio of speeds on, a device loses more by sharing its cores than the slower one adds.
+/// Above this ratio of speeds, a device loses more by sharing its cores than the slower device adds.
 constexpr double burden_factor = 8;
 
-/// From this ratio of estimates on, a device is not even started beside the faster one: compiling for it
-/// would cost the frame more time than it can ever save.
+/// Above this ratio of estimates, the slower of two devices on the same cores is not even started: compiling
+/// for it would cost the frame more time than it can ever save.
 constexpr double hopeless_factor = 64;
 
 /// The known facts about a device's speed.
 struct DeviceSpeed {
-  double measured = 0;      // pixels a second; 0: not measured yet
+  double measured = 0;      // pixels per second; 0: not measured yet
   double sample = 0;        // pixels in that measurement
   double estimate = 0;      // relative to the other devices, from their properties; 0: unknown
   int processor = -1;       // devices with equal numbers share cores; -1: own hardware
@@ -26,14 +26,14 @@ struct DeviceSpeed {
   bool failed = false;      // retired or stuck
 };
 
-/// Expected pixels a second of a device: measured, or its estimate scaled by the measured devices; 0 if
+/// Expected pixels per second of a device: measured, or its estimate scaled by the measured devices; 0 if
 /// unknown.
 double expected_speed(std::span<const DeviceSpeed> devices, std::size_t device);
 
 /// Pixels of the next tile for `device` when `left` are waiting: half of its share by speed, so that tiles
-/// shrink towards the end; the first is a small probe, and tiles grow fourfold at a step. 0: the device
-/// should rest, because the others finish everything sooner, or because it shares cores with a device that is
-/// many times faster. The fastest working device never rests.
+/// shrink towards the end. The first tile is a small probe; from tile to tile, the size grows at most
+/// fourfold. 0: the device should rest, because the others finish everything sooner, or because it shares
+/// cores with a much faster device. The fastest working device never rests.
 std::uint64_t guided_pixels(std::span<const DeviceSpeed> devices, std::size_t device, std::uint64_t left);
 
 /// Whether a device should not be started, because one on the same cores that has not failed is estimated
@@ -50,13 +50,13 @@ struct HeldTile {
   std::vector<Holder> holders;
 };
 
-/// Whether a holder takes so much longer than expected from its speed (four times, and a second) that its
-/// driver may hang and nobody should wait.
+/// Whether a holder takes so much longer than its speed suggests (over four times as long, and over a second)
+/// that its driver may hang and nobody should wait for it.
 bool is_stuck(std::span<const DeviceSpeed> devices, const HeldTile& tile, const HeldTile::Holder& holder);
 
 /// Seconds until the first of its holders will probably finish the tile. An overdue holder is expected to
-/// need as long again as it is overdue; one of unknown speed, as long again as it has taken; a stuck one,
-/// forever.
+/// need as long again as it is overdue; a holder of unknown speed, as long again as it has taken; a stuck
+/// holder, forever.
 double seconds_left(std::span<const DeviceSpeed> devices, const HeldTile& tile);
 
 /// The index of the tile that an idle `device` should also render to finish the frame sooner: of those that

@@ -1,5 +1,5 @@
-// Samples corners, casts rays that only look between corners that agree, samples pixels that differ and those
-// around surprises, then interpolates.
+// Samples the corners, casts surface rays between corners that agree, samples pixels that differ and the
+// pixels around surprises, then interpolates the rest.
 #include "render/plan/subsample.h"
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace sundog {
 namespace {
 
-// For normals of a flat surface at pixels that are two apart.
+// The least cosine between normals that counts as flat, for pixels two apart.
 constexpr float even_cosine = 0.98f;
 
-/// The image as cells between corners that are two pixels apart, or one at the far edges.
+/// The image as cells between corners two pixels apart, or one at the far edges.
 struct Grid {
   const Film& film;
   float threshold;
@@ -35,7 +35,7 @@ struct Grid {
     return {at(left, top), at(right, top), at(left, bottom), at(right, bottom)};
   }
 
-  /// Whether the pixel's ray meets a pane, behind which it sees no surfaces.
+  /// Whether the pixel's ray meets a pane, behind which the AOVs show no surface.
   bool meets_pane(std::size_t p) const {
     const float material = film.aovs[film.layout.vectors() * p + 2].w;
     return material >= 0 && static_cast<std::size_t>(material) < panes.size() &&
@@ -91,14 +91,14 @@ std::vector<u32> pick(const Grid& grid, const Wanted& wanted) {
   return pick_any(grid, [&](int x, int y) { return !grid.is_corner(x, y) && wanted(x, y); });
 }
 
-/// Whether a pixel's surface matches those of all its corners.
+/// Whether a pixel's surface matches all its corners' surfaces.
 bool fits_corners(const Grid& grid, int x, int y) {
   for (const std::size_t corner : grid.corners(x, y))
     if (!same_surface(grid.film, corner, grid.at(x, y), even_cosine)) return false;
   return true;
 }
 
-/// Whether a sampled pixel's light differs from that of its corners on the same surface: the edge of a shadow
+/// Whether a sampled pixel's light differs from its corners' light on the same surface: the edge of a shadow
 /// or reflection, which may continue between nearby corners.
 bool surprises(const Grid& grid, int x, int y) {
   const std::size_t p = grid.at(x, y);
@@ -121,7 +121,8 @@ std::vector<u32> near_surprises(const Grid& grid) {
   });
 }
 
-/// An interpolated pixel shows the same surface as its corners: one of them says what covers it.
+/// Copies mattes to an interpolated pixel from a corner, which shows the same surface, scaled to the pixel's
+/// coverage.
 void take_mattes(Film& film, std::size_t corner, std::size_t p) {
   if (!film.layout.mattes) return;
   const float share = film.sums[corner].w > 0 ? film.sums[p].w / film.sums[corner].w : 0;
@@ -132,7 +133,7 @@ void take_mattes(Film& film, std::size_t corner, std::size_t p) {
     pixel[k] = {of[k].x, of[k].y * share, of[k].z, of[k].w * share};
 }
 
-/// Its light has the parts of its corners' light, as promised() has that.
+/// Averages the corners' light parts, as promised() averages their colours.
 void take_light(Film& film, const std::array<std::size_t, 4>& corners, std::size_t p) {
   if (!film.layout.light) return;
   const auto light_of = [&](std::size_t at) {

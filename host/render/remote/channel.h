@@ -1,5 +1,5 @@
-// Messages between the process that owns the frame and those that own devices: a worker process behind a
-// socket, or another machine's process.
+// Messages between the process that owns the frame and processes that own devices: worker processes behind a
+// socket, or processes on other machines.
 #pragma once
 #include <cstdint>
 #include <mutex>
@@ -25,8 +25,8 @@ struct Message {
     render,   // to a worker: {job, tile...}, data: the pixels of a pass and their earlier samples
     stop,     // to a worker: {job}: stop rendering that tile
     tile,     // reply: {tile, counts, figures}, data: its pixels
-    failed,   // at any time: {what, status, build, log}; {closed}: nothing else will come; {hangs}: nothing
-              // ever
+    failed,   // at any time: {what, status, build, log}; {closed}: nothing else follows; {hangs}: the driver
+              // hangs
     close,    // to a worker: end
     alive,    // both ways, periodically (silence.h); receive() filters it
     leave,    // to another rank: the job is over

@@ -1,4 +1,4 @@
-// A thread that looks at the worker's launch every 50 ms, and reports one that hangs.
+// Checks the worker's launch every 50 ms from a thread, and reports one that hangs.
 #include "render/remote/hang_watch.h"
 
 #include <fmt/format.h>

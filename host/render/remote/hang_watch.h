@@ -1,4 +1,4 @@
-// Watches a worker's launches from another thread, in a process that serves others.
+// Watches a worker's launches from another thread, in a process that renders for another process.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -12,8 +12,8 @@ namespace sundog {
 
 class HangWatch {
  public:
-  /// The watch's thread calls `on_hang` once, with a message, when a launch exceeds its limit, and `always`
-  /// about twenty times a second.
+  /// Starts the thread. It calls `on_hang` once, with a message, if a launch exceeds its limit, and `always`
+  /// about twenty times per second.
   explicit HangWatch(std::function<void(const std::string&)> on_hang, std::function<void()> always = {});
   ~HangWatch();
   HangWatch(const HangWatch&) = delete;

@@ -1,5 +1,5 @@
-// Lends idle channels by peer; closing one puts it back, unless it broke, and the destructor sends the close
-// to those that are idle.
+// Lends idle channels by peer. Closing a lent channel returns it, unless it broke; the destructor closes the
+// idle ones.
 #include "render/remote/kept_channels.h"
 
 #include <map>
@@ -13,7 +13,7 @@ void end(Channel& channel) {
   try {
     channel.send({Message::close, {}, {}});
   } catch (const ChannelClosed&) {
-    // It has ended.
+    // The peer has already ended.
   }
 }
 
@@ -38,7 +38,7 @@ struct KeptChannels::Idle {
   }
 };
 
-/// A channel of one user, who may close it.
+/// A channel lent to one user, who may close it.
 class KeptChannels::Lent : public Channel {
   template <class Use>
   auto watched(const Use& use) {

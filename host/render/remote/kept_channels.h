@@ -1,4 +1,4 @@
-// Channels to workers that stay open from one frame to the next.
+// Keeps channels to workers open from one frame to the next.
 #pragma once
 #include <functional>
 #include <memory>
@@ -13,13 +13,13 @@ class KeptChannels {
   using Connect = std::function<std::unique_ptr<Channel>()>;
 
   KeptChannels();
-  /// Tells the peers of channels that are not in use to end, and waits for them.
+  /// Sends `close` to the peers of idle channels, and waits for them to end.
   ~KeptChannels();
   KeptChannels(const KeptChannels&) = delete;
   KeptChannels& operator=(const KeptChannels&) = delete;
 
-  /// Connects to the peer of that name, by a channel that an earlier user has closed if there is one. The
-  /// result may outlive this; its channels, once closed, are kept unless they have failed.
+  /// A function that connects to the peer of this name, reusing a channel that an earlier user closed, if
+  /// any. It may outlive this object. Its channels, once closed, are kept unless they have failed.
   Connect kept(std::string peer, Connect connect) const;
 
  private:

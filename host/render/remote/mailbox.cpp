@@ -1,5 +1,5 @@
-// Messages are sent in pieces, each with its channel's number and a last-piece flag, 4 bytes each. Channel 0
-// connects the mailboxes themselves.
+// A thread sends and receives messages in pieces, each headed by its channel's number and a last-piece flag,
+// 4 bytes each. Channel 0 connects the mailboxes themselves.
 #include "render/remote/mailbox.h"
 
 #include <fmt/format.h>
@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t largest_piece = std::size_t{4} << 20, piece_head = 8;
 constexpr std::uint32_t control = 0;
 
-// Factor on rank 0's silence limit, because a user who suspends it wants to resume it.
+// Multiplies rank 0's silence limit, because a user who suspends rank 0 wants to resume it.
 constexpr double patience_with_rank_0 = 6;
 
-// At the end of the job, ranks that have been silent this long are not waited for.
+// At the end of the job, ranks silent for this long are not waited for.
 constexpr double silence_at_end = 2;
 
-// Polling interval of the transport: from the first while messages arrive to the last when idle.
+// Polling interval of the transport: the shortest while messages arrive, rising to the longest when idle.
 constexpr std::chrono::microseconds shortest_pause{50}, longest_pause{1000};
 
 using Lock = std::unique_lock<std::mutex>;
@@ -188,7 +188,7 @@ void Mailbox::take_control(int from, const Message& message) {
   if (message.kind == Message::left) state_->peers[static_cast<std::size_t>(from)].left = true;
 }
 
-/// All ranks send to rank 0, and rank 0 to all.
+/// Sends heartbeats: rank 0 to all, the others to rank 0.
 void Mailbox::beat() {
   if (since_beat_.seconds() < beat_seconds) return;
   since_beat_ = Stopwatch();
@@ -219,7 +219,8 @@ std::function<std::unique_ptr<Channel>()> Mailbox::connector(int rank) const {
     const Lock lock(state->mutex);
     const Key key{rank, ++state->last_channel};
     state->inboxes[key];
-    post(*state, rank, key.second, {Message::alive, {}, {}});  // so that their numbers arrive in order
+    // Registers channels at the rank in ascending order.
+    post(*state, rank, key.second, {Message::alive, {}, {}});
     return std::make_unique<RankChannel>(state, key, label);
   };
 }
@@ -273,7 +274,8 @@ bool Mailbox::leave(int status) {
   else
     state_->abort = status;
   state_->outgoing_changed.notify_one();
-  state_->arrived.wait(lock, [&] { return state_->over; });  // abort ends the process
+  // If ranks are missing, abort() ends the process here.
+  state_->arrived.wait(lock, [&] { return state_->over; });
   return true;
 }
 

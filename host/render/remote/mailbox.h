@@ -23,8 +23,8 @@ namespace sundog {
 /// Rank 0 opens any number of channels to the other ranks, which accept them. Thread-safe.
 class Mailbox {
  public:
-  /// Opens the transport in the thread that will use it. A rank that is silent for `limit` seconds is
-  /// abandoned; rank 0, on which the others depend, after six times that.
+  /// Opens the transport in the thread that will use it. A rank that is silent for `limit` seconds is given
+  /// up; rank 0, on which the others depend, after six times that.
   Mailbox(const std::function<std::unique_ptr<Transport>()>& open, double limit);
   /// Discards unsent messages.
   ~Mailbox();
@@ -34,12 +34,12 @@ class Mailbox {
   int rank() const { return rank_; }
   int size() const { return static_cast<int>(hosts_.size()); }
   const std::string& host(int rank) const { return hosts_[static_cast<std::size_t>(rank)]; }
-  /// "rank 2 on node7".
+  /// The rank for messages: "rank 2 on node7".
   std::string name(int rank) const;
 
-  /// Opens a channel to that rank, which throws ChannelClosed once the rank is gone.
+  /// Opens a channel to this rank. The channel throws ChannelClosed once the rank is gone.
   std::unique_ptr<Channel> connect(int rank) { return connector(rank)(); }
-  /// A factory of channels that may outlive the mailbox.
+  /// A factory of channels to this rank; it may outlive the mailbox.
   std::function<std::unique_ptr<Channel>()> connector(int rank) const;
   /// The next channel opened by rank 0; none when the job is over.
   std::unique_ptr<Channel> accept();
@@ -48,9 +48,8 @@ class Mailbox {
   /// The ranks that have been silent for this long.
   std::vector<int> silent_for(double seconds);
 
-  /// Ends the job. Rank 0 notifies the others, and each waits for all. If some are gone, or take more than
-  /// 15 seconds, rank 0 kills them all, and exits with `status`. Another rank returns false if rank 0 is
-  /// gone.
+  /// Ends the job. Rank 0 notifies the others and waits for them. If some are gone, or take longer than 15
+  /// seconds, rank 0 kills them all and exits with `status`. Other ranks return false if rank 0 is gone.
   bool leave(int status);
 
  private:
@@ -79,8 +78,8 @@ class Mailbox {
     std::vector<Peer> peers;
     bool told_to_leave = false;  // rank 0 has ended the job, or is gone
     bool over = false;           // no more traffic
-    std::optional<int> abort;    // end everything with this status
-    bool finish = false;         // end in order
+    std::optional<int> abort;    // kill all ranks and exit with this status
+    bool finish = false;         // end in an orderly way
   };
   class RankChannel;
 

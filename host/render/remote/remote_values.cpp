@@ -1,4 +1,4 @@
-// Writes arrays as bytes beside the JSON, and checks their lengths when it reads them.
+// Writes arrays as bytes beside the JSON, and checks their lengths when reading.
 #include "render/remote/remote_values.h"
 
 #include <cstring>
@@ -24,7 +24,7 @@ std::vector<T> take(const std::string& bytes, std::size_t& at, std::size_t count
   return values;
 }
 
-/// The length of an array that has a value per pixel, or none.
+/// The length of an array that has one value per pixel or none at all.
 std::size_t none_or_all(const nlohmann::json& count, std::size_t pixels) {
   const auto found = count.get<std::size_t>();
   if (found != 0 && found != pixels) throw DeviceError("a message has values for some of a tile's pixels");
@@ -40,7 +40,7 @@ Tile tile_from(const nlohmann::json& values) {
   return tile;
 }
 
-/// Throws DeviceError unless the rows are those requested, or the first of them.
+/// Throws DeviceError unless the tile is the requested one or its first rows.
 void check_asked(const Tile& tile, const Tile& asked) {
   if (tile.x != asked.x || tile.y != asked.y || tile.width != asked.width || tile.height > asked.height)
     throw DeviceError("a tile came that was not asked for");

@@ -1,4 +1,4 @@
-// Serialises the values sent through a channel as JSON.
+// Serialises the values sent through a channel: JSON, with pixels as bytes.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -20,7 +20,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTimes, build_kernels, upload, render, r
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelTimes, launches, device_ms, host_ms, first_ms, local_x, local_y)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerFigures, kernels, readback_seconds, notes)
 
-/// Calls `read`; throws DeviceError "FROM: ..." if the message lacks something.
+/// Calls `read`; throws DeviceError "FROM: ..." if the message lacks a value.
 template <class Read>
 auto understood(const std::string& from, const Read& read) {
   try {
@@ -30,7 +30,7 @@ auto understood(const std::string& from, const Read& read) {
   }
 }
 
-/// {tile, counts} and the pixels as bytes.
+/// A request or result of a tile as JSON values, and its pixels as bytes.
 struct PackedTile {
   nlohmann::json values;
   std::string data;
@@ -39,8 +39,8 @@ PackedTile pack_request(const TileRequest& request);
 /// Throws DeviceError for an invalid tile or if the bytes do not match the request.
 TileRequest unpack_request(const nlohmann::json& values, const std::string& data);
 PackedTile pack_tile(const TileResult& result);
-/// Throws DeviceError if it is not the requested tile with the values that these AOVs need, or if the bytes
-/// do not match the tile.
+/// Throws DeviceError unless this is the requested tile with the values that these AOVs need, and the bytes
+/// match the tile.
 TileResult unpack_tile(const nlohmann::json& values, const std::string& data, const TileRequest& request,
                        const std::vector<std::string>& aov_names);
 

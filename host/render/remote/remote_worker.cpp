@@ -1,4 +1,4 @@
-// Sends orders to the other process, and turns its failures back into exceptions.
+// Sends orders to the other process, and rethrows its failures as the original exceptions.
 #include "render/remote/remote_worker.h"
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ constexpr double between_flags = 0.005;  // seconds between checks of the flags 
 
 }  // namespace
 
-/// Rethrows a failure of the other side as the original exception type.
+/// Rethrows the other process's failure as the original exception type.
 void RemoteWorker::fail(const nlohmann::json& failure) {
   std::string what = failure.at("what");
   const std::string where = fmt::format("rank {} on {}", device_.info.rank, device_.info.host);

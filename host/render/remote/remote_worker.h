@@ -1,4 +1,4 @@
-// Serves tiles with a device of another process.
+// A worker whose device belongs to another process, reached through a channel.
 #pragma once
 #include <functional>
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace sundog {
 
-/// How to reach a remote device, and its task.
+/// How to reach a remote device, and the task it gets.
 struct RemoteDevice {
   DeviceInfo info;
   int processor = -1;                                 // DeviceSpeed::processor
   std::function<std::unique_ptr<Channel>()> connect;  // throws DeviceError
-  nlohmann::json settings;                            // of Message::open
+  nlohmann::json settings;                            // sent with Message::open
   std::uint64_t scene = 0;                            // expected hash_scene()
   unsigned restarts = 0;                              // maximum number of reconnections
   unsigned failures = 3;                              // DeviceWorker::failures_allowed()
@@ -40,10 +40,10 @@ class RemoteWorker : public DeviceWorker {
   RemoteDevice device_;
   std::unique_ptr<Channel> channel_;
   std::uint64_t job_ = 0;
-  WorkerFigures figures_;           // at the last tile
-  std::vector<std::string> notes_;  // from this side
+  WorkerFigures figures_;           // as of the last tile
+  std::vector<std::string> notes_;  // added on this side
   unsigned restarts_ = 0;
-  std::string hangs_;  // the message when its driver was found hanging
+  std::string hangs_;  // the failure message, once its driver hangs
 };
 
 }  // namespace sundog

@@ -10,8 +10,8 @@ namespace sundog {
 /// Heartbeat interval (Message::alive) of a process that serves devices.
 inline constexpr double beat_seconds = 0.25;
 
-/// Counts only time in which this side listened, so that suspending both (Ctrl-Z, a sleeping machine) counts
-/// nothing.
+/// Counts only time in which this side listened; suspending both sides (Ctrl-Z, a sleeping machine) therefore
+/// counts nothing.
 class Silence {
  public:
   void heard() {

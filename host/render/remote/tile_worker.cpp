@@ -1,4 +1,4 @@
-// Executes orders in turn; a thread reads the channel, so that a tile can be cancelled at once.
+// Executes orders one by one; a thread reads the channel, so that a tile can be cancelled at once.
 #include "render/remote/tile_worker.h"
 
 #include <sched.h>
@@ -21,7 +21,7 @@ Message failure(const std::exception& error) {
   return {Message::failed, values, {}};
 }
 
-/// The worker of the frame in hand.
+/// The current frame's worker.
 struct Current {
   OpenedWorker opened;
   nlohmann::json settings;
@@ -84,7 +84,7 @@ void Orders::take(Message message) {
   } else if (message.kind == Message::close) {
     closed_ = unwanted_ = true;
   } else {
-    if (message.kind == Message::open) stopped_job_ = 0;  // another frame counts its jobs anew
+    if (message.kind == Message::open) stopped_job_ = 0;  // the new frame restarts its job numbers
     waiting_.push_back(std::move(message));
   }
   changed_.notify_all();

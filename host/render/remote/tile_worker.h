@@ -17,7 +17,7 @@ unsigned usable_cores();
 /// working.
 class Orders {
  public:
-  /// The thread calls `on_closed` when the peer is gone or hangs up.
+  /// The thread calls `on_closed` if the peer is gone or sends malformed data.
   Orders(Channel& channel, std::function<void()> on_closed);
   ~Orders();
   Orders(const Orders&) = delete;
@@ -45,13 +45,14 @@ class Orders {
 
 /// A device prepared for a frame.
 struct OpenedWorker {
-  std::shared_ptr<const void> kept;  // keeps what the worker refers to
+  std::shared_ptr<const void> kept;  // owns everything that the worker refers to
   std::shared_ptr<DeviceWorker> worker;
   std::uint64_t scene = 0;  // hash_scene() of its scene
 };
 
-/// Serves until closed: frames one after the other. `make` creates the worker for an open order (loading its
-/// scene); exceptions from it and from the worker are sent as the reply. `list` lists the devices.
+/// Executes orders, frame after frame, until the channel is closed. `make` creates the worker for an open
+/// order (loading its scene); its exceptions and the worker's are sent as the reply. `list` lists the
+/// devices.
 void serve_orders(Channel& channel, Orders& orders,
                   const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
                   const std::function<std::vector<DeviceInfo>()>& list);

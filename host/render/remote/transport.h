@@ -23,7 +23,7 @@ class Transport {
   virtual void post(int rank, std::string bytes) = 0;
   /// Returns a complete parcel, without waiting.
   virtual std::optional<Parcel> take() = 0;
-  /// Ends in order: waits for all ranks.
+  /// Ends in an orderly way: waits for all ranks.
   virtual void finish() = 0;
   /// Ends the other ranks by force, and this process with `status`.
   [[noreturn]] virtual void abort(int status) = 0;

@@ -1,4 +1,5 @@
-// Starts a worker with a socket as file 3, and explains how it ended.
+// Starts a worker process with a socket as file descriptor 3, detects its death or silence, and explains how
+// it ended.
 #include "render/remote/worker_process.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ class WorkerChannel : public Channel {
         process_(std::move(process)),
         name_(std::move(name)) {}
   ~WorkerChannel() override {
-    socket_.reset();  // tells it to end
+    socket_.reset();  // tells the process to end
     await_end(2);
     if (end_) return;
     process_->end();
@@ -68,7 +69,7 @@ class WorkerChannel : public Channel {
     throw ChannelClosed(fmt::format("{}: its worker process {}", name_, how));
   }
 
-  /// It is stopped or hangs, so it will not end by itself.
+  /// Kills a silent worker and throws: a stopped or hung process does not exit by itself.
   [[noreturn]] void throw_silent() {
     const double seconds = silence_.seconds();
     process_->end();
@@ -78,7 +79,7 @@ class WorkerChannel : public Channel {
   }
 
   Silence silence_;
-  const double limit_;  // of silence, in seconds
+  const double limit_;  // limit of silence in seconds
   std::unique_ptr<SocketChannel> socket_;
   std::unique_ptr<StartedProgram> process_;
   std::optional<ProgramEnd> end_;

@@ -10,8 +10,8 @@ namespace sundog {
 struct HostEnvironment;
 
 /// Starts `sundog worker 3 NAME` through HostEnvironment::start_program, with a channel as its descriptor 3.
-/// The channel's errors tell how the process ended; after the channel is destroyed, the process has two
-/// seconds to end. Throws DeviceError.
+/// The channel's errors say how the process ended. When the channel is destroyed, the process has two seconds
+/// to end before it is killed. Throws DeviceError.
 std::unique_ptr<Channel> start_worker(const HostEnvironment& environment, const std::string& name);
 
 }  // namespace sundog

@@ -1,4 +1,5 @@
-// Defines the control thread first, then the device threads; frees replaced frames outside the lock.
+// The control thread, which compiles scenes and frees replaced frames outside the lock; then the tasks of the
+// device threads.
 #include <algorithm>
 
 #include "render/film/group_names.h"
@@ -36,12 +37,12 @@ Picked pick_on(SceneWorker& worker, int x, int y) {
   return picked_from(worker.render(request, {}));
 }
 
-/// Whether its light can be kept apart by groups.
+/// Whether the scene's light can be separated by light group.
 bool keeps_groups(const CompiledScene& scene) {
   return integrator_of(scene.integrator).light_parts && !scene.features.caustics;
 }
 
-/// Ends a draft frame as soon as its own kernels are ready.
+/// Ends a draft frame as soon as the final kernels are ready.
 void leave_draft(Frame& frame, std::size_t index) {
   const auto* worker = dynamic_cast<const SceneWorker*>(frame.workers[index].device.get());
   if (!worker || !worker->may_end_draft()) return;
@@ -88,7 +89,7 @@ void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {
   current.reset();
   if (mine->generation == newest && state == SessionState::drawing)
     set_state(complete ? SessionState::settled : SessionState::stopped);
-  note();  // a start() may have come meanwhile
+  note();  // start() may have been called meanwhile
 }
 
 void LiveSession::drop_picks() {
@@ -111,7 +112,7 @@ void LiveSession::run_control() {
     if (closing) return;
     if (has_order())
       take_order(lock);
-    else if (!pending && current && !is_held())  // a frame rendered to its end meanwhile is gone
+    else if (!pending && current && !is_held())  // a frame rendered to its end may have left meanwhile
       look_at(lock);
   }
 }
@@ -148,7 +149,7 @@ void LiveSession::take_order(std::unique_lock<std::mutex>& lock) {
   retire(std::move(order.scene));
   retire(std::move(order.draft));
   retire(std::move(before));
-  if (order.generation != newest || is_at_rest(state) || is_held())  // replaced, or cancelled
+  if (order.generation != newest || is_at_rest(state) || is_held())  // replaced or cancelled
     return retire(std::move(made));
   if (!made) {
     error = failure, cause = thrown;
@@ -181,7 +182,7 @@ std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers w
   }
   const std::weak_ptr<LiveSession> session = std::static_pointer_cast<LiveSession>(shared_from_this());
   const std::weak_ptr<SessionFrame> frame = made;
-  // Other kernels may be far slower.
+  // The old speed says nothing about other kernels, which may be far slower.
   const bool known =
       before && before->features == made->flat->features && before->field_source == made->flat->field_source;
   FrameOrder frame_order{made->flat, settings, std::move(workers), known ? speed : 0};
@@ -202,19 +203,19 @@ std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers w
   return made;
 }
 
-/// Workers call this between two tiles.
+/// Called by workers between two tiles.
 void LiveSession::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
   std::unique_lock lock(mutex);
   if (picks.empty()) return;
   const auto found =
       std::ranges::find_if(threads, [&](const auto& thread) { return thread->worker == worker; });
   if (found == threads.end()) return;
-  // A copy: run_errand unlocks, and then the list of threads may change.
+  // A copy: run_errand() unlocks, and the list of threads may change meanwhile.
   const std::shared_ptr<DeviceThread> thread = *found;  // NOLINT(performance-unnecessary-copy-initialization)
   if (has_errand(*thread)) run_errand(lock, *thread);
 }
 
-/// Ends the generation if nobody is left to draw it.
+/// Reports failure if no worker is left to draw the generation.
 void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
   const std::shared_ptr<SessionFrame> mine = drawn();
   lock.unlock();
@@ -269,7 +270,7 @@ bool LiveSession::is_draft(const std::shared_ptr<SessionFrame>& frame) const {
   });
 }
 
-/// Waits for the frame's final kernels and restarts it, unless interrupted.
+/// Waits for the frame's final kernels and orders a redraw, unless interrupted.
 void LiveSession::end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
                             const std::shared_ptr<SessionFrame>& mine) {
   const auto over = [&] {
@@ -293,7 +294,7 @@ void LiveSession::run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& t
   lock.lock();
 }
 
-/// Called by a thread that has added a tile to the frame, whose mutex it holds.
+/// Called by a thread that has added a tile to the frame and holds its mutex.
 void LiveSession::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   const FrameProgress progress = progress_of(*mine->frame);
   const std::lock_guard lock(mutex);
@@ -313,7 +314,7 @@ void LiveSession::note_progress(const std::shared_ptr<SessionFrame>& mine) {
   set_state(settled ? SessionState::settled : SessionState::drawing);
 }
 
-/// Developed once for all callers, who hold the frame's mutex.
+/// Develops the picture once for all callers, who hold the frame's mutex.
 std::shared_ptr<const Image> LiveSession::picture_so_far(const Frame& frame,
                                                          const std::vector<glm::vec3>& with) const {
   const std::lock_guard lock(picture_mutex);

@@ -1,5 +1,5 @@
-// A live session: orders of scenes, which its control thread compiles; drafts, which are drawn anew when
-// their kernels are built; picks, which are answered between tiles. Internal to the session.
+// The state of a RenderSession: its control thread compiles ordered scenes, drafts are redrawn once their
+// kernels are built, picks are answered between tiles. Internal to the session.
 #pragma once
 #include <deque>
 #include <future>
@@ -12,7 +12,7 @@ namespace sundog {
 
 using Workers = std::vector<std::shared_ptr<SceneWorker>>;
 
-// How often a draft is looked at for whether it can end.
+// How often a draft is checked for whether it can end.
 inline constexpr std::chrono::milliseconds look_for_kernels{10};
 
 inline bool is_at_rest(SessionState state) {
@@ -25,7 +25,7 @@ struct LiveSession : FrameLoop {
     std::shared_ptr<const SceneDescription> scene;
     SessionSettings settings;
     Stopwatch clock;
-    std::shared_ptr<const SessionFrame> draft{};  // whose picture it draws anew
+    std::shared_ptr<const SessionFrame> draft{};  // the draft that this order redraws
   };
   struct Pick {
     Generation generation = 0;
@@ -40,14 +40,14 @@ struct LiveSession : FrameLoop {
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> shown;
   std::deque<Pick> picks;
-  std::vector<glm::vec3> balance;  // of light groups
+  std::vector<glm::vec3> balance;  // per light group
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
-  Generation rested = 0;  // the last for which a worker has prepared for what comes
+  Generation rested = 0;  // the last generation after which a worker prepared for later work
   std::thread control;
   SceneCompiler compiler;       // the control thread's
-  std::mutex rendering;         // taken before `mutex`: one frame at a time is rendered to its end
-  const void* rated = nullptr;  // the scene of the last such frame, by which threads' speeds are known
+  std::mutex rendering;         // locked before `mutex`: one frame at a time is rendered to its end
+  const void* rated = nullptr;  // the last such frame's scene, by which the threads' speeds are known
 
   mutable std::mutex picture_mutex;
   mutable std::shared_ptr<const Image> picture;
@@ -55,21 +55,21 @@ struct LiveSession : FrameLoop {
   mutable std::uint64_t picture_passes = 0, picture_pixels = 0;
   mutable std::vector<glm::vec3> picture_balance;
 
-  /// The frame in hand, all of which are a session's.
+  /// The current frame; all frames of a session are SessionFrames.
   std::shared_ptr<SessionFrame> drawn() const { return std::static_pointer_cast<SessionFrame>(current); }
   void set_state(SessionState next) {
     state = next;
     note();
   }
 
-  /// Lets go of a frame or a scene. The owners of its meshes may do anything when they go, and take any lock:
-  /// the control thread frees it later, without the mutex, which the caller holds.
+  /// Releases a frame or a scene. The owners of its meshes may do anything in their destructors and lock
+  /// anything, so the control thread frees it later, without the mutex. The caller holds the mutex.
   void retire(std::shared_ptr<const void> old) {
     if (!old) return;
     retired.push_back(std::move(old));
     changed.notify_all();
   }
-  /// Replaces the order that waits. The caller holds the mutex.
+  /// Replaces the waiting order. The caller holds the mutex.
   void set_pending(std::optional<Order> next) {
     if (pending) {
       retire(std::move(pending->scene));
@@ -81,7 +81,7 @@ struct LiveSession : FrameLoop {
   void begin(const Workers& workers);
   /// Ends the threads. A second call does nothing.
   void end();
-  /// Renders a frame to its end in place of what is drawn.
+  /// Renders a frame to its end, replacing the current one.
   void run_final(const std::shared_ptr<SessionFrame>& mine);
   void run_control();
   void free_retired(std::unique_lock<std::mutex>& lock);
@@ -99,13 +99,13 @@ struct LiveSession : FrameLoop {
   bool is_draft(const std::shared_ptr<SessionFrame>& frame) const;
   void end_draft(std::unique_lock<std::mutex>& lock, const DeviceThread& thread,
                  const std::shared_ptr<SessionFrame>& mine);
-  /// The frame in hand may bring its first picture before a newer one takes its place.
+  /// Whether the current frame may still show its first picture before a newer frame replaces it.
   bool is_awaited() const {
     const std::shared_ptr<const SessionFrame> mine = drawn();
     return mine && !mine->final && !mine->frame->stop && mine->times.first < 0 && mine->times.settled < 0 &&
            mine->begun.seconds() < mine->settings.patience;
   }
-  /// A frame that is rendered to its end is let go of by its caller.
+  /// Whether the current frame is rendered to its end; then its caller releases it.
   bool is_held() const { return current && current->final; }
   void answer_picks(const std::shared_ptr<DeviceWorker>& worker);
   void drop_picks();

@@ -1,4 +1,4 @@
-// The session's public functions: they pass orders to its frame loop and return its picture so far.
+// The session's public functions, which pass orders to LiveSession and return the picture so far.
 #include "render/session/render_session.h"
 
 #include <algorithm>
@@ -115,6 +115,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   std::shared_ptr<SessionFrame> current, shown;
   Workers workers;
   std::vector<glm::vec3> balance;
+  double settled = -1;
   {
     const std::lock_guard lock(s.mutex);
     balance = s.balance;
@@ -127,6 +128,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
     for (const auto& thread : s.threads) workers.push_back(thread->of_scenes);
     current = s.drawn();
     shown = s.shown;
+    if (shown) settled = shown->times.settled;
     snapshot.draft = current && s.is_draft(current);
     const std::shared_ptr<SessionFrame>& times = current && current->generation == s.newest ? current : shown;
     if (times) snapshot.times = times->times;
@@ -156,7 +158,7 @@ Snapshot RenderSession::snapshot(bool with_picture) const {
   snapshot.wanted_samples = shown->flat->info.samples;
   snapshot.block = progress.block;
   snapshot.counts = frame.counts;
-  snapshot.seconds = progress.settled ? snapshot.times.settled : shown->clock.seconds();
+  snapshot.seconds = settled >= 0 ? settled : shown->clock.seconds();
   if (with_picture) snapshot.picture = s.picture_so_far(frame, balance);
   return snapshot;
 }
@@ -170,7 +172,7 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
     const std::lock_guard lock(live_->mutex);
     threads = live_->threads;
   }
-  // A single device keeps no other waiting, so an outdated speed does no harm.
+  // A single device makes no other wait, so an outdated speed does no harm.
   const bool comparable = threads.size() == 1 || live_->rated == scene.get();
   for (const auto& thread : threads)
     plans.push_back({thread->worker->info(), thread->worker->processor(),

@@ -1,6 +1,6 @@
 // RenderSession: devices that stay open and draw successive scenes, always the newest. start() never waits;
-// snapshot() shows the picture so far: coarse pixels first, then all, then more samples of each, until it
-// equals render()'s to the bit.
+// snapshot() shows the picture so far: first coarse pixels, then all, then more samples each, until it equals
+// render()'s picture bit for bit.
 //
 // Thread-safe. Owns one thread per device and one that compiles scenes, recompiling only the parts that
 // changed (compile/scene_compiler.h).
@@ -23,20 +23,21 @@ namespace sundog {
 using Generation = std::uint64_t;
 
 /// Settings of a start() in addition to the scene's (size, samples, sampling, tracer). None changes a bit of
-/// the settled picture.
+/// the final picture.
 struct SessionSettings {
-  bool coarse = true;  // if the picture takes longer, start with pixels 8 apart, then 4, then 2
-  /// Seconds granted to a scene's first full picture before a newer start() replaces it: otherwise, of scenes
-  /// in quick succession (a drag) none would be seen.
+  bool coarse = true;  // if the picture takes longer, start with coarse pixels, then ever finer ones
+  /// Seconds granted to a scene's first full picture before a newer start() replaces it; otherwise no scene
+  /// of a quick succession (a drag) would be seen.
   double patience = 0.15;
   WorkGroup work_group;
   std::function<Tuning(const DeviceInfo&)> tuning;  // per device; empty: the defaults
   Split split;
   int tile = 0;  // as RenderOptions::tile
-  /// Builds kernels in the background, and general ones while the session rests, which draw while an edit's
-  /// own are built. If false, an edit that needs a compiler waits for it, and no other kernels are built.
+  /// Builds kernels in the background: while an edit's own kernels are built, general ones draw, which are
+  /// built while the session rests. If false, an edit that needs a compiler waits for it, and no other
+  /// kernels are built.
   bool general_kernels = true;
-  bool light_groups = false;  // keep the light of path-traced groups apart, for set_balance()
+  bool light_groups = false;  // keeps the light of groups apart (path tracer), for set_balance()
 };
 
 enum class SessionState {
@@ -55,20 +56,20 @@ std::string state_text(SessionState state);
 /// One device's work on the generation shown.
 struct DeviceActivity {
   DeviceInfo info;
-  std::string doing;  // "drawing", "building a kernel", "uploading", "waiting", "out: ..." with the reason
+  std::string doing;  // "drawing", "building a kernel", "waiting", "out: ..." with the reason
   std::uint64_t tiles = 0, pixels = 0;         // rendered for this generation; every pass counts
-  double share = 0;                            // of all devices' pixels, 0..1
+  double share = 0;                            // share of all devices' pixels, 0..1
   double busy_seconds = 0;                     // rendering tiles
-  std::map<std::string, KernelTimes> kernels;  // of this generation
+  std::map<std::string, KernelTimes> kernels;  // for this generation
   std::vector<std::string> messages;           // its failures
   std::vector<std::string> notes;              // warnings
 };
 
-/// The cost of an edit, for this generation. A camera edit causes no BVH or geometry work.
+/// The cost of an edit, for this generation. A camera edit recompiles no BVH or geometry.
 struct EditWork {
   CompileWork compiled;                                   // parts of the scene that were compiled
   std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;  // on all devices
-  std::uint64_t kernels_built = 0;                        // by a driver's compiler
+  std::uint64_t kernels_built = 0;                        // by drivers' compilers
 };
 
 /// Seconds since start(); negative: not yet.
@@ -83,25 +84,25 @@ struct SessionTimes {
 /// The state of a session at one moment. A value, unaffected by later work.
 struct Snapshot {
   Generation generation = 0;   // the newest that was started; 0: none
-  Generation shown = 0;        // of `picture`: an older one until the newest has a pixel; 0: none
+  Generation shown = 0;        // the generation of `picture`; older until the newest has a pixel; 0: none
   std::uint64_t revision = 0;  // grows with each change of any member
   SessionState state = SessionState::idle;
-  std::string error;            // of the compiler or the last device, if failed
+  std::string error;            // the compiler's or the last device's, if failed
   std::exception_ptr cause;     // the exception behind it
   unsigned pass = 0;            // complete passes of `shown`, including coarse ones
   unsigned samples = 0;         // minimum over the pixels; 0 while the picture is coarse
-  unsigned wanted_samples = 0;  // of the scene
-  unsigned block = 1;           // edge in pixels of the picture's blocks: 8, 4, 2, 1
-  double fraction = 0;          // of the work: samples taken / samples wanted
-  /// Linear RGBA at the frame's size; alpha is coverage. Settled: equal to render()'s image to the bit.
-  /// Coarse blocks are filled with their pixel. Shared and immutable; null before the first pixel.
+  unsigned wanted_samples = 0;  // the scene's
+  unsigned block = 1;           // edge of the picture's blocks in pixels: 32 at most, 1 at full resolution
+  double fraction = 0;          // samples taken / samples wanted
+  /// Linear RGBA at the frame's size; alpha is coverage. Once settled, equal to render()'s image bit for bit.
+  /// Coarse blocks have their pixel's colour. Shared and immutable; null before the first pixel.
   std::shared_ptr<const Image> picture;
-  RayCounts counts{};  // of `shown`, in the order of COUNT_* (shared/scene.h)
+  RayCounts counts{};  // the rays of `shown`, in the order of COUNT_* (shared/scene.h)
   double seconds = 0;  // since the start() of `shown`; once settled, its duration
   SessionTimes times;
   EditWork work;
   std::size_t kernels_waiting = 0;  // built in the background for later edits
-  bool prepared = false;            // settled, and all of them are built
+  bool prepared = false;            // settled, and all those kernels are built
   bool draft = false;               // the picture will be redrawn by kernels that are being built
   std::vector<DeviceActivity> devices;
 };
@@ -115,7 +116,7 @@ struct Picked {
   double depth = 0;                               // along the view; infinite if nothing is hit
 };
 
-/// Likewise, but reports that a complete draft waits for a kernel.
+/// Like state_text(now.state), but reports that a complete draft waits for a kernel.
 std::string state_text(const Snapshot& now);
 
 class SceneWorker;
@@ -125,7 +126,7 @@ class RenderSession {
  public:
   /// Opens nothing: each device's thread opens it at the first start(). Throws DeviceError without devices.
   explicit RenderSession(const std::vector<DeviceInfo>& devices);
-  /// For other workers than this process's devices.
+  /// For workers other than this process's devices.
   explicit RenderSession(const std::vector<std::shared_ptr<SceneWorker>>& workers);
   /// close()
   ~RenderSession();
@@ -133,45 +134,45 @@ class RenderSession {
   RenderSession& operator=(const RenderSession&) = delete;
 
   /// Draws this scene from now on. Returns at once. The previous scene is dropped at the end of its launches
-  /// (about 50 ms) once it has a first picture or its patience is over; a scene still waiting for compilation
-  /// is skipped. Errors of the scene or a device are reported as SessionState::failed. The scene must not
-  /// change afterwards.
+  /// (about 50 ms), once it has a first picture or its patience is over; a scene still waiting for
+  /// compilation is skipped. Errors of the scene or a device are reported as SessionState::failed. The scene
+  /// must not change afterwards.
   Generation start(std::shared_ptr<const SceneDescription> scene, const SessionSettings& settings = {});
 
   /// Renders a frame to its end, replacing the current one, and waits: the picture of `sundog render`, with
-  /// checkpoints, parts, AOVs and statistics. snapshot() continues to show the picture before it. A
-  /// concurrent start() or cancel() ends it early. Devices keep kernels and tables for the next frame. Throws
+  /// checkpoints, parts, AOVs and statistics. Meanwhile, snapshot() shows the previous picture. A concurrent
+  /// start() or cancel() ends the frame early. Devices keep kernels and tables for the next frame. Throws
   /// like render() (render.h).
   RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const RenderOptions& options = {});
 
-  /// Multiplies the light of each group in the pictures of snapshot(): first that of no group, then the
-  /// groups by name (scene/light_groups.h); those left out by 1. Draws nothing anew. Takes effect on scenes
-  /// started with SessionSettings::light_groups, from their first full picture on.
+  /// Multiplies the light of each group in snapshot()'s pictures: first the light in no group, then the
+  /// groups by name (scene/light_groups.h); missing factors are 1. Redraws nothing. Affects scenes started
+  /// with SessionSettings::light_groups, from their first full picture on.
   void set_balance(std::vector<glm::vec3> factors);
 
   /// Stops drawing at once. The picture so far remains.
   void cancel();
 
-  /// Stops drawing for good: waits for launches (about 50 ms), not for a driver that hangs or compiles.
+  /// Stops drawing for good. Waits for launches (about 50 ms), but not for a driver that hangs or compiles.
   void close();
 
-  /// Takes effect at the next start(). Devices in both lists keep their kernels and tables. Throws
-  /// DeviceError without devices.
+  /// Replaces the devices from the next start() on. Devices in both lists keep their kernels and tables.
+  /// Throws DeviceError without devices.
   void use_devices(const std::vector<DeviceInfo>& devices);
 
-  /// Without the picture it takes microseconds.
+  /// Takes microseconds without the picture.
   Snapshot snapshot(bool with_picture = true) const;
 
   /// Waits until the newest generation is settled, stopped or failed.
   void wait() const;
-  /// Waits likewise, for at most `seconds`; returns false on timeout.
+  /// Like wait(), but for at most `seconds`; returns false on timeout.
   bool wait_for(double seconds) const;
   /// Waits until Snapshot::revision differs from `revision`, for at most `seconds`; returns false on timeout.
   bool wait_for_change(std::uint64_t revision, double seconds) const;
 
-  /// Waits for the surface that the newest generation shows at a pixel, by one ray between two launches.
-  /// Nothing outside the frame, without a scene, or if a newer scene replaces it. The first pick of a kind of
-  /// scene builds a kernel (seconds). Throws DeviceError, BuildError.
+  /// Waits for the surface that the newest generation shows at a pixel, found by one ray between two
+  /// launches. Returns nothing outside the frame, without a scene, or if a newer scene replaces this one. The
+  /// first pick in a kind of scene builds a kernel (seconds). Throws DeviceError, BuildError.
   std::optional<Picked> pick(int x, int y);
 
  private:

@@ -1,4 +1,5 @@
-// A scene that is not made in passes doubles its samples from pass to pass, so that the picture grows.
+// Plans a session's frame, whose samples double from pass to pass so that the picture refines, and develops
+// the picture so far.
 #include "render/session/session_frame.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 namespace sundog {
 namespace {
 
-// So long a worker is with one tile: then it looks for a newer scene, for picks, and shows its pixels.
+// How long a worker stays with one tile before it checks for a newer scene and picks and shows its pixels.
 constexpr double tile_seconds = 0.2;
 
 RenderOptions options_of(const SessionSettings& settings) {
@@ -19,8 +20,8 @@ RenderOptions options_of(const SessionSettings& settings) {
   return options;
 }
 
-/// Samples of a scene that is not made in passes of its own double from pass to pass: sums grow in the order
-/// in which one pass would add them.
+/// If the scene is not rendered in passes, its samples double from pass to pass. The sums are added in the
+/// same order as in one pass, so the final bits are equal.
 SamplingPlan sampling_of(const CompiledScene& scene, const std::vector<std::string>& aovs) {
   SamplingPlan plan{scene.sampling, scene.info.samples};
   plan.surfaces = plan.sums = !aovs.empty();
@@ -54,7 +55,7 @@ void fill_coarse(const CoarsePicture& coarse, Image& image) {
     }
 }
 
-/// Balances a pixel that has samples.
+/// Balances a pixel, if it has samples.
 void balance_pixel(const Film& film, std::size_t i, std::span<const glm::vec3> balance, float* pixel) {
   if (balance.empty() || !film.layout.groups || film.aovs.empty() || !(film.weights[i] > 0)) return;
   const Color color = film.balanced_mean(i, balance);
@@ -68,7 +69,7 @@ Image develop(const Film& film, std::span<const glm::vec3> balance) {
   return image;
 }
 
-/// The pixels of the pass in hand that are done.
+/// Copies the finished pixels of the current pass.
 void fill_from_pass(const Frame& frame, std::span<const glm::vec3> balance, Image& image) {
   const Film& done = frame.pass_film;
   for (std::size_t i = 0; i < done.done.size(); ++i) {

@@ -1,4 +1,4 @@
-// How a frame is to be rendered.
+// Options of a render: devices' shares, tuning, region, outputs, checkpoint, limits, callbacks.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -18,15 +18,15 @@ namespace sundog {
 class Faults;
 struct Film;
 
-/// How tiles are shared among devices: by measured speed as they come, or in fixed parts, one a device.
+/// How tiles are shared among devices: on demand by measured speed, or in fixed parts, one per device.
 struct Split {
   enum class Kind { dynamic, fixed } kind = Kind::dynamic;
-  std::vector<double> shares;  // of a fixed split; empty: by the devices' estimates
+  std::vector<double> shares;  // for a fixed split; empty: by the devices' estimates
 };
 
-/// The kernels that a scene is drawn with: its own; its own, but others that draw the same bits may stand in
-/// while they are built; always general ones, which most scenes share, so that few are built; or drafts,
-/// which nearly all share, and which round otherwise.
+/// The kernels that draw a scene. own: its own. own_when_built: its own, but until they are built others that
+/// draw the same bits. general: shared by most scenes, so that few are built. draft: shared by nearly all
+/// scenes, but they round differently.
 enum class KernelChoice { own, own_when_built, general, draft };
 
 /// Part `index` (from 1) of `count`.
@@ -41,31 +41,30 @@ struct RenderProgress {
 
 struct RenderOptions {
   WorkGroup work_group;
-  std::function<Tuning(const DeviceInfo&)> tuning;  // of each device; empty: the defaults
+  std::function<Tuning(const DeviceInfo&)> tuning;  // per device; empty: the defaults
   KernelChoice kernels = KernelChoice::own;
   int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
   Split split;
-  PartOfFrame part;               // what to render of the frame
-  std::optional<Tile> region;     // of the picture, which is all of the frame then; none: the whole
-  std::vector<std::string> aovs;  // of aov_names()
-  bool passes = false;            // samples double pass by pass, even where the scene asks for all at once
-  int channels = 4;  // of the result's image; 3: without coverage; 0: neither it nor AOVs are made
-  std::filesystem::path resume;      // a checkpoint: read when it exists
-  std::filesystem::path checkpoint;  // written on interrupt and on the way, and removed by the caller; empty:
-                                     // that is `resume`
-  bool renews_checkpoint = false;    // one that is of another frame, or damaged, is left unread
-  double checkpoint_seconds = 60;    // between those written on the way
-  std::shared_ptr<Faults> faults;    // of checkpoints
-  std::atomic<bool>* keep_now = nullptr;        // set: write one at once, and take this back
-  bool in_haste = false;                        // when stopped, a moment more may be too long
-  double time_limit = 0;                        // seconds, after which the film so far is returned; 0: none
-  double noise = 0;                             // a frame in passes ends below this mean error
+  PartOfFrame part;               // the part of the frame to render
+  std::optional<Tile> region;     // renders only this region of the picture; none: all of it
+  std::vector<std::string> aovs;  // names from aov_names()
+  bool passes = false;            // double the samples pass by pass, even if the scene asks for all at once
+  int channels = 4;               // the image's; 3: without alpha; 0: neither image nor AOVs are made
+  std::filesystem::path resume;   // a checkpoint; read if it exists
+  std::filesystem::path checkpoint;             // written regularly and on interrupt; the caller removes it;
+                                                // empty: `resume`
+  bool renews_checkpoint = false;               // a damaged checkpoint, or one of another frame, is ignored
+  double checkpoint_seconds = 60;               // between checkpoints
+  std::shared_ptr<Faults> faults;               // simulated when checkpoints are written
+  std::atomic<bool>* keep_now = nullptr;        // set: write a checkpoint at once, and clear this
+  bool in_haste = false;                        // when stopped, do not wait for drivers longer than necessary
+  double time_limit = 0;                        // seconds until the film so far is returned; 0: none
+  double noise = 0;                             // a frame in passes ends below this mean error; 0: never
   std::function<void(const Film&)> on_picture;  // the film so far, every `picture_seconds`
   double picture_seconds = 0;
   std::function<void(const RenderProgress&)> on_progress;  // called by one thread at a time
-  const std::atomic<bool>* stop = nullptr;                 // set: finish what runs, return the film so far
-  bool keep_failed =
-      false;  // when every device failed, return the film so far and the failure instead of throwing it
+  const std::atomic<bool>* stop = nullptr;  // set: finish running launches and return the film so far
+  bool keep_failed = false;  // if every device fails, return film and failure instead of throwing
 };
 
 }  // namespace sundog

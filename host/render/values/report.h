@@ -12,7 +12,7 @@
 
 namespace sundog {
 
-/// Sums over the frame, in the order of the COUNT_* constants.
+/// Totals of the frame, in the order of the COUNT_* constants.
 using RayCounts = std::array<std::uint64_t, COUNTERS>;
 
 struct DeviceReport {
@@ -20,8 +20,8 @@ struct DeviceReport {
   std::uint64_t tiles = 0, failures = 0;
   std::uint64_t pixels = 0;                // kept in the image
   std::uint64_t outrun = 0;                // tiles that another device finished sooner
-  double busy_seconds = 0;                 // on tiles that it finished
-  double share = 0;                        // of the frame's pixels
+  double busy_seconds = 0;                 // rendering tiles that it finished
+  double share = 0;                        // share of the frame's pixels
   bool ready = false;                      // its kernels were built before the end of the frame
   bool retired = false;                    // it failed too often, or hangs
   bool abandoned = false;                  // its driver had not returned at the end

@@ -1,9 +1,9 @@
-// A rectangle of pixels.
+// A tile: a rectangle of an image's pixels, rendered as one piece of work.
 #pragma once
 
 namespace sundog {
 
-/// Row 0 is at the top.
+/// In pixels; row 0 is at the top.
 struct Tile {
   int x = 0, y = 0, width = 0, height = 0;
   friend bool operator==(const Tile&, const Tile&) = default;

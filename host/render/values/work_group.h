@@ -1,10 +1,10 @@
-// Local size of the render kernels.
+// The local size (work-group) of the render kernels.
 #pragma once
 #include <cstddef>
 
 namespace sundog {
 
-/// The default, the driver's choice, or the user's size.
+/// Automatic (the default), the driver's choice, or a fixed size.
 struct WorkGroup {
   enum class Kind { automatic, driver, fixed } kind = Kind::automatic;
   std::size_t x = 64, y = 1;

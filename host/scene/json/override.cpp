@@ -44,7 +44,7 @@ std::optional<std::size_t> array_index(std::string_view token) {
   return canonical ? whole_number<std::size_t>(token) : std::nullopt;
 }
 
-/// The item that a token means: by its index, or by the name that no other item has.
+/// The index of the item that a token identifies: by index, or by a name that no other item has.
 std::optional<std::size_t> item_index(const json& array, std::string_view token) {
   if (const auto index = array_index(token)) return *index < array.size() ? index : std::nullopt;
   std::optional<std::size_t> found;
@@ -56,13 +56,13 @@ std::optional<std::size_t> item_index(const json& array, std::string_view token)
   return found;
 }
 
-/// The child that a token names; null: none.
+/// The child that a token identifies; null: none.
 const json* child_of(const json& parent, const std::string& token) {
   if (parent.is_array()) {
     const auto index = item_index(parent, token);
     return index ? &parent[*index] : nullptr;
   }
-  const auto found = parent.find(token);  // of what is no object: end()
+  const auto found = parent.find(token);  // end() unless `parent` is an object
   return found == parent.end() ? nullptr : &*found;
 }
 
@@ -108,7 +108,7 @@ class Step {
     return &array[*index];
   }
 
-  /// Adds an object, unless the next token indexes an array or this one names a thing that must exist.
+  /// Adds an object, unless the next token indexes an array or this token names a thing that must exist.
   void may_add(json& parent, std::size_t depth) const {
     const std::string& token = tokens_[depth];
     const bool named = depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" ||
@@ -127,7 +127,8 @@ class Step {
   const fs::path& file_;
 };
 
-/// Where the pointer of a setting ends: at the "=" before which it leads to something, or the first.
+/// The end of a setting's pointer: the first "=" before which the pointer leads to something, or else the
+/// first.
 std::size_t end_of_pointer(const json& document, std::string_view setting) {
   const std::size_t first = setting.find('=');
   if (first == std::string_view::npos || first < 2 || setting[0] != '/')

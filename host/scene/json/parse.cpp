@@ -1,4 +1,5 @@
-// A SAX handler that builds the document and tracks the current JSON pointer.
+// Builds the document with a SAX handler that tracks the current JSON pointer, and explains errors in plain
+// words.
 #include "scene/json/parse.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,7 @@ constexpr std::pair<std::string_view, std::string_view> plain_words[] = {
     {"forbidden character after backslash", "wanted \\\\ for a backslash, or / between folders"},
     {"'\\u' must be", "wanted \\\\ for a backslash, or / between folders; '\\u' must be"}};
 
-/// The word or the sign whose reading ended at `end`.
+/// The word or sign that ends at `end`.
 std::string_view word_at(std::string_view text, std::size_t end) {
   const auto in_word = [&](std::size_t i) { return std::isalnum(static_cast<unsigned char>(text[i])) != 0; };
   end = std::clamp<std::size_t>(end, 1, text.size());
@@ -75,7 +76,7 @@ std::string_view word_at(std::string_view text, std::size_t end) {
   return text.substr(begin, std::min<std::size_t>(end - begin, 20));
 }
 
-/// Where the comment begins that has no end.
+/// The position of the unterminated comment.
 std::size_t open_comment(std::string_view text) {
   for (std::size_t at = 0; at < text.size(); ++at) {
     if (text[at] == '"') {
@@ -93,8 +94,8 @@ std::size_t open_comment(std::string_view text) {
   return 0;
 }
 
-/// The library's message, "[json.exception...] parse error at line 1, column 2: what; last read: '...'", as
-/// `what` only: the last read may be the whole file and may end within a letter.
+/// Reduces the library's message, "[json.exception...] parse error at line 1, column 2: what; last read:
+/// '...'", to `what`: the last read may be the whole file and may end within a character.
 std::string plain_message(std::string message, std::string_view found) {
   if (message.starts_with('[')) message.erase(0, message.find("] ") + 2);
   if (message.starts_with("parse error")) message.erase(0, message.find(": ") + 2);
@@ -183,8 +184,8 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     return position > 1 && before != std::string_view::npos && text_[before] == ',';
   }
 
-  /// The position of a fault whose reading ended at `end`: a comment without an end is at its beginning, and
-  /// the end of a line belongs to the line.
+  /// The position of an error found at `end`: an unterminated comment is reported at its beginning, and the
+  /// end of a line belongs to that line.
   std::size_t begin_of(std::string_view message, std::size_t end) const {
     if (message.find("missing closing '*/'") != message.npos) {
       return open_comment(text_) + 1;
@@ -229,7 +230,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   json* member_ = nullptr;           // the value of key_
 };
 
-/// Whether the text has the name as a word of its own: "made.ply", not "remade.ply".
+/// Whether the text contains the name as a separate word: "made.ply", not "remade.ply".
 bool names_file(const std::string& text, const std::string& name) {
   const auto is_of_word = [&](std::size_t at) {
     return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
@@ -239,7 +240,7 @@ bool names_file(const std::string& text, const std::string& name) {
   return false;
 }
 
-/// A script in the folder of a missing file that names it, and so may write it; empty: none.
+/// A script beside a missing file that mentions it, and so may write it; empty: none.
 fs::path maker_of(const fs::path& file) {
   constexpr std::uintmax_t most = 1 << 20;
   std::error_code failed;
@@ -252,7 +253,7 @@ fs::path maker_of(const fs::path& file) {
       if (names_file(read_regular_file(script, most), file.filename().string()) &&
           (found.empty() || script < found))
         found = script;
-    } catch (const IoError&) {  // another one may name it
+    } catch (const IoError&) {  // another script may mention it
     }
   }
   return found;

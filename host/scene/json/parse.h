@@ -13,7 +13,7 @@ class Faults;
 /// Maximum nesting of arrays and objects in a scene.
 inline constexpr std::size_t max_json_depth = 100;
 
-/// Throws SceneError{file, JSON pointer or "line L, column C", what}.
+/// Parses a document. Throws SceneError{file, JSON pointer or "line L, column C", what}.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& file);
 
 /// Parses a whole file. Throws SceneError, also if the file is missing, a folder, unreadable or empty.

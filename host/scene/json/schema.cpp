@@ -37,7 +37,7 @@ class Schema {
     return document_.at("$defs").at(pointer.substr(std::string_view("#/$defs/").size()));
   }
 
-  /// The value of an annotation, which may stand at a reference or where it leads; nullptr: at neither.
+  /// The value of an annotation at a reference or at its target; nullptr if both lack it.
   const json* annotation(const json& node, const char* name) const {
     if (const auto found = node.find(name); found != node.end()) return &*found;
     return node.contains("$ref") ? annotation(target(node), name) : nullptr;
@@ -98,8 +98,8 @@ class Schema {
       }
   }
 
-  /// The rules of keys together: "not" any of pairs (and no "required" beside), "dependentRequired", and
-  /// "oneOf" some lists of keys.
+  /// Compiles rules about several keys: "not" any of some pairs (with no "required" beside),
+  /// "dependentRequired", and "oneOf" several lists of keys.
   static void compile_together(const json& node, SchemaRule& rule) {
     static const json none;
     const auto part = [](const json& of, const char* keyword) -> const json& {
@@ -116,7 +116,8 @@ class Schema {
     for (const json& way : ways) {
       const json& keys = way["required"];
       if (keys.size() == 1) rule.one_of.push_back(text(keys[0]));
-      for (const json& key : keys)  // where a way has several keys, the last one has a key of its own
+      // If an alternative has several keys, the last alternative has its own key.
+      for (const json& key : keys)
         if (keys.size() > 1) rule.clashes.emplace_back(text(ways.back()["required"][0]), text(key));
     }
   }

@@ -1,5 +1,5 @@
-// The rules of scenes/scene.schema.json, which is in the program: ranges, choices, defaults and keys. Readers
-// find them by the kind of an object (its name in the schema's $defs), compiled once.
+// The rules of scenes/scene.schema.json, which is embedded in the program: ranges, choices, defaults and
+// keys. Readers find a rule by the kind of object (its name in the schema's $defs). Compiled once.
 #pragma once
 #include <array>
 #include <map>
@@ -25,44 +25,44 @@ std::string describe(const Range& range);
 /// Allowed keys or choices.
 using Names = std::span<const std::string_view>;
 
-/// "a, b or c", each in quotes.
+/// Formats names as "a, b or c", each in quotes.
 std::string list_names(Names names, std::string_view conjunction = "or");
 
 /// The schema's rule for one value.
 struct SchemaRule {
   enum class Type { any, object, array, string, number, integer, boolean };
   Type type = Type::any;
-  std::string_view title;                      // completes "wanted "; empty: follows from the rest
-  Range range;                                 // of a number
+  std::string_view title;                      // completes "wanted "; empty: derived from the rest
+  Range range;                                 // for numbers
   const nlohmann::json* barred = nullptr;      // values that are refused
-  std::string_view pattern;                    // of a string; bounded, for std::regex recurs
-  std::vector<std::string_view> names;         // of a string; empty: any
-  unsigned least_items = 0, most_items = ~0u;  // of an array
-  const SchemaRule* items = nullptr;           // of an array
-  const SchemaRule* others = nullptr;          // values of an object with keys of the user's own
+  std::string_view pattern;                    // for strings; bounded, because std::regex recurses
+  std::vector<std::string_view> names;         // for strings; empty: any
+  unsigned least_items = 0, most_items = ~0u;  // for arrays
+  const SchemaRule* items = nullptr;           // for arrays
+  const SchemaRule* others = nullptr;          // values of an object with arbitrary keys
   struct Key {
     const SchemaRule* rule = nullptr;
     std::string_view description;
-    const nlohmann::json* standard = nullptr;  // the value of a missing key
+    const nlohmann::json* standard = nullptr;  // the default for a missing key
     bool required = false;
   };
-  std::map<std::string_view, Key> keys;  // of an object
+  std::map<std::string_view, Key> keys;  // for objects
   std::vector<const SchemaRule*> options;
   using KeyPair = std::pair<std::string_view, std::string_view>;
-  std::vector<KeyPair> clashes;          // keys that an object does not have both
+  std::vector<KeyPair> clashes;          // keys that exclude each other
   std::vector<KeyPair> needs;            // the first key needs the second
-  std::vector<std::string_view> one_of;  // keys of which an object has just one, if each way is one key
+  std::vector<std::string_view> one_of;  // keys of single-key alternatives, of which exactly one is given
 
   bool bars(const nlohmann::json& value) const;
-  /// This rule or its first option for values of that type; nullptr: none.
+  /// This rule, or its first option, for values of this type; nullptr: none.
   const SchemaRule* as(Type wanted) const;
   /// Completes "wanted "; with or without a number's limits.
   std::string describe(bool limits = true) const;
-  /// How many items an array may have, as "2 " or "1 to 64 "; empty: any number.
+  /// The number of items that an array may have, as "2 " or "1 to 64 "; empty: any.
   std::string count() const;
 };
 
-/// The rule of a kind of object; nullptr: the schema has none of that name.
+/// The rule for a kind of object; nullptr if the schema lacks it.
 const SchemaRule* schema_rule(std::string_view kind);
 
 struct SchemaFile {

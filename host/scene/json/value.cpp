@@ -1,4 +1,4 @@
-// Reads JSON values strictly, by the schema's rules: an error names the file, the place and the mend.
+// Reads JSON values strictly, by the schema's rules; an error names the file, the place and the remedy.
 #include "scene/json/value.h"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ bool inside(double x, const Range& range) {
          (range.high_open ? x < range.high : x <= range.high);
 }
 
-/// The first sentence of a description, as the end of another.
+/// The first sentence of a description, shortened so that it can end another sentence.
 std::string brief(std::string_view description) {
   std::string text(description.substr(0, std::min(description.find(". "), description.find_first_of(";:"))));
   if (text.ends_with('.')) text.pop_back();

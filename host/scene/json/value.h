@@ -1,5 +1,5 @@
-// Strict JSON reading: a JsonValue knows its place (file and JSON pointer) for error messages and the
-// schema's rule for it; a JsonObject records the keys it was asked for and rejects all others at the end.
+// Reads JSON strictly. A JsonValue knows its place (file and JSON pointer), for error messages, and its rule
+// in the schema; a JsonObject records the keys requested and at the end rejects all others.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -26,18 +26,18 @@ inline constexpr Range at_least_0{.low = 0};
 
 class FrameCache;
 
-/// Settings and logs that the values of one file share. If set, `asked` collects the keys that readers ask
-/// for, by kind of object: a test compares them with the JSON Schema.
+/// Settings and logs shared by the values of one file. `asked`, if set, collects the keys that readers
+/// request, by kind of object; a test compares them with the JSON Schema.
 struct JsonContext {
   std::filesystem::path file;
   std::map<std::string, std::set<std::string>, std::less<>>* asked = nullptr;
-  bool native_code = false;                      // a scene may carry OpenCL C
-  std::vector<std::string>* warnings = nullptr;  // when set, collects what the values were warned of
-  bool measures = true;         // formulas are tried out; who only checks keys and types need not
-  bool outside_files = false;   // a scene may name files outside its folder
-  FrameCache* cache = nullptr;  // of the frames before this one
-  std::optional<double> seconds = std::nullopt;  // of a frame; none: the scene as it is written
-  bool* plays = nullptr;                         // when set, whether a value was read that follows them
+  bool native_code = false;                      // the scene may contain OpenCL C
+  std::vector<std::string>* warnings = nullptr;  // if set, collects warnings
+  bool measures = true;         // whether to survey formulas; not needed when only keys and types are checked
+  bool outside_files = false;   // the scene may name files outside its folder
+  FrameCache* cache = nullptr;  // files and meshes of earlier frames
+  std::optional<double> seconds = std::nullopt;  // the frame's time; none: the scene as written
+  bool* plays = nullptr;  // if set, receives whether a value that depends on `seconds` was read
 };
 
 /// Appends a reference token to `pointer`, escaped by RFC 6901.
@@ -66,7 +66,7 @@ class JsonValue {
   /// Throws "wanted `what`, found <this value, shortened>".
   [[noreturn]] void wanted(std::string_view what) const;
 
-  /// By the rule's range, or the given one.
+  /// Checked against the rule's range, or against the given one.
   double number() const;
   double number(const Range& range) const;
   int integer() const;
@@ -74,7 +74,7 @@ class JsonValue {
   bool boolean() const;
   /// A non-empty string.
   std::string text() const;
-  /// The string, which must be one of the rule's names, or of `names`.
+  /// The string, which must be one of the rule's names, or one of `names`.
   std::string choice() const { return choice(rule_of(SchemaRule::Type::string).names); }
   std::string choice(Names names) const;
   /// The value of the table row that the string names.
@@ -82,12 +82,12 @@ class JsonValue {
   auto choose(const std::array<Row, N>& table) const {
     return std::ranges::find(table, choice(names_of(table)), &Row::name)->value;
   }
-  /// Three numbers; one for all where the schema has one, too.
+  /// Three numbers; where the schema allows it, one number stands for all three.
   glm::dvec3 vec3() const { return vector<3>(); }
   /// A nonzero [x, y, z], normalised.
   glm::dvec3 direction() const;
 
-  /// Sets `to` to the value, which must keep the rule. Enumerators are in the order of the schema's names.
+  /// Sets `to` to the value, which must obey the rule. Enumerators are in the order of the schema's names.
   void get(double& to) const { to = number(); }
   template <std::integral T>
   void get(T& to) const {
@@ -114,9 +114,9 @@ class JsonValue {
   JsonItems items(std::string_view what) const;
   /// Members of an object with arbitrary keys.
   std::vector<std::pair<std::string, JsonValue>> members(std::string_view what) const;
-  /// A required member, not recorded as asked for.
+  /// A required member; not recorded as requested.
   JsonValue member(std::string_view key, std::string_view what) const;
-  /// The required "type" of an object that has no other keys in common with its alternatives.
+  /// The required "type" of an object whose alternatives have no other keys in common.
   std::string type() const;
 
   /// Passes this value, which must be an object, to `read(JsonObject&)`, then rejects unread keys. `kind` is
@@ -128,9 +128,9 @@ class JsonValue {
   friend class JsonItems;
   friend class JsonObject;
   JsonValue child(std::string_view key, const nlohmann::json& value, const SchemaRule* rule) const;
-  /// The rule for a value of that type; one without limits where the schema has none.
+  /// The rule for a value of this type; a rule without limits if the schema has none.
   const SchemaRule& rule_of(SchemaRule::Type type) const;
-  /// Fails by the schema's words where the value may have several types, otherwise by `plain`.
+  /// Fails in the schema's words if the value may have several types, otherwise with `plain`.
   [[noreturn]] void wanted_type(std::string_view plain) const;
   void read_numbers(double* to, std::size_t count) const;
   template <glm::length_t N>
@@ -146,8 +146,8 @@ class JsonValue {
   const SchemaRule* rule_;
 };
 
-/// Items of an array, created on access, so that the first bad one of millions is found without memory for
-/// the others.
+/// Items of an array, created on access, so that the first invalid one of millions is found without memory
+/// for the others.
 class JsonItems {
  public:
   explicit JsonItems(JsonValue array) : array_(std::move(array)) {}
@@ -177,13 +177,13 @@ class JsonItems {
   JsonValue array_;
 };
 
-/// A JSON object whose keys must all be read; a "type" that tells its kind is. Created by
+/// A JSON object whose keys must all be read; a "type" with a single name counts as read. Created by
 /// JsonValue::object().
 class JsonObject {
  public:
   const JsonValue& value() const { return value_; }
 
-  /// The value of a key of a document's object that is not at hand.
+  /// A section of a document as a value; `kind` and `key` select its rule.
   static JsonValue section(std::string_view kind, std::string_view key, const nlohmann::json& value,
                            const JsonContext& context) {
     return {value, context, join_pointer("", key), schema_rule(kind)->keys.at(key).rule};
@@ -192,35 +192,36 @@ class JsonObject {
   bool knows(std::string_view key) const { return rule_ && rule_->keys.contains(key); }
   /// A key's value; an error if the schema requires it and it is missing.
   std::optional<JsonValue> find(std::string_view key);
-  /// A required key's value; `what`, otherwise the schema, completes "missing key: wanted ...".
+  /// A required key's value; `what`, or else the schema, completes "missing key: wanted ...".
   JsonValue at(std::string_view key, std::string_view what = "");
   bool has(std::string_view key);
 
-  /// Sets `to` to the key's value, else to the schema's default, else leaves it. Further pairs likewise.
+  /// Sets `to` to the key's value or the schema's default; without either, leaves it unchanged. Further pairs
+  /// likewise.
   template <class T, class... More>
   void read(std::string_view key, T& to, More&&... more) {
     if (const auto found = find_or_standard(key)) found->get(to);
     if constexpr (sizeof...(more) > 0) read(std::forward<More>(more)...);
   }
-  /// Likewise, by the table's row of that name.
+  /// Like read(), with the value of the table row that the key's string names.
   template <class T, class Row, std::size_t N>
   void read(std::string_view key, T& to, const std::array<Row, N>& table) {
     if (const auto found = find_or_standard(key)) to = found->choose(table);
   }
-  /// Checks a value that is not used.
+  /// Checks a value that is not used here.
   void check(std::string_view key);
 
-  /// For ranges and defaults that other values decide.
+  /// Read numbers whose ranges and defaults depend on other values.
   double number(std::string_view key, double fallback, const Range& range);
   int integer(std::string_view key, int fallback, int low, int high);
 
-  /// Returns the one key present of those that the schema's "oneOf" names.
+  /// Returns the one key present among those of the schema's "oneOf".
   std::string one_of();
 
  private:
   friend class JsonValue;
   JsonObject(const JsonValue& value, std::string_view kind);
-  /// The schema's entry of a key, which it must have if it has the kind.
+  /// The schema's entry for a key; if the schema has this kind, it must have the key.
   const SchemaRule::Key* ask(std::string_view key);
   std::optional<JsonValue> find_or_standard(std::string_view key);
   [[noreturn]] void fail_missing(std::string_view key, std::string_view beside, std::string_view what) const;
@@ -230,7 +231,7 @@ class JsonObject {
   JsonValue value_;
   std::string kind_;
   const SchemaRule* rule_;
-  std::vector<std::string_view> asked_;  // of the schema's strings; may repeat
+  std::vector<std::string_view> asked_;  // the schema's strings; may repeat
 };
 
 template <class Read>

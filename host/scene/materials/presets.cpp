@@ -1,4 +1,4 @@
-// The presets' table as JSON with its sources; merges those a scene names into its document.
+// Holds the table of presets as JSON, with its sources; adds presets that a scene names to its sections.
 #include "scene/materials/presets.h"
 
 #include <fmt/format.h>
@@ -14,12 +14,12 @@ using nlohmann::json;
 
 namespace {
 
-// A material each; "inside" is its medium, with lengths in metres. Sources:
-// indices of glasses, water, ice and diamond: spectra/refraction.cpp; of plastics: Sultanova and others 2009;
-// of drinks: by their sugar (ICUMSA) and alcohol (CRC Handbook). Absorption of water: Pope and Fry 1997; ice:
-// Warren and Brandt 2008; beer, wine, juice, cola: Narasimhan and others 2006; whisky: by eye. The rest, and
-// the colours of metals (indices by Palik and others) and matte surfaces: physicallybased.info (CC0). Wax,
-// jade, wood and the textures: by eye. The index of jade (jadeite): CRC Handbook.
+// One material per entry; "inside" is its medium, with lengths in metres. Sources: indices of glasses, water,
+// ice and diamond: spectra/refraction.cpp; plastics: Sultanova et al. 2009; drinks: from their sugar (ICUMSA)
+// and alcohol (CRC Handbook). Absorption of water: Pope and Fry 1997; ice: Warren and Brandt 2008; beer,
+// wine, juice, cola: Narasimhan et al. 2006; whisky: by eye. The rest, and the colours of metals (indices by
+// Palik et al.) and matte surfaces: physicallybased.info (CC0). Wax, jade, wood and the textures: by eye. The
+// index of jade (jadeite): CRC Handbook.
 constexpr const char* table = R"({
 "glass": {"type": "dielectric", "ior": 1.5},
 "window_glass": {"type": "dielectric", "inside": {"ior": 1.52, "absorption": [1.6, 0.5, 0.5]}},
@@ -91,7 +91,7 @@ constexpr const char* table = R"({
 "velvet": {"type": "openpbr", "base_color": [0.12, 0.02, 0.2], "specular_weight": 0, "fuzz_weight": 1, "fuzz_color": [0.6, 0.4, 0.8]}
 })";
 
-// Textures, with sizes in metres. Boards, slabs and ripples lie in the plane of x and z.
+// Textures, with sizes in metres. Boards, slabs and ripples lie in the xz plane.
 constexpr const char* texture_table = R"json({
 "drops": {"type": "formula", "size": 0.008, "formula": ["c = floor(p)", "n = c.x * 0.8192 + c.y * 0.6711 + c.z * 0.5497",
   "r = 0.12 + 0.3 * fract(7 * n)", "o = vec3(fract(n), fract(3 * n), fract(5 * n)) * (1 - 2 * r) + r",
@@ -123,7 +123,7 @@ const json& texture_presets() {
   return all;
 }
 
-/// The strings under the key "material" anywhere in a list of objects.
+/// Collects the strings under the key "material" anywhere in a list of objects.
 void find_material_names(const json& value, std::set<std::string>& names) {
   if (value.is_object())
     if (const auto found = value.find("material"); found != value.end() && found->is_string())
@@ -149,7 +149,8 @@ double unit_of(const json& document) {
   return unit != document.end() && unit->is_number() ? unit->get<double>() : default_unit;
 }
 
-/// The inside of a preset, its lengths in the scene's unit, with an index that the scene gives.
+/// A preset's inside with lengths in the scene's unit; the scene's own index, if given, replaces the
+/// preset's.
 json make_medium(json inside, double unit, json& own) {
   for (json& share : inside["absorption"]) share = share.get<double>() * unit;
   if (own.contains("ior")) inside.erase("abbe");
@@ -161,7 +162,7 @@ json make_medium(json inside, double unit, json& own) {
   return inside;
 }
 
-/// The preset of a list that `own` names under "preset"; throws where there is none.
+/// The preset in `list` that `own` names under "preset"; throws SceneError if there is none.
 const json& find_preset(const json& own, const json& list, const JsonContext& context,
                         const std::string& place) {
   const JsonValue asked(own["preset"], context, place + "/preset");
@@ -179,14 +180,14 @@ json without_preset(json own) {
   return own;
 }
 
-/// Calls visit(text) for each string of a value.
+/// Calls visit(text) for each string in a value.
 void each_text(const json& value, const auto& visit) {
   if (value.is_string()) visit(value.get_ref<const std::string&>());
   if (value.is_structured())
     for (const json& member : value) each_text(member, visit);
 }
 
-/// The textures of a document with presets written out, and those that materials use.
+/// The document's textures with their presets expanded, plus the textures that materials use.
 json texture_section(const json& named, const json& materials, double unit, const JsonContext& context) {
   json section = named;
   std::set<std::string> used;
@@ -217,7 +218,7 @@ json texture_section(const json& named, const json& materials, double unit, cons
 
 json preset_sections(const json& document, const JsonContext& context) {
   if (!document.is_object()) return json::object();
-  for (const char* key : {"materials", "media", "textures"})  // what else they are is refused as it stands
+  for (const char* key : {"materials", "media", "textures"})  // reading reports the error
     if (document.contains(key) && !document[key].is_object()) return json::object();
   const json &named = section(document, "materials"), &textures = section(document, "textures");
   const double unit = unit_of(document);

@@ -1,5 +1,5 @@
-// Divides the six faces evenly, projects their points, shared along edges, onto the unit sphere, and
-// alternates the diagonals.
+// Divides the six faces evenly, projects their points, which are shared along edges, onto the unit sphere,
+// and alternates the diagonals.
 #include "scene/procedural/cube_grid.h"
 
 #include <unordered_map>

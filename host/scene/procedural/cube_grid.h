@@ -11,8 +11,8 @@ struct CubeGrid {
   std::vector<glm::uvec3> triangles;
 };
 
-/// `cells` squares along each edge, each split in two: 12 cells^2 triangles, 6 cells^2 + 2 points. `stretch`
-/// scales the axes first, so that cells stay even on a block of these proportions.
+/// Makes `cells` squares along each edge, each split in two: 12 cells^2 triangles, 6 cells^2 + 2 points.
+/// `stretch` scales the axes first, so that cells stay even on a block of these proportions.
 CubeGrid make_cube_grid(int cells, const glm::dvec3& stretch);
 
 }  // namespace sundog::procedural

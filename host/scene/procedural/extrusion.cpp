@@ -1,4 +1,4 @@
-// Turns the outline counterclockwise, makes its walls, and triangulates its ends.
+// Orients the outline counterclockwise, makes its walls, and triangulates its ends.
 #include "scene/procedural/extrusion.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ Mesh make_sweep(const Sweep& sweep) {
     throw GenerateError("the curve's \"radius\" is more than the floor's depth or the wall's \"height\"");
   constexpr int facets = 96;
   const glm::dvec2 half = 0.5 * sweep.size;
-  const glm::dvec2 centre(sweep.radius, sweep.radius - half.y);  // of the curve, in y and z
+  const glm::dvec2 centre(sweep.radius, sweep.radius - half.y);  // the curve's, in y and z
   Mesh mesh;
   std::vector<glm::uvec3>& triangles = mesh.triangles.values();
   const auto add_row = [&](const glm::dvec2& at, const glm::dvec2& normal, double way) {

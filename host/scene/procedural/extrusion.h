@@ -1,4 +1,4 @@
-// A flat outline pulled up: letters, stars, plates, prisms; and a photographer's sweep.
+// Meshes from flat outlines that are pulled up: letters, stars, plates, prisms; and a photographer's sweep.
 #pragma once
 #include <vector>
 
@@ -8,25 +8,25 @@
 namespace sundog {
 
 struct Extrusion {
-  std::vector<procedural::ProfilePoint> outline;  // (x, -z): y is up on the page; closed by itself
+  std::vector<procedural::ProfilePoint> outline;  // (x, -z): y is up on the page; closes itself
   procedural::ProfileCurve curve = procedural::ProfileCurve::lines;
   double height = 1;  // from y = 0, above 0
-  int facets = 64;    // of a full turn of the outline, 3..4096
+  int facets = 64;    // per full turn of the outline, 3..4096
 };
 
-/// A closed solid with the outline's exact normals on its sides and flat ends. Throws GenerateError for an
+/// A closed solid with flat ends and, on its sides, the outline's exact normals. Throws GenerateError for an
 /// outline that crosses itself.
 Mesh make_extrusion(const Extrusion& extrusion);
 
-/// A floor that curves up to a wall behind, so that no horizon shows.
+/// A floor that curves up into a wall behind, so that no horizon shows.
 struct Sweep {
-  glm::dvec2 size{8, 6};  // of the floor along x and z, the curve included; its middle is at the origin
-  double height = 4;      // of the wall
-  double radius = 1.5;    // of the curve
+  glm::dvec2 size{8, 6};  // floor along x and z, including the curve; centred at the origin
+  double height = 4;      // height of the wall
+  double radius = 1.5;    // radius of the curve
 };
 
-/// A sheet with exact normals, towards the floor's upper side; u along x and v up the sheet, in scene units.
-/// Throws GenerateError for a radius above the height or the depth.
+/// A sheet with exact normals towards the floor's upper side; u along x and v up the sheet, in scene units.
+/// Throws GenerateError if the radius exceeds the height or the depth.
 Mesh make_sweep(const Sweep& sweep);
 
 }  // namespace sundog

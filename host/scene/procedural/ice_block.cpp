@@ -1,5 +1,5 @@
-// Takes both surfaces from soft_solid.h over one grid of cube_grid.h; the liquid ends within the wall and is
-// cut flat at its level.
+// Takes both surfaces from soft_solid.h over one grid from cube_grid.h; the liquid ends within the wall and
+// is cut flat at its level.
 #include "scene/procedural/ice_block.h"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ void add_smooth_normals(Mesh& mesh) {
   for (const dvec3& sum : sums) mesh.normals.emplace_back(length(sum) > 0 ? normalized(sum) : dvec3{0, 1, 0});
 }
 
-// Moves points above the plane down to it, towards `pole`, which sees the body's whole surface.
+// Moves points above the plane down to it, towards `pole`, from which the body's whole surface is visible.
 void cut_at_level(std::vector<dvec3>& points, double level, const dvec3& pole) {
   for (dvec3& p : points) {
     if (p.y <= level) continue;

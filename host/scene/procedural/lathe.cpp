@@ -1,5 +1,5 @@
-// Follows the profile in steps for meshes and in cubics for exact lathes; a liquid's profile runs within the
-// wall, nearer to the inside where the wall bends.
+// Follows the profile in steps for meshes and in cubics for exact lathes. A liquid's profile runs within the
+// wall, nearer to its inside where the wall bends.
 #include "scene/procedural/lathe.h"
 
 #include <fmt/format.h>
@@ -22,10 +22,10 @@ bool is_closed(const Profile& profile) {
   return (first.x == 0 && last.x == 0) || first == last;
 }
 
-/// Steps along the profile may turn twice as far as those around the axis.
+/// The profile's steps may turn by twice the angle of the segments around the axis.
 struct DirectedProfile {
   Profile steps;
-  bool reversed = false;  // for the solid to be on its left
+  bool reversed = false;  // so that the solid is on its left
 };
 DirectedProfile profile_of(const Lathe& lathe) {
   Profile profile = procedural::follow(lathe.profile, lathe.curve,
@@ -102,12 +102,12 @@ double distance_to(const ProfileStep& step, const dvec2& p) {
   return glm::length(p - step.a - share * along);
 }
 
-/// Where a line that begins below a height reaches it.
+/// The point where a line that begins below a height reaches it.
 dvec2 at_height(const dvec2& low, const dvec2& high, double height) {
   return {low.x + (high.x - low.x) * ((height - low.y) / (high.y - low.y)), height};
 }
 
-/// The inside of a vessel from its floor on the axis to its rim; `outside`: the rest of the profile.
+/// A vessel's inside from its floor on the axis to its rim; `outside`: the rest of the profile.
 struct Vessel {
   std::vector<ProfileStep> inside, outside;
 };
@@ -120,7 +120,7 @@ Vessel vessel_of(const Profile& profile) {
   return {procedural::reversed(Profile(rim + 1, profile.end())), Profile(profile.begin(), rim + 1)};
 }
 
-/// The part of a vessel's inside that is below a height.
+/// The part of a vessel's inside below a height.
 Profile below(const Profile& inside, double height) {
   Profile wall;
   for (const ProfileStep& step : inside) {
@@ -132,7 +132,7 @@ Profile below(const Profile& inside, double height) {
   return wall;
 }
 
-/// Continues a curve straight to a point.
+/// Continues a curve in a straight line to a point.
 void go_to(const dvec2& p, Profile& to) {
   const dvec2 at = to.back().b;
   if (p == at) return;
@@ -140,7 +140,7 @@ void go_to(const dvec2& p, Profile& to) {
   to.push_back({at, p, normal, normal});
 }
 
-/// The wall from the axis to the height `top`, moved into the glass on its right.
+/// The wall from the axis up to `top`, moved by `depth` into the glass on its right.
 Profile moved_right(const Profile& wall, double depth, double top) {
   const dvec2 start{0, wall.front().a.y - depth};
   Profile body{{start, start, {0, -1}, {0, -1}}};
@@ -166,8 +166,8 @@ Profile moved_right(const Profile& wall, double depth, double top) {
 
 double meniscus_width(double radius, double meniscus) { return std::min(radius, 3 * meniscus); }
 
-/// The liquid's surface from within the wall to the axis. The meniscus falls from the wall by a cubic, whose
-/// slope is 1 there and 0 where it ends.
+/// Adds the liquid's top from within the wall to the axis. The meniscus is a cubic with slope 1 at the wall
+/// (more in a narrow vessel) and 0 where it ends.
 void add_surface(double radius, double level, double meniscus, Profile& body) {
   constexpr int steps = 24;
   const double width = meniscus_width(radius, meniscus);
@@ -183,10 +183,10 @@ void add_surface(double radius, double level, double meniscus, Profile& body) {
   go_to({0, level}, body);
 }
 
-/// A liquid's profile: along the wall to its surface, and all of it, with the surface.
+/// A liquid's profile: `wall` follows the wall up to the liquid's top; `body` also includes the top.
 struct LiquidProfile {
   Profile wall, body;
-  double radius;  // of the vessel's inside at the liquid's top
+  double radius;  // radius of the vessel's inside at the liquid's top
 };
 LiquidProfile liquid_profile(const Lathe& lathe, double level, double meniscus) {
   const auto [inside, outside] = vessel_of(profile_of(lathe).steps);
@@ -201,7 +201,7 @@ LiquidProfile liquid_profile(const Lathe& lathe, double level, double meniscus) 
   double thickness = INFINITY;
   for (const ProfileStep& step : wall)
     for (const ProfileStep& other : outside) thickness = std::min(thickness, distance_to(other, step.b));
-  // Where the wall bends within its thickness, the liquid's end has to keep nearer to it.
+  // Where the wall bends sharply, the liquid must extend less far into it.
   for (double depth = thickness / 2;; depth /= 2) {
     LiquidProfile made{moved_right(wall, depth, top), {}, radius};
     made.body = made.wall;
@@ -213,7 +213,7 @@ LiquidProfile liquid_profile(const Lathe& lathe, double level, double meniscus) 
 
 ProfileCubic straight(const dvec2& a, const dvec2& b) { return {a, a + (b - a) / 3.0, b - (b - a) / 3.0, b}; }
 
-/// Puts the middle height at 0.
+/// Shifts the profile so that its middle height is 0.
 ExactLathe centred(std::vector<ProfileCubic> profile, bool closed) {
   double low = INFINITY, high = -INFINITY, radius = 0;
   for (const ProfileCubic& cubic : profile)

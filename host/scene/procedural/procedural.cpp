@@ -24,7 +24,7 @@ IceSurface read_surface(JsonObject& object, IceSurface surface) {
 }
 
 IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
-  // By default the cavity is like the outside, at 0.6 of its size.
+  // By default, the cavity is like the outside at 0.6 of its size.
   IceSurface cavity = outer;
   cavity.size *= 0.6;
   cavity = read_surface(object, cavity);
@@ -32,7 +32,7 @@ IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
   return cavity;
 }
 
-/// The block of a recipe, except "level" and "wall".
+/// Reads a recipe's block, except "level" and "wall".
 IceBlock read_block(JsonObject& object) {
   IceBlock block;
   object.read("seed", block.seed, "subdivision", block.subdivision);
@@ -88,7 +88,7 @@ Sweep read_sweep(JsonObject& object) {
   return sweep;
 }
 
-/// A picture's levels as its file has them: those of 8 and 16 bits say nothing of light.
+/// A picture's levels as stored in its file: heights are not light, so images for screens are not linearised.
 Image levels_of(const JsonValue& file, const ReadPicture& read_picture) {
   Image picture = read_picture(file);
   if (is_for_screens(file.text()))
@@ -96,7 +96,7 @@ Image levels_of(const JsonValue& file, const ReadPicture& read_picture) {
   return picture;
 }
 
-/// A formula of p that is a number.
+/// Reads a formula of p that yields a number.
 LoweredPattern read_heights(JsonObject& object) {
   try {
     LoweredPattern formula = lower_pattern({read_text(object, "formula"), {}});
@@ -148,7 +148,7 @@ Mesh read_fill(JsonObject& object, const JsonValue& meshes, bool checks) {
   return make_ice_liquid(block, to.number());
 }
 
-/// A lathe's recipe, or of what fills one.
+/// The exact solid of a lathe's recipe, or of a recipe that fills a lathe.
 ExactLathe follow_exactly(const JsonValue& recipe, const JsonValue& meshes) {
   if (recipe.type() == "lathe") return exact_lathe(recipe.object("generate_lathe", read_lathe));
   return recipe.object("generate_fill", [&](JsonObject& object) {
@@ -167,7 +167,7 @@ Mesh made(const Shape& shape, Mesh (*make)(const Shape&), bool checks) {
   return checks ? Mesh() : make(shape);
 }
 
-/// Without `read_picture` the recipe is only checked.
+/// Generates the mesh; without `read_picture`, only checks the recipe.
 Mesh follow(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture& read_picture) {
   const bool checks = !read_picture;
   const std::string type = recipe.type();

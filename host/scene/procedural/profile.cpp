@@ -1,4 +1,4 @@
-// Fits arcs or splines to the points, and draws them with one of two pens: in short steps or in cubics.
+// Fits arcs or splines to the points, and draws them with one of two pens: as short steps or as cubics.
 #include "scene/procedural/profile.h"
 
 #include <fmt/format.h>
@@ -20,14 +20,14 @@ double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 dvec2 right_of(const dvec2& direction) { return glm::normalize(dvec2(direction.y, -direction.x)); }
 std::string shown(const dvec2& p) { return fmt::format("[{:.6g}, {:.6g}]", p.x, p.y); }
 
-/// A cubic between two points by its ends and their tangents (Hermite).
+/// A cubic between two points, given by its ends and their tangents (Hermite).
 struct Cubic {
   dvec2 p, q, u, v;
   dvec2 at(double t) const {
     const double s = 1 - t;
     return p * (s * s * (1 + 2 * t)) + u * (s * s * t) + q * (t * t * (1 + 2 * s)) - v * (t * t * s);
   }
-  /// To the right of its direction; at a cusp, which has none, of its chord's.
+  /// The normal to the right of the curve's direction; at a cusp, to the right of the chord.
   dvec2 normal(double t) const {
     const double s = 1 - t;
     const dvec2 slope = (q - p) * (6 * t * s) + u * (s * (1 - 3 * t)) + v * (t * (3 * t - 2));
@@ -40,12 +40,12 @@ class Pen {
  public:
   virtual ~Pen() = default;
   virtual void line(const dvec2& a, const dvec2& b) = 0;
-  /// The arc about `center` between two unit normals; `radius`: below 0 if they point to the centre.
+  /// Draws the arc about `center` between two unit normals; `radius` is negative if they point to the centre.
   virtual void arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till) = 0;
   virtual void cubic(const Cubic& cubic) = 0;
 };
 
-/// Halves the arc until its parts turn little.
+/// Halves the arc until each part turns little enough.
 void add_arc(const dvec2& center, double radius, const dvec2& from, const dvec2& till, double cos_turn,
              Profile& to) {
   if (dot(from, till) >= cos_turn) {
@@ -58,8 +58,8 @@ void add_arc(const dvec2& center, double radius, const dvec2& from, const dvec2&
 }
 
 struct Corner {
-  double cut = 0;     // of the lines on both sides
-  double radius = 0;  // of the arc; 0: sharp
+  double cut = 0;     // length cut off the lines on both sides
+  double radius = 0;  // radius of the arc; 0: sharp
 };
 
 Corner corner_at(const ProfilePoint& point, const dvec2& before, const dvec2& after) {
@@ -115,7 +115,7 @@ void add_cubic(const Cubic& cubic, double from, double till, int depth, double c
 
 dvec2 mirrored(const dvec2& p) { return {-p.x, p.y}; }
 
-/// The smooth curve through the points between two corners; `before` and `after` shape its ends.
+/// Draws the smooth curve through the points between two corners; `before` and `after` shape its ends.
 void follow_run(std::span<const dvec2> run, const dvec2& before, const dvec2& after, Pen& pen) {
   const std::size_t last = run.size() - 1;
   const auto point = [&](std::size_t i) { return i == 0 ? before : i > run.size() ? after : run[i - 1]; };
@@ -153,7 +153,7 @@ void follow_spline(std::span<const dvec2> points, Pen& pen) {
   }
 }
 
-/// Draws in steps that turn by at most an angle.
+/// Draws a curve in steps that turn by at most an angle.
 class StepPen final : public Pen {
  public:
   explicit StepPen(double cos_turn) : cos_turn_(cos_turn) {}
@@ -172,7 +172,7 @@ class StepPen final : public Pen {
   double cos_turn_;
 };
 
-/// Draws in cubics.
+/// Draws a curve in cubics.
 class CubicPen final : public Pen {
  public:
   void line(const dvec2& a, const dvec2& b) override {
@@ -225,7 +225,7 @@ void draw(std::span<const ProfilePoint> points, ProfileCurve curve, Pen& pen) {
 }  // namespace
 
 dvec2 turn_by(double share) {
-  // Within an eighth of a turn of a quarter's axis the series have no digits to lose.
+  // Within an eighth of a turn of the nearest axis, the series lose no digits.
   const double quarters = std::floor(share * 4 + 0.5),
                x = (share - quarters / 4) * 2 * 3.14159265358979323846;
   double sine = 0, cosine = 0, power = 1;

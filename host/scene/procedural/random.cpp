@@ -1,4 +1,4 @@
-// Hashes with SplitMix64, interpolates gradients of a lattice (Perlin 2002), and has its own length(), as
+// Hashes with SplitMix64 and interpolates gradients of a lattice (Perlin 2002). Has its own length(), because
 // glm's instructions may differ between builds.
 #include "scene/procedural/random.h"
 
@@ -21,7 +21,7 @@ double mix(double a, double b, double t) { return a + (b - a) * t; }
 
 double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// The gradient of a lattice point, in the cube [-1, 1]^3.
+// The gradient at a lattice point, in the cube [-1, 1]^3.
 glm::dvec3 lattice_slope(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t z) {
   std::uint64_t h = scrambled(seed + static_cast<std::uint64_t>(x));
   h = scrambled(h + static_cast<std::uint64_t>(y));
@@ -45,7 +45,8 @@ glm::dvec3 normalized(const glm::dvec3& v) {
 }
 
 glm::dvec3 Sequence::direction() {
-  // Rejection sampling in the cube: trigonometric functions differ in the last bits between C libraries.
+  // Rejection sampling in the cube, because trigonometric functions differ in the last bits between C
+  // libraries.
   for (;;) {
     const double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
     const double squared = x * x + y * y + z * z;

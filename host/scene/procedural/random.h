@@ -1,4 +1,5 @@
-// Seeded numbers and smooth noise from integer hashes and + - * / sqrt only: the same bits on every machine.
+// Seeded numbers and smooth noise from integer hashes and + - * / sqrt only, so that bits are the same on
+// every machine.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,13 +9,13 @@ namespace sundog::procedural {
 /// A number in [0, 1) for (seed, index); neighbouring indices are unrelated.
 double uniform(std::uint64_t seed, std::uint64_t index);
 
-/// Successive numbers of one seed.
+/// Successive numbers from one seed.
 class Sequence {
  public:
   explicit Sequence(std::uint64_t seed) : seed_(seed) {}
   double next() { return uniform(seed_, index_++); }
   double between(double lower, double upper) { return lower + (upper - lower) * next(); }
-  /// Uniform over the unit sphere.
+  /// A direction uniform over the unit sphere.
   glm::dvec3 direction();
 
  private:

@@ -1,5 +1,5 @@
-// Lists triangles that are flat enough with their cumulative areas, draws a place in each equal share of the
-// area, then turn, scale and choice.
+// Lists sufficiently flat triangles with their cumulative areas; draws a place in each equal share of the
+// area, then its turn, size and object.
 #include "scene/procedural/scatter.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-/// A triangle by a corner and two edges, and the area of those before it and of itself.
+/// A triangle as a corner and two edges, and the total area up to and including it.
 struct Part {
   dvec3 corner, u, v, normal;
   double end = 0;

@@ -1,4 +1,4 @@
-// Cuts a box by planes and balls, joins their inverse distances along a direction by a p-norm, and adds
+// Cuts a box with planes and balls, combines their inverse distances along a direction by a p-norm, and adds
 // ripples of noise.
 #include "scene/procedural/soft_solid.h"
 
@@ -15,7 +15,7 @@ using glm::dvec3;
 
 double dot(const dvec3& a, const dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Adds the six sides, each slightly tilted and moved in by up to a twelfth.
+// Adds the six sides, each slightly tilted and moved inwards by up to a twelfth.
 void add_sides(SoftSolid& solid, const dvec3& half, double tilt, Sequence& random) {
   for (int axis = 0; axis < 3; axis++) {
     for (const double side : {-1.0, 1.0}) {
@@ -26,12 +26,12 @@ void add_sides(SoftSolid& solid, const dvec3& half, double tilt, Sequence& rando
   }
 }
 
-// Support of the box in a direction.
+// The support function of the box in a direction.
 double box_reach(const dvec3& half, const dvec3& direction) {
   return std::abs(direction.x) * half.x + std::abs(direction.y) * half.y + std::abs(direction.z) * half.z;
 }
 
-// Cuts off edges and corners: a plane along an axis would only shrink the block.
+// Cuts off edges and corners; skips planes along an axis, which would only shrink the block.
 void add_chips(SoftSolid& solid, const dvec3& half, int count, Sequence& random) {
   for (int made = 0; made < count;) {
     const dvec3 normal = random.direction();
@@ -44,14 +44,14 @@ void add_chips(SoftSolid& solid, const dvec3& half, int count, Sequence& random)
   }
 }
 
-// The inverse distance of the nearest plane along a direction.
+// The distance to the nearest plane along a direction.
 double innermost(const SoftSolid& solid, const dvec3& direction) {
   double inverse = 0;
   for (const Cut& cut : solid.cuts) inverse = std::max(inverse, dot(cut.normal, direction) / cut.distance);
   return 1 / inverse;
 }
 
-// Balls outside the block that dip into it by a few hundredths, as where two cubes broke apart.
+// Adds balls outside the block that dip into it by a few hundredths, as if two cubes had broken apart there.
 void add_dents(SoftSolid& solid, int count, Sequence& random) {
   for (int i = 0; i < count; i++) {
     const dvec3 direction = random.direction();
@@ -62,7 +62,7 @@ void add_dents(SoftSolid& solid, int count, Sequence& random) {
   }
 }
 
-// Distance along a unit direction to the near side of the ball; 0 if missed.
+// The distance along a unit direction to the near side of the ball; 0 if it is missed.
 double scoop_distance(const Scoop& scoop, const dvec3& direction) {
   const double along = dot(scoop.center, direction);
   const double under = along * along - dot(scoop.center, scoop.center) + scoop.radius * scoop.radius;

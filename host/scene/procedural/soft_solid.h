@@ -1,4 +1,4 @@
-// A softened star-shaped solid: the distance of its surface from the origin in each direction.
+// A softened star-shaped solid, as the distance from the origin to its surface in each direction.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace sundog::procedural {
 
-/// Keeps points with dot(normal, p) <= distance; distance > 0.
+/// A plane that keeps the points with dot(normal, p) <= distance; distance > 0.
 struct Cut {
   glm::dvec3 normal;
   double distance;
 };
 
-/// A ball that is removed; it must not contain the origin.
+/// A ball to be removed; it must not contain the origin.
 struct Scoop {
   glm::dvec3 center;
   double radius;
@@ -27,14 +27,14 @@ struct SoftSolid {
   std::vector<Scoop> scoops;
   int doublings = 5;
   double roughness = 0;
-  double feature_size = 1;  // of the ripples
+  double feature_size = 1;  // size of the ripples
   std::uint64_t seed = 0;
 };
 
-/// Throws GenerateError if the origin is not well inside.
+/// Makes the solid of a surface. Throws GenerateError if the origin is not well inside.
 SoftSolid make_soft_solid(const IceSurface& surface, std::uint64_t seed);
 
-/// Distance from the origin to the surface along the unit vector `direction`; > 0.
+/// The distance from the origin to the surface along the unit vector `direction`; > 0.
 double surface_distance(const SoftSolid& solid, const glm::dvec3& direction);
 
 }  // namespace sundog::procedural

@@ -1,5 +1,5 @@
-// Sums octaves of turned noise, or reads the picture or formula, row by row in parallel; normals come from
-// neighbouring heights.
+// Sums octaves of rotated noise, or reads the picture or formula, row by row in parallel; computes normals
+// from neighbouring heights.
 #include "scene/procedural/terrain.h"
 
 #include <tbb/parallel_for.h>
@@ -32,7 +32,7 @@ double height_at(const Terrain& terrain, const dvec2& p) {
     const double noise = procedural::gradient_noise(terrain.seed + static_cast<std::uint64_t>(octave), at);
     const double ridge = 1 - 3 * std::abs(noise), hill = noise;
     if (octave == 0) {
-      // The hills stand in a plain; ridges rise where they are high.
+      // The hills stand in a plain; ridges rise where the hills are high.
       sum = hill + terrain.ridges * (smooth(-0.25, 0.6, hill) - hill);
       weight = 1 + terrain.ridges * (smooth(-0.2, 0.35, hill) - 1);
     } else {
@@ -41,13 +41,13 @@ double height_at(const Terrain& terrain, const dvec2& p) {
       weight *= 1 + terrain.ridges * (std::clamp(0.55 + 0.45 * ridge, 0.0, 1.0) - 1);
     }
     share *= 0.5;
-    // Turned by 3/5 and 4/5, so that lattices of octaves do not lie on each other.
+    // Rotated by the angle with cosine 4/5 and sine 3/5, so that the octaves' lattices do not coincide.
     at = {2 * (0.8 * at.x - 0.6 * at.z) + 17, 0.5, 2 * (0.6 * at.x + 0.8 * at.z) + 31};
   }
   return sum;
 }
 
-/// The picture at (u, v) in [0, 1], v from its top: bilinear between the middles of pixels.
+/// The picture at (u, v) in [0, 1], v from its top, interpolated bilinearly between the pixels' centres.
 double value_at(const Image& picture, double u, double v) {
   const auto at = [](double share, int count) { return std::clamp(share * count - 0.5, 0.0, count - 1.0); };
   const double x = at(u, picture.width), y = at(v, picture.height);
@@ -61,7 +61,7 @@ double value_at(const Image& picture, double u, double v) {
                   y - top);
 }
 
-/// The heights of a row of places with the same z.
+/// Computes the heights of a row of places with equal z.
 void follow_formula(const LoweredPattern& formula, std::span<const dvec2> places, double* heights) {
   GraphProgram program(formula.graph, formula.values);
   for (const dvec2& place : places) {
@@ -75,7 +75,7 @@ void follow_formula(const LoweredPattern& formula, std::span<const dvec2> places
   }
 }
 
-/// From 0 to the terrain's height.
+/// Rescales the heights to 0 .. the terrain's height.
 void even_out(const Terrain& terrain, std::vector<double>& heights) {
   const auto [low, high] = std::ranges::minmax(heights);
   for (double& h : heights) h = high > low ? (h - low) * (terrain.height / (high - low)) : 0;

@@ -35,7 +35,7 @@ std::string read_text(JsonObject& object, std::string_view key) {
 
 namespace {
 
-/// A parameter's value: a number, or an array of its components.
+/// Reads a parameter's value: a number, or an array of its components.
 std::vector<double> read_components(const JsonValue& value, std::size_t size, const Range& range) {
   if (size == 1) return {value.number(range)};
   const auto items = value.items(fmt::format("{} numbers", size));
@@ -50,7 +50,7 @@ void require_whole(const JsonValue& value, const std::vector<double>& values) {
     if (v != std::floor(v)) value.wanted("a whole number");
 }
 
-/// Sets the parameters of a built-in formula.
+/// Sets a built-in formula's parameters.
 void read_arguments(JsonObject& object, FormulaDefinition& d) {
   const auto given = object.find("parameters");
   if (!given) return;
@@ -75,7 +75,7 @@ std::size_t component_count(const JsonValue& value) {
   return value.json().is_array() ? value.items("numbers").size() : 1;
 }
 
-/// A parameter declared by a user's formula: its value, or {value, min, max, whole}.
+/// Reads a parameter that a user's formula declares: its value, or {value, min, max, whole}.
 FormulaParameter read_declaration(const std::string& name, const JsonValue& value) {
   FormulaParameter p;
   p.name = name;
@@ -101,7 +101,7 @@ FormulaParameter read_declaration(const std::string& name, const JsonValue& valu
   return p;
 }
 
-/// Whether the texts, of which the first that errs is left to the parser, read `t` before they set it.
+/// Whether the texts read `t` before setting it. The parser reports the first text with an error.
 bool reads_clock(std::span<const std::string> texts) {
   try {
     for (const std::string& text : texts) {
@@ -162,8 +162,8 @@ FormulaDefinition read_listed(JsonObject& object) {
   return d;
 }
 
-/// Whether a map with the running derivative takes the radial one, as built-in powers do: it must not fold.
-/// Without a triplex power both are equal.
+/// Whether a map with the running derivative should use the radial one, as built-in powers do. It must not
+/// fold; without a triplex power both derivatives are equal.
 bool suits_radial(const FormulaDefinition& d, const LoweredFormula& lowered) {
   return d.derivative == FormulaDerivative::automatic && d.kind == FormulaKind::escape &&
          d.estimate == EscapeEstimate::logarithmic && !lowered.jacobian && !lowered.folds;
@@ -188,8 +188,8 @@ FormulaLeaf read_leaf(JsonObject& object, const FormulaDefinition& d) {
   return leaf;
 }
 
-/// A sequence that contains a power escapes like the power: by its estimate and, to avoid overflow of
-/// escaping orbits, with its bailout.
+/// A sequence that contains a power escapes like the power, so it gets the power's estimate and, lest
+/// escaping orbits overflow, its bailout.
 double bailout_of(std::vector<FormulaStep>& steps) {
   FormulaDefinition& last = steps.back().definition;
   double bailout = last.bailout;

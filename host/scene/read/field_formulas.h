@@ -12,17 +12,17 @@
 
 namespace sundog {
 
-/// Throws a SceneError for a formula's error, at its key if it has one.
+/// Throws a formula's error as SceneError, at the error's key if the formula has it.
 [[noreturn]] void fail_formula(const JsonValue& value, const FormulaError& error);
 
 /// Reads formula text: a string or an array of lines.
 std::string read_text(JsonObject& object, std::string_view key);
 
-/// Reads the "parameters" that a user's formula declares, and adds the clock `t` where one of its texts reads
-/// that name without setting it. Throws SceneError.
+/// Reads the "parameters" that a user's formula declares, and adds the clock `t` if a text reads it before
+/// setting it. Throws SceneError.
 std::vector<FormulaParameter> read_declarations(JsonObject& object, std::span<const std::string> texts);
 
-/// A formula and its default interval: lower, upper.
+/// A formula and its default interval: lower corner, upper corner.
 struct FormulaLeaf {
   FormulaField field;
   std::array<double, 6> bounds;

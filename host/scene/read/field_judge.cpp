@@ -1,5 +1,5 @@
-// Surveys each formula where its part of the field lies; sets the safety that it needs, or warns if the scene
-// gives one.
+// Surveys each formula in its part of the field; sets the safety that it needs, or warns if the scene sets
+// another.
 #include "scene/read/field_judge.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ constexpr int most_iterations = 64;  // unless a scene asks for more
 
 std::string text_of(const dvec3& p) { return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", p.x, p.y, p.z); }
 
-/// Rounds down to three digits, so that last bits do not differ between machines.
+/// Rounds down to three digits, so that differences in the last bits between machines vanish.
 double rounded_down(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
   return std::floor(x / unit + 1e-9) * unit;
@@ -43,7 +43,8 @@ class FormulaJudge {
     const auto& json = value_.json();
     bool is_changed = is_own_ || json.contains("parameters");
     for (const char* key : {"steps", "iterations", "bailout"}) is_changed |= escapes && json.contains(key);
-    // The derivative of a power is a bound; the distance to a set that only scales needs the set's size.
+    // A power's derivative bounds the distance; for a set that only scales, the distance also depends on its
+    // size.
     const auto scale = is_changed && escapes ? FormulaEvaluator(field_).scale() : std::nullopt;
     const bool closely = is_changed && (!escapes || scale);
     size_ = glm::length(upper - lower);
@@ -58,8 +59,8 @@ class FormulaJudge {
   }
 
  private:
-  /// The solid of a linear estimate is thicker than the set by bailout / scale^iterations: by default, by no
-  /// more than a thousandth of the interval.
+  /// With a linear estimate, the solid is thicker than the set by bailout / scale^iterations; by default, at
+  /// most by a thousandth of the interval's diagonal.
   void judge_iterations(double scale) {
     const double wanted = std::ceil(std::log(1000 * field_.bailout / size_) / std::log(scale));
     const double thicker = field_.bailout / std::pow(scale, field_.iterations);
@@ -75,7 +76,7 @@ class FormulaJudge {
 
   std::string of_points() const { return fmt::format("of {} points of its interval", found_.points); }
 
-  /// The formula, or a hybrid's last.
+  /// The formula's JSON, or that of a hybrid's last step.
   JsonValue last_value() const {
     if (!value_.json().contains("steps")) return value_;
     return value_.member("steps", "").items("")[field_.steps.size() - 1];
@@ -125,7 +126,7 @@ class FormulaJudge {
     }
   }
 
-  /// For a map that scales, r log r / (2 dr) is longer than the distance, so that steps must be short.
+  /// Warns of a map that scales: there, r log r / (2 dr) exceeds the distance, so that steps must be short.
   void judge_estimate() {
     const JsonValue last = last_value();
     if (last_.estimate == EscapeEstimate::logarithmic && last.json().contains("map") &&
@@ -148,7 +149,7 @@ class FormulaJudge {
     const double reached = found_.reach.value * field_.safety;
     if (found_.reach.value < 0.98 && safety > reached)
       safety = 0.75 * reached;  // worse points lie between those found
-    return last_.kind == FormulaKind::escape ? std::max(safety, 0.1) : safety;  // a tear costs no more
+    return last_.kind == FormulaKind::escape ? std::max(safety, 0.1) : safety;  // tears lower it no further
   }
 
   std::string reason() const {
@@ -200,7 +201,7 @@ class FormulaJudge {
   FormulaSurvey found_;
 };
 
-/// The box in the child's space that contains a box in the transformed field's.
+/// Replaces a box of the transformed field by the box around it in the child's space.
 void into_child(const SdfNode& node, dvec3& lower, dvec3& upper) {
   dvec3 low(1e30), high(-1e30);
   for (int corner = 0; corner < 8; ++corner) {
@@ -214,7 +215,7 @@ void into_child(const SdfNode& node, dvec3& lower, dvec3& upper) {
   upper = high;
 }
 
-/// A repeated field is sampled in its own cell and half of the next.
+/// Limits the box to a repeated field's own cell and half of the next.
 void into_cell(const SdfNode& node, dvec3& lower, dvec3& upper) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(node.period[axis] > 0)) continue;

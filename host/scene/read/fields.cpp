@@ -1,5 +1,5 @@
-// Reads the tree first, solids by their formulas, then the interval, thresholds and colours; last, judges the
-// formulas.
+// Reads the tree first, with solids as formulas, then the interval, thresholds and colours; finally judges
+// the formulas.
 #include "scene/read/fields.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace sundog {
 namespace {
 
-/// The uniform scale of `matrix`; nothing if it mirrors or scales unevenly.
+/// The scale factor of `matrix`; nothing if it mirrors or scales unevenly.
 std::optional<double> scale_of(const glm::dmat3& matrix) {
   const double scale = glm::length(matrix[0]);
   const glm::dmat3 square = glm::transpose(matrix) * matrix;
@@ -204,7 +204,7 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   } catch (const FormulaError& error) {
     fail_formula(root, error);
   }
-  if (!has_limit)  // shorter steps need more of them
+  if (!has_limit)  // shorter steps are more steps
     field.step_limit = static_cast<int>(std::clamp(128 / least_safety(field.root), 512.0, 8192.0));
 }
 

@@ -1,4 +1,4 @@
-// Measures the depth of the middle of the named object's box.
+// Measures the depth of the middle of the named objects' bounding box.
 #include "scene/read/focus.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Keeps the things that a frame asked for, and drops the others at its end.
+// Keeps everything that a frame requested, and drops the rest at the frame's end.
 #include "scene/read/frame_cache.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 namespace sundog {
 namespace {
 
-/// The entry of that name, which `make` fills.
+/// The map's entry of this name; if missing, filled by `make`.
 template <class Map, class Make>
 const auto& kept(Map& map, const std::string& name, const Make& make) {
   const auto [found, added] = map.try_emplace(name);

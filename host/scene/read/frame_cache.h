@@ -1,4 +1,4 @@
-// Keeps files and generated meshes between frames of an animation, so that they are read and made once.
+// Keeps files and generated meshes between frames of an animation, so that they are read and generated once.
 #pragma once
 #include <functional>
 #include <map>
@@ -10,20 +10,20 @@
 
 namespace sundog {
 
-/// A thing of one frame is found again in the next; what a frame has not asked for is dropped behind it.
+/// Keeps the results of one frame for the next, and drops those that a frame did not request.
 class FrameCache {
  public:
-  /// The model, or the generated mesh, that `content` says all about; `place` wants it. While frames are
-  /// checked alone, another model of that place stands for one that would have to be read.
+  /// The model or generated mesh that `content` identifies, for the object at `place`; calls `read` if it is
+  /// not kept. While frames are only checked, the place's last model replaces one that would have to be read.
   Model model(const std::string& content, const std::string& place, const std::function<Model()>& read);
   Image picture(const std::string& file, const std::function<Image()>& read);
-  /// Decodes the image, or takes what came of the same bytes for the same use.
+  /// Decodes the image with `read`, or copies the result of equal bytes with the same use.
   void decode(ImageDescription& image, const std::function<void(ImageDescription&)>& read);
 
-  /// From now on frames are read in full, or only checked.
+  /// Whether frames are only checked from now on, or read in full.
   void check(bool only) { checks_ = only; }
   bool checks() const { return checks_; }
-  /// Drops what was not asked for since the last call.
+  /// Drops everything not requested since the last call.
   void end_frame();
 
  private:
@@ -35,12 +35,12 @@ class FrameCache {
   std::map<std::string, Kept<Model>> models_;
   std::map<std::string, Kept<Image>> pictures_;
   std::map<std::string, Kept<ImageDescription>> images_;
-  std::map<std::string, std::shared_ptr<const Model>> at_;  // the last model of each place
+  std::map<std::string, std::shared_ptr<const Model>> at_;  // each place's last model
   bool checks_ = false;
-  std::mutex mutex_;  // of images_: several are decoded at once
+  std::mutex mutex_;  // guards images_, because several are decoded at once
 };
 
-/// Copies hold the same vertices.
+/// Moves the mesh's arrays into shared storage, so that its copies share them.
 void share_vertices(Mesh& mesh);
 
 }  // namespace sundog

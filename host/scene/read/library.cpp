@@ -30,7 +30,7 @@ void shift_textures(MaterialDescription& material, int by) {
   shift(material.displaced_by, by);
 }
 
-/// Equal for all paths to a file.
+/// A key that is equal for all paths to the same file.
 std::string file_key(const fs::path& file) {
   std::error_code ignored;
   const fs::path canonical = fs::weakly_canonical(file, ignored);

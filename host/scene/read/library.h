@@ -15,35 +15,35 @@ namespace sundog {
 
 class FrameCache;
 
-/// Where an object stands: what it takes from its groups and from itself.
+/// An object's placement, combined from its groups' and its own.
 struct Placement {
   dmat4 world_from_object{1};
   int material = -1;  // -1: the model's own
   std::string name, place;
   dvec3 moves_by{0};
   std::vector<TurnDescription> turns;
-  bool turns_about_middle = false;  // the last turn, its own, is about its middle
+  bool turns_about_middle = false;  // the last turn, the object's own, is about its middle
 };
 
 class ModelLibrary {
  public:
-  /// Adds to `scene`, which must outlive the library.
-  /// At that time of the scene; without one, models stand as they are written.
+  /// Adds to `scene`, which must outlive the library. Poses animated models at the time `seconds`; without
+  /// it, they stand as written.
   explicit ModelLibrary(SceneDescription& scene, FrameCache* cache = nullptr,
                         std::optional<double> seconds = std::nullopt)
       : scene_(scene), cache_(cache), seconds_(seconds) {}
 
-  /// A model in the scene's tables: objects with the scene's indices, in model space.
+  /// A model in the scene's tables: objects in model space with the scene's indices.
   using Parts = std::vector<Object>;
 
-  /// Adds a model; `name` prefixes its materials' and media's names.
+  /// Adds a model; `name` prefixes the names of its materials and media.
   Parts add(Model model, const std::string& name);
-  /// Adds what the object names: the model file at `from`, with its animations at the scene's time, or what
-  /// was added before. If asked to `conserve`, its materials return no more light along paths than they get.
-  /// Throws what load_model() throws.
+  /// Adds the model file that `from` names, at the scene's time of its animation, unless it was added before.
+  /// With `conserve`, its materials return no more light along paths than they receive. Throws like
+  /// load_model().
   const Parts& load(JsonObject& object, const JsonValue& from, const std::filesystem::path& file,
                     const ModelOptions& options, bool conserve = false);
-  /// Adds a model that has been read already, for load() that is to `conserve`.
+  /// Adds a model that was already read, for later load() calls with `conserve`.
   void keep(const std::filesystem::path& file, Model model);
 
   /// Adds each part of a model to the scene's objects.

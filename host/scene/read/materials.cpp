@@ -1,4 +1,4 @@
-// Reads media and materials.
+// Reads media and materials of a scene file: indices of refraction, shading terms, interiors, reliefs.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,7 +22,7 @@ Pattern scale(const Pattern& pattern, double coefficient) {
 dvec3 read_absorption(const JsonValue& value) {
   if (value.json().is_array()) return value.vec3();
   return value.object("absorption", [](JsonObject& object) {
-    // + 0.0 turns the -0 of a colour of 1 into 0
+    // + 0.0 turns the -0 of a colour of 1 into 0.
     return -glm::log(object.at("color").vec3()) / object.at("distance").number() + 0.0;
   });
 }
@@ -38,7 +38,7 @@ void check_indices(const JsonValue& value, MediumDescription& medium) {
   medium.ior = index_at(medium.dispersion, medium.ior, line_d);
 }
 
-/// Two or three Cauchy coefficients, or pairs for Sellmeier.
+/// Reads two or three Cauchy coefficients, or pairs of coefficients for Sellmeier.
 Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
   const bool cauchy = kind == DispersionKind::cauchy;
   const auto items = value.items("numbers");
@@ -48,7 +48,7 @@ Dispersion read_formula(const JsonValue& value, DispersionKind kind) {
   return dispersion;
 }
 
-/// "ior", a number or a substance; a number may have "abbe" beside it.
+/// Reads "ior", a number or a substance; a number may have "abbe" beside it.
 void read_ior(JsonObject& object, MediumDescription& medium) {
   const auto ior = object.find("ior"), abbe = object.find("abbe");
   if (!ior) return;
@@ -64,7 +64,7 @@ void read_ior(JsonObject& object, MediumDescription& medium) {
   check_indices(*abbe, medium);
 }
 
-/// "ior" as above, "cauchy", or "sellmeier".
+/// Reads "ior" as above, "cauchy" or "sellmeier".
 void read_index(JsonObject& object, MediumDescription& medium) {
   read_ior(object, medium);
   static constexpr std::pair<std::string_view, DispersionKind> formulas[] = {
@@ -76,23 +76,23 @@ void read_index(JsonObject& object, MediumDescription& medium) {
     }
 }
 
-/// Other programs write {"texture": NAME} instead of the name.
+/// Refuses {"texture": NAME}, which other programs write instead of the name.
 void refuse_texture_object(const JsonValue& value) {
   if (value.json().is_object() && value.json().contains("texture"))
     value.fail("a texture is taken by its name alone: wanted the name of one of /textures as a string");
 }
 
-/// Defaults of a shading term, and where to store an exponent.
+/// Defaults of a shading term, and where its exponent is stored.
 struct TermRules {
   Pattern color;
-  double coefficient = 1;  // for an object or a texture without one
+  double coefficient = 1;  // for an object or a texture without its own
   const char* kind = "term";
   double* exponent = nullptr;
   int* exponent_texture = nullptr;
 };
 
-/// A shading term: a coefficient on the material's colour, a texture's name, or {"color", "coefficient"}
-/// (specular: also "exponent").
+/// Reads a shading term: a coefficient of the material's colour, a texture's name, or {"color",
+/// "coefficient"} (specular: also "exponent").
 Pattern read_term(const JsonValue& value, TextureLibrary& textures, const TermRules& rules) {
   refuse_texture_object(value);
   if (value.json().is_number()) return scale(rules.color, value.number());
@@ -157,7 +157,7 @@ void read_local_terms(JsonObject& object, MaterialDescription& material, Texture
         "or by its medium's \"absorption\"");
 }
 
-/// A thin wall has an index and no inside.
+/// Reads a thin wall, which has an index but no inside.
 void read_wall(JsonObject& object, const JsonValue& thin, MaterialDescription& material) {
   if (material.type != MaterialType::dielectric || object.has("medium"))
     thin.fail("a thin wall is a dielectric with an \"ior\" and no \"medium\"");
@@ -185,7 +185,7 @@ void read_interior(JsonObject& object, MaterialDescription& material, const Name
   }
 }
 
-/// {"texture": name, KEY: number}, or the name only.
+/// Reads {"texture": name, KEY: number}, or only the name.
 int read_relief(const JsonValue& value, TextureLibrary& textures, TextureUse use, const char* kind,
                 MaterialDescription& material, const char* key, double& number) {
   if (value.json().is_string()) return textures.use(value, use);

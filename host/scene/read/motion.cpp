@@ -1,10 +1,10 @@
-// Adds an object's own motion to that of its groups.
+// Reads an object's own motion and appends it to its groups' motion.
 #include "scene/read/motion.h"
 
 namespace sundog {
 namespace {
 
-/// Returns whether the turn's centre is given.
+/// Returns whether the scene gives the turn's centre.
 bool read_turn(const JsonValue& value, const dmat4& world_from_parent, TurnDescription& turn) {
   return value.object("turns_by", [&](JsonObject& object) {
     turn.axis = object.at("axis").direction();

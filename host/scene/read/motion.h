@@ -9,7 +9,7 @@ namespace sundog {
 /// the object's middle is about its origin until turn_about_middle() corrects it.
 void read_motion(JsonObject& object, const dmat4& world_from_parent, Placement& placement);
 
-/// Makes a solid's own turn one about the middle of its shape, unless the scene gives a point.
+/// Moves the centre of a solid's own turn to the middle of its shape, unless the scene gives a point.
 void turn_about_middle(const dmat4& world_from_object, Placement& placement);
 
 }  // namespace sundog

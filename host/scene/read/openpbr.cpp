@@ -7,7 +7,7 @@
 namespace sundog {
 namespace {
 
-/// A colour, or the name of a texture, a factor on white.
+/// Reads a colour, or a texture's name, which sets the colour to white times the texture.
 void read_color(JsonObject& object, std::string_view key, dvec3& to, int& texture, TextureLibrary& textures) {
   const auto color = object.find(key);
   if (!color) return;

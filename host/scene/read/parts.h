@@ -1,4 +1,4 @@
-// Readers of the parts of a scene file. All throw SceneError with file and pointer.
+// Readers for the parts of a scene file. All throw SceneError with file and pointer.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -20,16 +20,16 @@ class TextureLibrary;
 /// The index of a name that must be in `table`; `what` is its kind ("material").
 int find_name(const JsonValue& name, const NameTable& table, std::string_view what);
 
-/// The file that the scene names, relative to its own folder. Throws SceneError for one that is outside of
-/// it, if that is not allowed, or cannot be read.
+/// The file that the scene names, relative to the scene's folder. Throws SceneError if it cannot be read, or
+/// if it lies outside the folder and that is not allowed.
 std::filesystem::path find_file(const JsonValue& value);
 
-/// `position` and `target` must both be given or both be missing, which `placed` returns. Lenses are in
-/// millimetres, so `unit` is the metres of a scene unit.
+/// Reads the camera. `position` and `target` must both be given or both be missing; `placed` returns whether
+/// they are given. Focal lengths are in millimetres, so `unit` is needed: metres per scene unit.
 Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
-/// `unit`: metres of a scene unit, for the power of lamps.
+/// `unit`: metres per scene unit, for the power of lamps.
 LightDescription read_light(const JsonValue& value, double unit);
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
@@ -37,12 +37,12 @@ EnvironmentDescription read_environment(const JsonValue& value,
 FogDescription read_fog(const JsonValue& value);
 
 MediumDescription read_medium(const JsonValue& value, std::string name);
-/// Adds an anonymous medium to `media` if the material has its own "ior", and adds the textures that it uses
-/// to their scene.
+/// Reads a material. Adds an anonymous medium to `media` if the material has its own "ior", and adds the
+/// textures that it uses to their scene.
 MaterialDescription read_material(const JsonValue& value, std::string name, const NameTable& medium_names,
                                   std::vector<MediumDescription>& media, TextureLibrary& textures);
 
-/// An exact solid in its own units, and the transform of its shorthands (center, from, normal, ...).
+/// An exact solid in its own units, and the transform given by its shorthands (center, from, normal, ...).
 struct PlacedShape {
   Shape shape;
   dmat4 placed{1};
@@ -50,9 +50,9 @@ struct PlacedShape {
 
 /// The object types that are exact solids.
 Names solid_types();
-/// Reads the keys of a solid of the given type; `meshes`: the scene's table, if the solid may name one.
+/// Reads the keys of a solid of this type. `meshes`: the scene's table, if the solid may name a mesh.
 PlacedShape read_solid(JsonObject& object, std::string_view type, const JsonValue* meshes = nullptr);
-/// The solid's distance field; nothing for a solid without an inside.
+/// The solid's distance field; nothing for a solid without an inside or without a formula.
 std::optional<FormulaField> field_of_solid(const Shape& shape);
 
 /// The product of a "transform" list; the first entry applies first.

@@ -1,4 +1,4 @@
-// Reads the keys with their defaults, and copies objects by a transform.
+// Reads the keys with their defaults, and copies objects with a transform.
 #include "scene/read/scatter.h"
 
 namespace sundog {

@@ -60,7 +60,7 @@ class SceneReader {
     if (const auto image = object.find("image")) scene_.image = read_image(*image);
     if (const auto render = object.find("render")) scene_.render = read_render(*render);
     const auto animate = object.find("animate");
-    if (animate) read_tracks(*animate);  // animate.cpp has applied them
+    if (animate) read_tracks(*animate);  // only a check: animate.cpp has already applied them
     object.read("frames_per_second", scene_.frames_per_second, "unit", scene_.unit);
     bool placed = false;
     if (const auto camera = object.find("camera"))
@@ -115,7 +115,7 @@ class SceneReader {
     return cache() ? cache()->picture(file.string(), read) : read();
   }
 
-  /// An image file whose pixels must be finite.
+  /// Reads an image file whose pixels must be finite.
   static Image read_finite(const fs::path& file) {
     Image image = read_image(file);
     for (std::size_t i = 0; i < image.data.size(); ++i)
@@ -213,7 +213,7 @@ class SceneReader {
                          scene_.objects.end());
   }
 
-  /// Reads each of the objects once and copies it.
+  /// Reads each of the objects once and scatters copies.
   void read_scatter(JsonObject& object, const Placement& placement) {
     const auto [how, limit] = read_scatter_keys(object);
     std::vector<Ground> grounds;
@@ -289,7 +289,7 @@ class SceneReader {
   TextureLibrary textures_{scene_};
   SurfaceNames names_;
   NameTable fields_;
-  std::vector<Object> in_focus_;  // those in the object of the name that the camera focuses on
+  std::vector<Object> in_focus_;  // the objects under the name on which the camera focuses
   std::optional<JsonValue> mesh_table_;
   std::map<std::string, ModelLibrary::Parts, std::less<>> meshes_;
 };

@@ -1,4 +1,4 @@
-// Reads the camera, the image, the render settings and the lights.
+// Reads the camera, the image, the render settings, the environment and the lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ void check_view(JsonObject& object, const Camera& camera) {
     object.value().fail("wanted an \"up\" that is not along the view from \"position\" to \"target\"");
 }
 
-/// `focal_length` in scene units, if there is one.
+/// `focal_length`: in scene units, if given.
 Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   Lens lens;
   object.read("radius", lens.radius, "focus", lens.focus, "blades", lens.blades, "rotate", lens.rotate);
@@ -35,7 +35,7 @@ Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   return lens;
 }
 
-/// Sets what the picture shows; returns the focal length in millimetres, if it is given.
+/// Reads the camera's field of view; returns the focal length in millimetres, if given.
 std::optional<double> read_angle(JsonObject& object, const ImageSettings& image, Camera& camera) {
   std::optional<double> focal_length;
   double film_width = 0;
@@ -58,7 +58,7 @@ dvec3 read_falloff(JsonObject& object) {
   return falloff;
 }
 
-/// The direction of emission, given directly or by a target point.
+/// Reads the direction of emission, given directly or by a target point.
 void read_aim(JsonObject& object, LightDescription& light) {
   if (!object.knows("target") || object.one_of() == "direction") {
     light.direction = object.at("direction").direction();
@@ -77,9 +77,10 @@ void read_spot(JsonObject& object, LightDescription& light) {
                                     light.outer_angle, light.inner_angle));
 }
 
-/// The intensity by the power of the whole light. Its luminance counts, so that a colour only tints it.
+/// Computes the intensity from the power of the whole light. Uses the colour's luminance, so that a colour
+/// only tints it.
 void read_power(JsonObject& object, double unit, LightDescription& light) {
-  constexpr double lumens_a_watt = 179;  // of white light, as Radiance has it (Ward 1994)
+  constexpr double lumens_a_watt = 179;  // for white light, as in Radiance (Ward 1994)
   const auto watts = object.find("watts"), lumens = object.find("lumens");
   if (!watts && !lumens) return;
   const double luminance = glm::dot(light.color, dvec3(0.2126, 0.7152, 0.0722));
@@ -95,7 +96,7 @@ void read_sun(JsonObject& object, EnvironmentDescription& e) {
 
 void read_filter(JsonObject& object, RenderSettings& render) {
   object.read("filter", render.filter, "filter_radius", render.filter_radius);
-  constexpr int least = 8;  // with fewer, all may lie in the negative lobes
+  constexpr int least = 8;  // with fewer samples, all may lie in the negative lobes
   if (render.filter == Filter::mitchell && render.samples < least)
     object.value().fail(fmt::format("wanted at least {} \"samples\" with the filter mitchell, found {}",
                                     least, render.samples));
@@ -272,7 +273,7 @@ LightDescription read_light(const JsonValue& value, double unit) {
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
-    object.check("name");  // for pointers
+    object.check("name");  // used only by pointers
     const auto read = [&](std::string_view key, auto& to) {
       if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
     };

@@ -1,5 +1,5 @@
-// Reads the exact solids: each in its own units about the origin with axis y, the transform of its
-// shorthands, and its distance field for field operations.
+// Reads the exact solids: each about the origin with axis y, the transform given by its shorthands, and its
+// distance field for field operations.
 
 #include <algorithm>
 #include <array>
@@ -39,7 +39,8 @@ PlacedShape read_shape(PlaneShape plane, JsonObject& object) {
   return {plane, read_point(object, "point") * read_axis(object, "normal")};
 }
 
-/// A box's half sizes, from "half" (and "center") or from the corners "min" and "max"; moves it into place.
+/// Reads a box's half sizes from "half" (and "center") or from the corners "min" and "max"; `placed` moves
+/// the box into place.
 dvec3 read_extent(JsonObject& object, dmat4& placed) {
   if (!object.has("min") && !object.has("max")) {
     placed = read_point(object, "center");
@@ -71,7 +72,7 @@ PlacedShape read_shape(RoundBoxShape box, JsonObject& object) {
   return result;
 }
 
-/// Half the height of a cylinder or cone along y, from "from" and "to" or from "height" (and "center").
+/// Reads half the height of a cylinder or cone along y, from "from" and "to" or from "height" (and "center").
 double read_span(JsonObject& object, dmat4& placed) {
   if (!object.has("from") && !object.has("to")) {
     placed = read_point(object, "center");
@@ -130,13 +131,13 @@ PlacedShape read_shape(const LatheShape&, JsonObject& object, const JsonValue* m
   return {lathe.shape, glm::translate(dmat4(1), dvec3(0, lathe.middle, 0))};
 }
 
-/// Most solids name no mesh.
+/// Most solids cannot name a mesh.
 template <class S>
 PlacedShape read_shape(S solid, JsonObject& object, const JsonValue*) {
   return read_shape(std::move(solid), object);
 }
 
-// Distance fields of the solids that may have an inside.
+// Distance fields of the solids that have an inside.
 FormulaField make_field(const FormulaDefinition& definition, std::vector<double> values) {
   FormulaField field;
   field.steps.push_back({definition, std::move(values), 1});

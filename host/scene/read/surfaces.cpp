@@ -1,4 +1,4 @@
-// Reads sections in order of dependency; numbers and names of earlier ones are known to later ones.
+// Reads sections in order of dependency; later sections refer to earlier ones by name.
 #include "scene/read/surfaces.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> sections{"media", "world", "textures", "materials"};
 
-/// The world gets a copy of its medium with the lowest priority, whatever the named one's.
+/// Gives the world a copy of the named medium, with the lowest priority.
 void read_world(const JsonValue& value, const NameTable& media, SceneDescription& scene) {
   value.object("world", [&](JsonObject& object) {
     if (const auto name = object.find("medium")) {
@@ -65,7 +65,7 @@ void shift(int& index, std::size_t from, std::size_t to) {
   if (index >= static_cast<int>(from)) index += static_cast<int>(to) - static_cast<int>(from);
 }
 
-/// Replaces the first `before` rows of `table` by `now`.
+/// Replaces the first `before` rows of `table` with `now`.
 template <class Row>
 void replace_head(std::vector<Row>& table, std::size_t before, std::vector<Row> now) {
   now.insert(now.end(), std::make_move_iterator(table.begin() + static_cast<std::ptrdiff_t>(before)),
@@ -106,7 +106,7 @@ SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find_own, S
     for (const auto& [name, value] : media->members("media")) {
       names.media.emplace(name, static_cast<int>(scene.media.size()));
       const bool own = root.json().contains("media") && root.json()["media"].contains(name);
-      // The inside of a preset stands in its material.
+      // The medium inside a preset belongs to its material.
       const std::string place = own ? value.pointer() : join_pointer("/materials", name);
       scene.media.push_back(read_medium(JsonValue(value.json(), value.context(), place), name));
     }

@@ -1,5 +1,4 @@
-// Reads media, the world's medium and fog, textures and materials of a scene file, in order of their
-// dependencies.
+// Reads media, the world's medium and fog, textures and materials of a scene file, in order of dependency.
 #pragma once
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -19,15 +18,15 @@ struct SurfaceNames {
 /// Returns a section of the document, if present.
 using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
 
-/// Reads them, and the presets that the document `root` uses, into `scene`, whose only medium so far is the
-/// world's. `textures` adds to the same scene. Throws SceneError.
+/// Reads these sections, and the presets that the document `root` uses, into `scene`, whose only medium so
+/// far is the world's. `textures` adds to the same scene. Throws SceneError.
 SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find, SceneDescription& scene,
                            TextureLibrary& textures);
 
 /// The sections that read_surfaces() reads.
 Names surface_sections();
 
-/// Replaces the result of read_surfaces() for `before` by that for `after`; keeps what models have added.
+/// Replaces the result of read_surfaces() for `before` by the result for `after`; keeps models' additions.
 /// Reads no file. Returns false, with `scene` unchanged, if names or images differ or a texture displaces
 /// meshes. Throws SceneError.
 bool change_surfaces(SceneDescription& scene, const nlohmann::json& before, const nlohmann::json& after,

@@ -1,4 +1,4 @@
-// Entries are kept by name; a material's use adds one to the scene, once as a colour, a number or data.
+// Keeps entries by name; each use by a material adds a texture to the scene, once as colour, number or data.
 #include "scene/read/textures.h"
 
 #include <fmt/format.h>
@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::uintmax_t most_image_bytes = std::uintmax_t{1} << 31;
 
-/// From the mapping's u and v to the texture's. The scene scales, rotates and moves the picture, so
-/// coordinates are transformed inversely.
+/// Reads the transform from the mapping's u and v to the texture's. The scene scales, rotates and moves the
+/// picture, so coordinates get the inverse transform.
 glm::dmat3 read_uv(JsonObject& object) {
   glm::dvec2 offset(0), scale(1);
   double degrees = 0;
@@ -79,7 +79,7 @@ void TextureLibrary::check_names() const {
   for (const auto& [name, entry] : entries_) check_depth(name, {});
 }
 
-/// `inside`: the textures that are made of this one, outermost first.
+/// `inside`: the textures that contain this one, outermost first.
 void TextureLibrary::check_depth(const std::string& name, std::vector<std::string> inside) const {
   const auto fail = [&](const std::string& what) {
     throw SceneError(scene_.file.string(), join_pointer("/textures", name), what);
@@ -119,7 +119,7 @@ static void read_parameters(JsonObject& object, const std::string& type, Texture
   to[2] = kind == "gradient" ? 1 : 0;
 }
 
-/// Reads a formula and lowers it as a check. Returns whether it gives colours, which are not mixed.
+/// Reads a formula and lowers it as a check. Returns whether it yields colours, which cannot mix others.
 static bool read_pattern_formula(JsonObject& object, TextureDescription& texture) {
   PatternFormula formula;
   object.at("formula");
@@ -160,7 +160,7 @@ TextureLibrary::Entry TextureLibrary::read_pattern(JsonObject& object, const std
   if (texture.mapping == Mapping::spherical || texture.mapping == Mapping::cylindrical)
     texture.placement = glm::scale(dmat4(1), dvec3(size)) * texture.placement;
   read_parameters(object, type, texture);
-  if (type == "brick") {  // courses of bricks that are twice as long as high
+  if (type == "brick") {  // bricks are twice as long as high
     texture.placement = glm::scale(dmat4(1), dvec3(0.5, 1, 1)) * texture.placement;
     texture.uv = glm::dmat3(glm::dvec3(0.5, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)) * texture.uv;
   }
@@ -184,7 +184,7 @@ std::string TextureLibrary::add_color(const dvec3& color) {
   Entry entry;
   entry.texture.offset = glm::dvec4(color, 1);
   entry.made = true;
-  const std::string name = fmt::format("\x01{}", entries_.size());  // cannot occur in a scene
+  const std::string name = fmt::format("\x01{}", entries_.size());  // cannot occur in a scene file
   entries_.emplace(name, entry);
   return name;
 }
@@ -251,7 +251,7 @@ int TextureLibrary::use(const std::string& name, TextureUse use) {
     if (!entry.of[i].empty()) texture.of[i] = this->use(entry.of[i], use);
   if (texture.kind == TEXTURE_IMAGE) {
     if (use == TextureUse::number && texture.channel < 0) texture.channel = 0;
-    // An encoding is one of bytes; an EXR's colours have primaries in any case.
+    // An encoding applies only to bytes; an EXR's use decides, because its colours always have primaries.
     const bool by_use = entry.encoding == Entry::Encoding::by_use || !drops_alpha(entry.file);
     const bool srgb = by_use ? use == TextureUse::color : entry.encoding == Entry::Encoding::srgb;
     texture.image = use_image(entry, srgb);

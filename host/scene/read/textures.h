@@ -1,4 +1,4 @@
-// Reads a scene file's textures: named, and used by materials in place of colours and numbers.
+// Reads a scene file's textures, which materials use by name in place of colours and numbers.
 #pragma once
 #include <map>
 #include <string>
@@ -10,34 +10,34 @@
 namespace sundog {
 
 /// The use of a texture: colours (sRGB images), a number (data images; the first channel unless the texture
-/// selects one), or several channels of data (normals).
+/// selects another), or several channels of data (normals).
 enum class TextureUse { color, number, data };
 
 class TextureLibrary {
  public:
-  /// Adds to `scene`, which must outlive this. With `known` images it reads no file; images not among them
-  /// are missing.
+  /// Adds to `scene`, which must outlive this. With `known` images it reads no file; other images are
+  /// missing.
   explicit TextureLibrary(SceneDescription& scene, const std::vector<ImageDescription>* known = nullptr)
       : scene_(scene), known_(known) {}
 
   /// Reads an entry of `textures`. Throws SceneError.
   void read(const JsonValue& value, const std::string& name);
 
-  /// Call after reading all: checks that the names they use exist. Throws SceneError.
+  /// Call after reading all textures: checks that the names that they use exist. Throws SceneError.
   void check_names() const;
 
-  /// The scene's index of the texture `name`. Throws SceneError.
+  /// The scene's index of the texture `name` for this use. Throws SceneError.
   int use(const JsonValue& name, TextureUse use);
 
-  /// Whether an image was not among the known ones.
+  /// Whether any image was not among the known ones.
   bool lacks_images() const { return lacks_images_; }
 
  private:
   struct Entry {
     TextureDescription texture;
-    std::string file;  // of an image
+    std::string file;  // an image's
     std::string place;
-    std::string of[2];  // texture operands
+    std::string of[2];  // names of texture operands
     bool made = false;  // generated for a colour
     enum class Encoding { by_use, srgb, linear } encoding = Encoding::by_use;
   };
@@ -46,12 +46,12 @@ class TextureLibrary {
   Entry read_pattern(JsonObject& object, const std::string& type);
   Entry read_ramp(JsonObject& object);
   Entry read_product(JsonObject& object);
-  /// A texture name inside a texture, checked later.
+  /// Notes a texture name inside a texture, to be checked later.
   std::string refer(const JsonValue& name);
   void check_depth(const std::string& name, std::vector<std::string> inside) const;
-  /// The name of a texture that has been read.
+  /// The name, checked to be a texture that was read.
   std::string named(const JsonValue& name) const;
-  /// The name of a generated single-colour texture.
+  /// Adds a generated single-colour texture; returns its name.
   std::string add_color(const dvec3& color);
   int use(const std::string& name, TextureUse use);
   int use_image(const Entry& entry, bool srgb);

@@ -62,7 +62,7 @@ TrackKey read_key(const JsonValue& value, Track::Kind kind) {
   });
 }
 
-/// A key beside the one before it: frames rise, values are of one form.
+/// Checks a key against the one before: frames must rise, and values have the same form.
 void check_next(const JsonValue& place, const TrackKey& before, const TrackKey& key) {
   if (!(key.frame > before.frame))
     place.fail(fmt::format("wanted frames that rise, found {} after {}", key.frame, before.frame));
@@ -73,7 +73,8 @@ void check_next(const JsonValue& place, const TrackKey& before, const TrackKey& 
                            key.values.size()));
 }
 
-/// Curves that came back in time would have two values at a frame.
+/// Checks that handles lie between their key and its neighbour: a curve that turned back in time would have
+/// two values at a frame.
 void check_handles(const JsonValue& place, const Track& track, std::size_t i) {
   const TrackKey& key = track.keys[i];
   const double from = i > 0 ? track.keys[i - 1].frame : any_number.low,
@@ -133,13 +134,14 @@ Track read_track(const JsonValue& value) {
   });
 }
 
-/// The slope of component c from key `key` to the next.
+/// The slope of component c from key `key` to the next key.
 double secant(const Track& track, std::size_t key, std::size_t c) {
   const TrackKey &from = track.keys[key], &to = track.keys[key + 1];
   return (to.values[c] - from.values[c]) / (to.frame - from.frame);
 }
 
-/// Slope of component c at a key, at most three times that of either neighbour: no overshoot.
+/// The slope of component c at a key, at most three times either neighbouring slope, so that the curve does
+/// not overshoot.
 double slope_at(const Track& track, std::size_t key, std::size_t c) {
   const std::size_t last = track.keys.size() - 1;
   const bool is_end = key == 0 || key == last;

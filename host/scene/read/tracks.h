@@ -9,7 +9,7 @@
 
 namespace sundog {
 
-/// A frame and numbers at it: where a curve leaves a key to, or comes from.
+/// A Bezier handle, at which a curve leaves or reaches a key: its frame and numbers.
 struct TrackHandle {
   double frame = 0;
   std::vector<double> values;
@@ -18,22 +18,22 @@ struct TrackHandle {
 struct TrackKey {
   double frame = 0;
   nlohmann::json value;
-  std::vector<double> values;  // of a number or an array of numbers; of anything else none
+  std::vector<double> values;  // a number or an array's numbers; otherwise empty
   std::optional<TrackHandle> left, right;
 };
 
-/// One value of the document over time. All but rotate go through keys, and hold the first and the last value
-/// outside of them; values that are no numbers step. smooth is a cubic Hermite spline: Catmull-Rom's slopes,
-/// limited so that the values between two keys lie between theirs (Fritsch and Carlson 1980), 0 at the ends.
-/// bezier has handles, which without any of their own lie on that spline. slerp takes quaternions x, y, z, w
-/// the short way (Shoemake 1985). rotate turns a point or direction about an axis, by `degrees` from frame
-/// `first` to frame `last`.
+/// One value of the document over time. All kinds but rotate interpolate between keys, and hold the first and
+/// last value outside them; values other than numbers step. smooth is a cubic Hermite spline with Catmull-Rom
+/// slopes, which are 0 at the ends and limited so that values between two keys lie between the keys' values
+/// (Fritsch and Carlson 1980). bezier has handles; missing handles lie on that spline. slerp interpolates
+/// quaternions x, y, z, w the short way (Shoemake 1985). rotate turns a point or direction about an axis, by
+/// `degrees` from frame `first` to frame `last`.
 struct Track {
   enum class Kind { step, linear, smooth, bezier, slerp, rotate } kind = Kind::linear;
-  std::string pointer;         // of the value that is animated
-  std::vector<TrackKey> keys;  // at least one, frames rising, of values of one kind and length
+  std::string pointer;         // to the animated value
+  std::vector<TrackKey> keys;  // at least one; frames rise; values of one kind and length
   bool whole = false;          // round to whole numbers
-  bool cycle = false;          // after the last key, or the turn, it begins again
+  bool cycle = false;          // starts again after the last key or the turn
   glm::dvec3 axis{0, 1, 0}, center{0};
   double degrees = 360, first = 0, last = 1;
 };
@@ -41,7 +41,7 @@ struct Track {
 /// Reads the list under "animate". Throws SceneError.
 std::vector<Track> read_tracks(const JsonValue& list);
 
-/// The track's value at a frame; `now` is what stands in the document (a rotation starts from its 3 numbers).
+/// The track's value at a frame; `now` is the value in the document (from whose 3 numbers a rotation starts).
 nlohmann::json value_at(const Track& track, double frame, const nlohmann::json& now);
 
 }  // namespace sundog

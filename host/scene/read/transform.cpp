@@ -49,7 +49,7 @@ dmat4 read_step(const JsonValue& step) {
   return matrix;
 }
 
-/// Volume of the parallelepiped of three vectors relative to a box: 1 orthogonal, 0 flat.
+/// The volume spanned by three vectors, normalised: 1 if orthogonal, 0 if flat.
 double openness(const dvec3& a, const dvec3& b, const dvec3& c) {
   return std::abs(glm::dot(glm::normalize(a), glm::cross(glm::normalize(b), glm::normalize(c))));
 }
@@ -79,7 +79,8 @@ dmat4 read_transform(const JsonValue& list) {
 }
 
 dmat4 rotation_from_y(const dvec3& axis) {
-  // The formula divides by 1 + cos(angle): for a downward axis, go to the opposite one after a half turn.
+  // The formula divides by 1 + cos(angle), so a downward axis is reached by a half turn and the rotation to
+  // its opposite.
   const bool down = axis.y < 0;
   const dvec3 a = down ? -axis : axis;
   const double k = 1 / (1 + a.y);

@@ -1,5 +1,5 @@
-// Holds the tables, integrates by trapezoids, and scales weights so that D65 is white; black bodies follow
-// Planck's law, at luminance 1.
+// Holds the tables, integrates with the trapezoidal rule, and scales weights so that D65 is white; black
+// bodies follow Planck's law and have luminance 1.
 #include "scene/spectra/cie.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace sundog {
 namespace {
 
-// x, y, z of the standard observer of 1931 and D65, from 380 to 780 nm by 5.
+// x, y, z of the 1931 standard observer, and D65, from 380 to 780 nm in steps of 5.
 constexpr std::array<CieRow, SPECTRUM_ROWS> rows{
     {{0.001368, 3.9e-05, 0.00645, 49.9755}, {0.002236, 6.4e-05, 0.01055, 52.3118},
      {0.004243, 0.00012, 0.02005, 54.6482}, {0.00765, 0.000217, 0.03621, 68.7015},

@@ -16,7 +16,7 @@ struct CieRow {
   double d65;  // relative power; 100 at 560 nm
 };
 
-/// At the wavelengths of shared/spectra.h.
+/// The table's rows, at the wavelengths of shared/spectra.h.
 std::span<const CieRow, SPECTRUM_ROWS> cie_rows();
 
 /// Linear RGB per nm that D65 of unit luminance contributes at each of these wavelengths; linear in between,
@@ -25,11 +25,11 @@ std::span<const CieRow, SPECTRUM_ROWS> cie_rows();
 using RgbWeights = std::array<dvec3, SPECTRUM_ROWS>;
 const RgbWeights& rgb_weights();
 
-/// At any wavelength in nm; 0 outside the table.
+/// The weights at any wavelength in nm; 0 outside the table.
 dvec3 rgb_weight(double wavelength);
 
-/// Linear RGB of a black body of that temperature in kelvin (Planck's law), of the luminance 1; what lies
-/// outside of sRGB is 0.
+/// Linear RGB of a black body of this temperature in kelvin (Planck's law), with luminance 1; components
+/// outside sRGB are clamped to 0.
 dvec3 black_body_color(double kelvin);
 
 }  // namespace sundog

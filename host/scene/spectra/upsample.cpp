@@ -1,4 +1,5 @@
-// Fits exponents quadratic in wavelength by Newton's method, until the primaries return from their spectra.
+// Fits exponents quadratic in wavelength by Newton's method, until the primaries' spectra reproduce the
+// primaries.
 #include "scene/spectra/upsample.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ dvec3 integrate(const First& first, const Second& second) {
   return sum * (static_cast<double>(SPECTRUM_STEP) / 6);
 }
 
-/// Residual of the round trip for red and blue; green follows, because white is the sum of all.
+/// The residual of the round trip for red and blue; green follows, because all three sum to white.
 Vector miss_of(const Vector& p) {
   const SpectralBasis basis = basis_of(p);
   std::array<double, SPECTRUM_ROWS> red{}, blue{};
@@ -77,7 +78,7 @@ Vector newton_step(const Vector& p) {
   return solve(slopes, miss);
 }
 
-/// Newton's method from smooth steps near 590 and 490 nm, where it converges.
+/// Starts Newton's method from smooth steps near 590 and 490 nm, where it converges.
 SpectralBasis fit_basis() {
   Vector p{-1.8, 27.9, 51.4, -3.5, 8.9, 35.7};
   for (int i = 0; i < 12; ++i) {

@@ -1,4 +1,4 @@
-// Spectral upsampling: every colour's spectrum is a sum of three basis spectra, which add up to white.
+// Spectral upsampling: every colour's spectrum is a sum of three basis spectra that add up to white.
 #pragma once
 #include <array>
 

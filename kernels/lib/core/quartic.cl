@@ -33,37 +33,38 @@ static inline float bracketed_root(const float* c, const float* derivative, floa
   return x;
 }
 
-// Roots between the ends and `count` ascending extrema; returns their number; ascending.
-static inline u32 roots_between(const float* c, const float* derivative, float low, float high,
-                                const float* extrema, u32 count, float* roots) {
+// Replaces `count` ascending extrema, up to MOST_ROOTS, by the first roots between them and the ends; returns
+// their number; ascending. A root is written only where the extrema have been read.
+#define MOST_ROOTS 4u
+static inline u32 extrema_to_roots(const float* c, const float* derivative, float low, float high, u32 count,
+                                   float* x) {
   u32 found = 0;
   float left = low, f_left = polynomial(c, low);
 #pragma unroll 1
-  for (u32 i = 0; i <= count; ++i) {
-    const float right = i < count ? clamp(extrema[i], low, high) : high;
+  for (u32 i = 0; i <= count && found < MOST_ROOTS; ++i) {
+    const float right = i < count ? clamp(x[i], low, high) : high;
     const float f_right = polynomial(c, right);
-    if (f_left == 0.0f && (found == 0u || roots[found - 1u] != left))
-      roots[found++] = left;
+    if (f_left == 0.0f && (found == 0u || x[found - 1u] != left))
+      x[found++] = left;
     else if ((f_left < 0.0f) != (f_right < 0.0f) && f_right != 0.0f)
-      roots[found++] = bracketed_root(c, derivative, left, right);
+      x[found++] = bracketed_root(c, derivative, left, right);
     left = right;
     f_left = f_right;
   }
-  if (f_left == 0.0f && (found == 0u || roots[found - 1u] != left)) roots[found++] = left;
+  if (f_left == 0.0f && found < MOST_ROOTS && (found == 0u || x[found - 1u] != left)) x[found++] = left;
   return found;
 }
 
-// `roots` has room for eight.
+// `roots` has room for MOST_ROOTS.
 static inline u32 quartic_roots(float a2, float a1, float a0, float low, float high, float* roots) {
   const float quartic[5] = {a0, a1, a2, 0.0f, 1.0f}, cubic[5] = {a1, 2.0f * a2, 0.0f, 4.0f, 0.0f},
               quadratic[5] = {2.0f * a2, 0.0f, 12.0f, 0.0f, 0.0f};
-  float turns[2], extrema[4];
-  u32 turn_count = 0;
+  u32 count = 0;
   if (a2 < 0.0f) {
-    turns[1] = sqrt(-a2 / 6.0f);
-    turns[0] = -turns[1];
-    turn_count = 2;
+    roots[1] = sqrt(-a2 / 6.0f);
+    roots[0] = -roots[1];
+    count = 2;
   }
-  const u32 count = roots_between(cubic, quadratic, low, high, turns, turn_count, extrema);
-  return min(roots_between(quartic, cubic, low, high, extrema, count, roots), 4u);
+  count = extrema_to_roots(cubic, quadratic, low, high, count, roots);
+  return extrema_to_roots(quartic, cubic, low, high, count, roots);
 }

@@ -26,7 +26,7 @@ NEVER_INLINE bool closest_in_one_torus(float r, float3 o, float3 d, float t_min,
   const float a2 = fma(-4.0f, fma(e.x, e.x, e.z * e.z), 2.0f * g);
   const float a1 = -8.0f * fma(s.x, e.x, s.z * e.z);
   const float a0 = fma(g, g, -4.0f * fma(s.x, s.x, s.z * s.z));
-  float roots[8];
+  float roots[MOST_ROOTS];
   const u32 count = quartic_roots(a2, a1, a0, -reach, reach, roots);
   bool found = false;
 #pragma unroll 1

@@ -26,7 +26,7 @@ static bool choose_lamp(UNIFORM const Scene* scene, const PathState* path, const
                         const Encounter* met, const SurfaceShading* at, const LobeSet* lobes, LampLight* lamp,
                         UNIFORM u32* counts) {
   const bool chooses = HAS_LIGHT_TREE || scene->info->light_count > 1u;
-  const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, chooses);
+  const Numbers u = numbers_at(&path->at, dimension_here(path->depth, BOUNCE_LIGHT_POINT), true, chooses);
   bool seen;  // rays may meet the lamp: the path's next ray has its share
   float scattered;
   int chosen;
@@ -85,7 +85,7 @@ static void note_sample(UNIFORM const Scene* scene, const SurfaceShading* at, co
 // out here, so the ray continues as if no surface were met, at no cost in depth.
 static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const SurfaceShading* at,
                     const LobeSet* lobes, bool cut_out, PathState* path, SceneRay* ray, UNIFORM u32* counts) {
-  const int dimension = dimension_here(path, BOUNCE_DIRECTION);
+  const int dimension = dimension_here(path->depth, BOUNCE_DIRECTION);
   const bool chooses = HAS_GUIDES || any(lobes->diffuse != lobes->all) ||  // matte surfaces have one lobe
                        any(path->depth >= (int)scene->info->roulette_depth);
   const Numbers u = numbers_at(&path->at, dimension, true, chooses);
@@ -93,7 +93,9 @@ static bool scatter(UNIFORM const Scene* scene, const Encounter* met, const Surf
   const BsdfSample sample = sample_guided(scene, &at->bsdf, lobes, at->s.p, wo, &u, &path->spread);
   const bool some = greatest(sample.weight) > 0.0f, below = some && dot(at->s.side, sample.wi) < 0.0f;
   path->throughput *= spectrum_of(&path->wavelengths, sample.weight);
-  if (HAS_DISPERSION && some) part_wavelengths(scene, at, &lobes->interface, path, sample.specular && !below);
+  if (HAS_DISPERSION && some)
+    part_wavelengths(scene, at, &lobes->interface, sample.specular && !below, &path->wavelengths,
+                     &path->throughput);
   if (HAS_RELIEF && !below && !sample.specular) path->throughput *= terminator(&at->s, sample.wi);
   if (HAS_MEDIA && below) {  // the radiance is spread, or comes together again
     const float square = lobes->interface.eta * lobes->interface.eta;
@@ -204,13 +206,13 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   bool going = false;
   if (hit_anything(&met.hit)) {
     going = reach_surface(scene, &met, path, ray, &lamp->other, lamp, counts);
+    path->straight = path->straight && going;
   } else {
     SampledSpectrum sky = path->throughput * spectrum_of(&path->wavelengths, met_sky(scene, path, ray->d));
     if (path->straight && scene->info->transparent != 0u) sky = (SampledSpectrum)(0.0f);
     int group = NO_LIGHT_GROUP;
     if (HAS_LIGHT_GROUPS) group = note_suns(scene, path, ray->d);
     lamp->other += met_light(path, SEEN_SKY, group, sky);
-    path->covered = !path->straight;
   }
   path->radiance += lamp->other;
   return going;

@@ -45,7 +45,7 @@ static bool step_feature(UNIFORM const Scene* scene, FeatureWalk* f, SceneRay* r
     return true;
   }
   const LobeSet lobes = make_lobes(scene, &at.bsdf, -ray->d);
-  const Numbers u = numbers_at(&f->path.at, dimension_here(&f->path, BOUNCE_DIRECTION), true, true);
+  const Numbers u = numbers_at(&f->path.at, dimension_here(f->path.depth, BOUNCE_DIRECTION), true, true);
   const BsdfSample sample = sample_lobes(scene, &at.bsdf, &lobes, -ray->d, u.z, u.x, u.y);
   const bool narrow = sample.specular || sample.pdf > FEATURE_DENSITY;
   if (!(narrow && f->path.depth < FEATURE_DEPTH && greatest(sample.weight) > 0.0f)) {

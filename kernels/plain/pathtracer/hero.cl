@@ -23,15 +23,14 @@ static inline float reflectance_of(UNIFORM const Scene* scene, const SurfaceShad
 
 HAVING(HAS_DISPERSION)
 static void part_wavelengths(UNIFORM const Scene* scene, const SurfaceShading* at, const Interface* interface,
-                             PathState* path, bool mirror) {
+                             bool mirror, SampledWavelengths* w, SampledSpectrum* carried) {
   if (!parts_wavelengths(scene, at, interface)) return;
-  const float hero = path->wavelengths.hero;
-  if (!mirror || path->wavelengths.alone || !(interface->f > 0.0f)) {
-    terminate_secondary(&path->wavelengths, &path->throughput);
+  if (!mirror || w->alone || !(interface->f > 0.0f)) {
+    terminate_secondary(w, carried);
   } else {
-    path->throughput.y = path->throughput.y * reflectance_of(scene, at, interface, hero, 1u) / interface->f;
-    path->throughput.z = path->throughput.z * reflectance_of(scene, at, interface, hero, 2u) / interface->f;
-    path->throughput.w = path->throughput.w * reflectance_of(scene, at, interface, hero, 3u) / interface->f;
+    (*carried).y = (*carried).y * reflectance_of(scene, at, interface, w->hero, 1u) / interface->f;
+    (*carried).z = (*carried).z * reflectance_of(scene, at, interface, w->hero, 2u) / interface->f;
+    (*carried).w = (*carried).w * reflectance_of(scene, at, interface, w->hero, 3u) / interface->f;
   }
 }
 

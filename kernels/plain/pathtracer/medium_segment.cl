@@ -39,7 +39,7 @@ typedef struct MediumSegment {
 HAVING(HAS_SCATTERING)
 static inline MediumSegment find_medium_segment(UNIFORM const Scene* scene, const BegunRay* begun,
                                                 const SceneRay* ray, const Encounter* met,
-                                                const PathState* path) {
+                                                const SampledWavelengths* w, SampledSpectrum carried) {
   MediumSegment s;
   s.scatters = false;
   s.o = along(ray->o, begun->t_min, ray->d);
@@ -58,9 +58,9 @@ static inline MediumSegment find_medium_segment(UNIFORM const Scene* scene, cons
     }
   }
   s.mean = (decay.x + decay.y + decay.z) * (1.0f / 3.0f);
-  s.decay = spectrum_of(&path->wavelengths, decay);
-  s.scattering = spectrum_of(&path->wavelengths, scattering);
-  s.shares = shares_of(path->throughput);
-  s.drawn = shares_of(where_positive(path->throughput, s.scattering));
+  s.decay = spectrum_of(w, decay);
+  s.scattering = spectrum_of(w, scattering);
+  s.shares = shares_of(carried);
+  s.drawn = shares_of(where_positive(carried, s.scattering));
   return s;
 }

@@ -33,8 +33,7 @@ typedef struct PathState {
   float spread;
   int depth;                              // of the ray: the camera's has 1
   HAVING(HAS_SHADOW_FILTERS) int passed;  // surfaces, straight on, that shadow rays pass, too
-  bool covered;                           // the path has not left the scene straight on from the camera
-  bool straight;                          // the ray goes straight on from the camera
+  bool straight;  // the ray goes straight on from the camera, or has left the scene so
   SampleAt at;
   SampledWavelengths wavelengths;
   HAVING(HAS_FOG) float unfog;                // undoes the fog since `from`
@@ -65,7 +64,6 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   path.spread = 1.0f;
   path.depth = 1;
   if (HAS_SHADOW_FILTERS) path.passed = 0;
-  path.covered = true;
   path.straight = true;
   path.at = *at;
   path.wavelengths = choose_wavelengths(scene, at);
@@ -121,7 +119,7 @@ static inline void note_medium(PathState* path, const Encounter* met) {
 
 // The alpha of the path's sample: 1, or the part of the background that it has lost on a straight way there.
 ENTRY static inline float coverage_of(const PathState* path) {
-  return path->covered ? 1.0f : 1.0f - clear_part(path);
+  return path->straight ? 1.0f - clear_part(path) : 1.0f;
 }
 
 // The path leaves a surface, perhaps one that has gathered photons. `narrow`: the part of its weight by
@@ -140,9 +138,10 @@ static inline float3 left_by_photons(const PathState* path, float3 light) {
   return light;
 }
 
-// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that the ray meets.
-static inline int dimension_here(const PathState* path, UNIFORM u32 offset) {
-  return (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
+// The first dimension of the numbers from `offset` (BOUNCE_...) on of the surface that a ray of this depth
+// meets.
+static inline int dimension_here(int depth, UNIFORM u32 offset) {
+  return (depth - 1) * (int)DIMENSIONS_A_BOUNCE + (int)(DIMENSION_BOUNCE + offset);
 }
 
 #define MOST_SURFACES 65537  // on any path, with those that it passes straight

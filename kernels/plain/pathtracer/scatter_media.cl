@@ -88,7 +88,7 @@ HAVING(HAS_SCATTERING)
 static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
                                    SceneRay* ray, const Encounter* met, const MediumSegment* s, float at,
                                    UNIFORM u32* counts) {
-  const int dimension = dimension_here(path, BOUNCE_DIRECTION);
+  const int dimension = dimension_here(path->depth, BOUNCE_DIRECTION);
   const Numbers u = numbers_at(&path->at, dimension, true, true);
   const float pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
   path->throughput = scattered_at(path, s, at) * (1.0f / real_max(pdf, 1e-30f));
@@ -123,7 +123,7 @@ static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, 
 HAVING(HAS_SCATTERING)
 static bool scatter_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
                                SceneRay* ray, const Encounter* met, bool* going, UNIFORM u32* counts) {
-  const MediumSegment s = find_medium_segment(scene, begun, ray, met, path);
+  const MediumSegment s = find_medium_segment(scene, begun, ray, met, &path->wavelengths, path->throughput);
   *going = false;
   if (!any(s.scatters)) return false;
   const int dimension = (int)DIMENSION_STRETCH + (path->depth - 1) * (int)DIMENSIONS_A_BOUNCE +

@@ -10,8 +10,8 @@
 HAVING(HAS_CATCHERS)
 static float part_arriving(UNIFORM const Scene* scene, const PathState* path, const SceneRay* ray,
                            const Encounter* met, const SurfaceShading* at, UNIFORM u32* counts) {
-  const Numbers u = numbers_at(&path->at, dimension_here(path, BOUNCE_LIGHT_POINT), true, true);
-  const Numbers chance = numbers_at(&path->at, dimension_here(path, BOUNCE_DIRECTION), true, true);
+  const Numbers u = numbers_at(&path->at, dimension_here(path->depth, BOUNCE_LIGHT_POINT), true, true);
+  const Numbers chance = numbers_at(&path->at, dimension_here(path->depth, BOUNCE_DIRECTION), true, true);
   float sum = 0.0f, turn = chance.z;
   LightSample kept;
   kept.wi = (float3)(0.0f);

@@ -136,7 +136,8 @@ static inline float3 left_where_there(const Bsdf* bsdf, float3 through, float3 l
 // behind the interface, on glass seen from within, reflect the light that they do not transmit.
 static inline void cover_interface(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
                                    const Bsdf* bsdf, float c, Interface* interface) {
-  interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
+  if (greatest(interface->kr) > 0.0f) interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
+  if (!interface->transmits) return;
   const float3 left = left_by_layers(scene, m, bsdf, c, -interface->cos_t);
   if (bsdf->coated_behind && (m->fuzz.w != 0.0f || m->coat.w != 0.0f)) {
     const LayerBase base = above_base(m, bsdf);

@@ -20,7 +20,7 @@ static inline void mirror_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, f
   if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material) {
       __global const Layers* m = scene->layers + index;
       const float c = dot(bsdf->ns, wo);
-      if (interface->transmits) cover_interface(scene, m, bsdf, c, interface);
+      cover_interface(scene, m, bsdf, c, interface);
       interface->kr = along(interface->kr, bsdf->there, mirrored_by_layers(scene, m, bsdf, c));
     }
 }

@@ -1,4 +1,4 @@
-// The page: the bar above, the picture, the panels beside it, the line below that says what is happening.
+// The page: the bar at the top, the picture, the panels beside it, and the status line below.
 import {html, render, Button, useEffect, useState, useStore, short, seconds} from './ui.js';
 import {store} from './store.js';
 import {View} from './view.js';
@@ -18,7 +18,7 @@ function setTheme(theme) {
   try {
     localStorage.setItem('sundog-theme', theme);
   } catch {
-    // A browser that keeps nothing still changes it now.
+    // without storage, the theme still changes for now
   }
 }
 function nextTheme() {
@@ -126,7 +126,7 @@ try {
   const theme = localStorage.getItem('sundog-theme');
   if (theme) document.documentElement.dataset.theme = theme;
 } catch {
-  // The system's theme it is.
+  // without storage, use the system's theme
 }
 const root = document.getElementById('app');
 root.replaceChildren();

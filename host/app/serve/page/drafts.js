@@ -1,10 +1,10 @@
-// Texts that are typed into editors, by their places in the document. A text belongs to its editor until the document has it: only then
-// may another take its place. Each pause in typing sends it, as a step of its own to undo.
+// Texts typed into editors, by their pointers in the document. A text belongs to its editor until the document has it; only then may
+// another text replace it. Each pause in typing sends the text as a separate undo step.
 import {equal, get, leadsToSame} from './pointer.js';
 
 const pause = 500;  // milliseconds
 
-/** Lines of a value as text; a blank one is a space in the document, whose lines are never empty. */
+/** A value's lines as text; a blank line is a space in the document, where lines are never empty. */
 export const textOf = (value) => (Array.isArray(value) ? value.map((line) => line.trimEnd()).join('\n') : value ?? '');
 export function valueOf(text) {
   const lines = text.trimEnd().split('\n').map((line) => line.trimEnd() || ' ');
@@ -13,7 +13,7 @@ export function valueOf(text) {
 }
 
 export class Drafts {
-  all = new Map();  // place → {text, timer, accepted, error}
+  all = new Map();  // pointer → {text, timer, accepted, error}
 
   constructor(store) {
     this.store = store;
@@ -24,7 +24,7 @@ export class Drafts {
   error(at) {
     return this.all.get(at)?.error ?? null;
   }
-  /** Whether the document, as the page shows it, has not got the text. */
+  /** Whether the text differs from the document as the page shows it. */
   differs(at) {
     const draft = this.all.get(at);
     return !!draft && !equal(valueOf(draft.text), get(this.store.state.document, at));
@@ -46,7 +46,7 @@ export class Drafts {
   sendAll() {
     for (const at of this.all.keys()) this.send(at);
   }
-  /** The document's text again. */
+  /** Drops the text in favour of the document's. */
   drop(at) {
     clearTimeout(this.all.get(at)?.timer);
     this.all.delete(at);
@@ -55,7 +55,7 @@ export class Drafts {
   forget() {
     for (const at of [...this.all.keys()]) this.drop(at);
   }
-  /** The place of the newest text that was refused. */
+  /** The pointer of the newest text that the server refused. */
   refused() {
     return [...this.all.keys()].findLast((at) => this.all.get(at).error && this.differs(at));
   }
@@ -63,7 +63,7 @@ export class Drafts {
     for (const {at} of changes) if (this.all.has(at) && this.differs(at)) Object.assign(this.all.get(at), {error, accepted: false});
   }
 
-  /** After the server's word: what the document has is accepted; what it had, and now has otherwise (undo), gives way. */
+  /** Call after a server's answer: accepts a text that the document now has; drops one that it no longer has (undo). */
   settle(before, document) {
     for (const [at, draft] of this.all) {
       const has = equal(valueOf(draft.text), get(document, at));

@@ -1,12 +1,12 @@
-// The editor of formulas: CodeMirror with the formula language's words, in a shadow root, where it may bring its own style sheets (the page's
+// The editor of formulas: CodeMirror with the formula language's words, in a shadow root, where it may add its own style sheets (the page's
 // policy forbids style elements).
 import {html, useEffect, useRef, useStore} from './ui.js';
 import {store} from './store.js';
 import * as cm from './vendor/codemirror.module.js';
 
-const pause = 400;  // milliseconds that part two steps of the editor's own history: less than what sends a text
+const pause = 400;  // milliseconds between two steps of the editor's own history; less than the pause that sends a text
 
-/** Numbers, names, functions of the language, operators. */
+/** Highlights numbers, names, functions of the language, and operators. */
 const language = cm.StreamLanguage.define({
   token(stream) {
     if (stream.eatSpace()) return null;
@@ -39,7 +39,7 @@ const look = cm.EditorView.theme({
   '.cm-lintRange-error': {backgroundImage: 'none', textDecoration: 'underline wavy var(--bad)', backgroundColor: 'var(--bad-back)'},
 });
 
-/** The functions of the language, and what `extra` has: parameters, variables. */
+/** Completes functions of the language, and the parameters and variables in `extra`. */
 function completions(extra) {
   return (context) => {
     const word = context.matchBefore(/[A-Za-z_]\w*/);
@@ -52,7 +52,7 @@ function completions(extra) {
 const historyCommand = (key) => cm.historyKeymap.find((binding) => binding.key === key).run;
 const undoTyping = historyCommand('Mod-z'), redoTyping = historyCommand('Mod-y');
 
-/** Undo is the page's, as for everything else; what the document has not got is taken back here. */
+/** Undo takes back typing that the document does not have yet; otherwise it is the page's undo. */
 function keymap(at) {
   const undo = (view) => (store.drafts.differs(at) && undoTyping(view)) || (store.undo(), true);
   const redo = (view) => redoTyping(view) || (store.redo(), true);
@@ -65,7 +65,7 @@ function stateOf(doc, {at, label, words}) {
     doc,
     extensions: [
       keymap(at), cm.history({newGroupDelay: pause}), cm.lineNumbers(), cm.drawSelection(), cm.bracketMatching(), cm.closeBrackets(), language, cm.syntaxHighlighting(colors), look,
-      // Enter is a new line until an entry of the list is chosen.
+      // Enter starts a new line unless an entry of the list is selected.
       cm.autocompletion({override: [completions(words)], icons: false, selectOnOpen: false}),
       cm.EditorView.lineWrapping,
       cm.EditorView.contentAttributes.of({'aria-label': label, spellcheck: 'false', autocapitalize: 'off'}),
@@ -77,7 +77,7 @@ function stateOf(doc, {at, label, words}) {
   });
 }
 
-/** The text at `at`. `place` is {line, column, reason} of an error, or null; both count from 1. */
+/** Edits the text at `at`. `place`: {line, column, reason} of an error, counted from 1, or null. */
 export function CodeEditor({id, at, label, words, place}) {
   const host = useRef(), view = useRef(), known = useRef([]);
   known.current = words ?? [];
@@ -89,7 +89,7 @@ export function CodeEditor({id, at, label, words, place}) {
   }, []);
   const text = useStore(store, () => store.drafts.text(at));
   useEffect(() => {
-    // The text of now, not that of the drawing: the person may have typed on.
+    // The current text, not the rendered one: the user may have typed more.
     const wanted = store.drafts.text(at), {doc, selection} = view.current.state;
     if (doc.toString() === wanted) return;
     view.current.setState(stateOf(wanted, {at, label, words: known}));

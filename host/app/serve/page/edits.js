@@ -1,8 +1,8 @@
-// The document between page and server: as the server has confirmed it, and on top the page's own edits that are on their way or wait.
-// The page shows the confirmed document with those edits applied, so that none is applied twice and none is lost.
+// The document between page and server: as the server has confirmed it, plus the page's own edits that are sent or waiting. The page shows
+// the confirmed document with those edits applied, so that none is applied twice and none is lost.
 import {apply, leadsToSame} from './pointer.js';
 
-const most = 200;  // changes of one message
+const most = 200;  // changes per message
 const moves = (change) => !('value' in change) || change.at.endsWith('/-');
 const touches = (a, b) => a === b || a.startsWith(b + '/') || b.startsWith(a + '/');
 
@@ -15,7 +15,7 @@ export class Edits {
   shown() {
     return [...(this.sent?.changes ?? []), ...this.waiting.flatMap((one) => one.change ?? [])].reduce(apply, this.confirmed);
   }
-  /** Whether an own edit of that place, or of something in it, is not confirmed. */
+  /** Whether an edit of this place, or of a part of it, is not yet confirmed. */
   concern(at) {
     return [...(this.sent?.changes ?? []), ...this.waiting.flatMap((one) => one.change ?? [])].some((change) => touches(change.at, at));
   }
@@ -23,7 +23,7 @@ export class Edits {
     return this.sent === null && this.waiting.length === 0;
   }
 
-  /** Changes of one gesture are undone together; the newest of a place takes the place of one that waits. */
+  /** Adds changes. Changes of one gesture are undone together; a change replaces a waiting one of the same place. */
   add(changes, gesture) {
     const name = gesture || 'edit' + ++this.count;
     for (const change of changes) {
@@ -59,21 +59,21 @@ export class Edits {
     return {do: 'edit', id, gesture, changes};
   }
 
-  /** The server has made changes: this page's own, or another's. */
+  /** Applies changes that the server has made, from this page (`own`) or another. */
   take(changes, own) {
     const before = this.confirmed;
     this.confirmed = changes.reduce(apply, before);
     if (own) this.sent = null;
     else this.rebase(before);
   }
-  /** The server's whole document; `answers`: it is what this page's undo or redo has led to. */
+  /** Takes the server's whole document. `answers`: it is the result of this page's undo or redo. */
   takeAll(document, answers) {
     const before = this.confirmed;
     this.confirmed = document;
     if (answers) this.sent = null;
     this.rebase(before);
   }
-  /** Takes back the sent edit, which the server refused, and returns it. */
+  /** Removes and returns the sent edit, which the server refused. */
   refuse() {
     const sent = this.sent, before = (sent.changes ?? []).reduce(apply, this.confirmed);
     this.sent = null;

@@ -1,5 +1,5 @@
-// One widget for each kind of value. Each takes {label, value, fallback, onSet(value, gesture), help, at}: `value` undefined means
-// that the document leaves it open, and `fallback` (the default) is shown.
+// One widget for each kind of value. Each takes {label, value, fallback, onSet(value, gesture), help, at}: if `value` is undefined, the
+// document does not set it, and `fallback` (the default) is shown.
 import {html, useEffect, useRef, useState, useStore, plain} from './ui.js';
 import {store} from './store.js';
 import {CodeEditor} from './editor.js';
@@ -8,7 +8,7 @@ let gestures = 0;
 let ids = 0;
 export const useId = () => useRef('f' + ++ids).current;
 
-/** A row: label with help, the widget, the button that takes the value back to its default, and what the server refused. */
+/** A row: label with help, the widget, a button that resets the value to its default, and the server's refusal. */
 export function Row({id, label, help, at, isSet, onReset, wide, children}) {
   const error = useStore(store, (s) => (s.error && at && (s.error.at === at || s.error.at.startsWith(at + '/')) ? s.error : null));
   return html`<div class=${'row' + (wide ? ' wide' : '') + (error ? ' bad' : '')}>
@@ -19,7 +19,7 @@ export function Row({id, label, help, at, isSet, onReset, wide, children}) {
   </div>`;
 }
 
-/** The slider's ends: the limits where they are near, else about the value; null: no slider. */
+/** The slider's ends: the limits if they are close, else a range around the value; null: no slider. */
 function sliderRange(min, max, value) {
   if (value === undefined) return null;
   if (min !== undefined && max !== undefined && max - min <= 200) return [min, max];
@@ -79,7 +79,7 @@ const fromScreen = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2
 const hex = (color) => '#' + color.map((v) => Math.round(255 * Math.max(0, Math.min(1, toScreen(v)))).toString(16).padStart(2, '0')).join('');
 const fromHex = (text) => [1, 3, 5].map((i) => Number(fromScreen(parseInt(text.slice(i, i + 2), 16) / 255).toPrecision(4)));
 
-/** Scene colours are linear; the picker's are sRGB. */
+/** Edits a colour. Scene colours are linear; the picker's colours are sRGB. */
 export function ColorInput({label, value, faint, onSet}) {
   const gesture = useRef('');
   return html`<div class="vector color"><input type="color" aria-label=${label} value=${hex(value)} onFocus=${() => (gesture.current = 'color' + ++gestures)}
@@ -113,7 +113,7 @@ export function TextField({label, value, fallback, help, at, onSet, onReset}) {
       onChange=${(e) => onSet(e.target.value || undefined)} /></${Row}>`;
 }
 
-/** Text of the formula language. It is sent when typing pauses; an error is marked at its line and column. */
+/** Edits a text of the formula language. Sends it when typing pauses; marks an error at its line and column. */
 export function CodeField({label, value, help, at, words, onReset}) {
   const id = useId();
   const error = useStore(store, (s) => store.drafts.error(at) ?? (s.error?.at === at ? s.error : null));

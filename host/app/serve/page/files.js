@@ -1,4 +1,4 @@
-// In and out: scenes below the server's folder, files dropped on the page, the scene and the picture as files, the command line, a link.
+// Opens scenes below the server's folder, dropped files and links; saves the scene and the picture; copies the command line and a link.
 import {html, Dialog, Button, useEffect, useState} from './ui.js';
 import {store} from './store.js';
 
@@ -16,7 +16,7 @@ export async function saveScene() {
   try {
     const text = await store.link.call('scene').then((answer) => answer.text(), (error) => {
       if (!store.state.document) throw error;
-      return JSON.stringify(store.state.document, null, 2);  // the server is gone, the page has it all
+      return JSON.stringify(store.state.document, null, 2);  // without a server, the page has the scene
     });
     save(new Blob([text], {type: 'application/json'}), stem() + '.json');
     store.saved = JSON.parse(text);
@@ -28,7 +28,7 @@ export async function saveScene() {
   }
 }
 
-/** Whether another scene may take the place of this one: where a file has all edits, else as the person says. */
+/** Whether another scene may replace this one: yes if a file has all edits, else asks the user. */
 function mayReplace() {
   store.drafts.sendAll();
   if (!store.unsaved && !store.drafts.refused()) return true;
@@ -48,7 +48,7 @@ export function QuestionDialog({answer}) {
       <${Button} label="Keep editing" onClick=${() => say(false)} /></div></${Dialog}>`;
 }
 
-/** Waits until the picture rests, then saves it. */
+/** Waits until the picture is settled, then saves it. */
 export async function savePicture(format) {
   for (let tries = 0; tries < 600; ++tries) {
     try {
@@ -86,13 +86,13 @@ const unsqueeze = async (text) => {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
 };
 
-/** The whole scene in the link's fragment, which no server sees. */
+/** Copies a link with the whole scene in its fragment, which no server sees. */
 export async function copyLink() {
   const scene = await squeeze(JSON.stringify(store.state.document));
   await copy(`${location.origin}/#token=${store.link.token}&name=${encodeURIComponent(store.state.file)}&scene=${scene}`, 'Link');
 }
 
-/** `read` gives so many bytes. A file that is too large is not even read. */
+/** Sends a file; `read` returns its contents of `bytes` bytes. A file that is too large is not read. */
 async function upload(read, name, bytes) {
   if (bytes > store.state.mostUpload) {
     const reason = `${name} has ${bytes} bytes, the viewer takes at most ${store.state.mostUpload}: put it into the folder that sundog was started in, and open it there`;
@@ -107,7 +107,7 @@ async function upload(read, name, bytes) {
   }
 }
 
-/** A link's scene takes the place of the server's, once: then the address forgets it. */
+/** Replaces the server's scene by the link's, once: removes it from the address. */
 export async function openLink() {
   const parts = new URLSearchParams(location.hash.slice(1)), scene = parts.get('scene');
   if (parts.get('token')) history.replaceState(null, '', '#token=' + store.link.token);

@@ -1,4 +1,4 @@
-// A form for any part of the scene, made from its schema: objects become groups, alternatives a choice, lists rows.
+// Makes a form for any part of the scene from its schema: objects become groups, alternatives a choice, lists rows.
 import {html, Group, Button, useStore} from './ui.js';
 import {store} from './store.js';
 import {join} from './pointer.js';
@@ -14,11 +14,11 @@ const names = {
   material_name: () => withPresets('material'),
   formula_name: () => store.state.formulas.map((f) => f.name),
 };
-/** Keys by which a schema refers to a table of the document, by what their descriptions say. */
+/** The table of the document that a key refers to, found in its description. */
 const tableOf = (description = '') => /^The name of (?:the|a) (medium|mesh|field|material)\b/.exec(description)?.[1];
 const tables = {medium: 'media', mesh: 'meshes', field: 'fields', material: 'materials'};
 
-/** One value at `at`. `schema` may be a reference; `required` values have no reset. */
+/** A widget for the value at `at`. `schema` may be a reference; `required` values have no reset. */
 export function Field({schema, at, value, label, required, onSet, onReset}) {
   const s = resolve(schema);
   const common = {
@@ -51,7 +51,7 @@ const altName = (schema) => {
   return s.type === 'array' ? 'vector' : s.type ?? 'value';
 };
 
-/** A value of one of several kinds: a choice of the kind, and the value's own widget. */
+/** A value of one of several kinds: a choice of the kind, and a widget for the value. */
 function Alternatives({schema, at, value, label, help, fallback, required, onReset}) {
   const options = schema.anyOf.flatMap((one) => (resolve(one).anyOf ? resolve(one).anyOf : [one]));
   const given = value ?? fallback;
@@ -80,7 +80,7 @@ function List({schema, at, value, label, help}) {
   </${Group}>`;
 }
 
-/** An object of the scene as a group; one that is missing can be added. */
+/** An object of the scene as a group; a missing object can be added. */
 function Part({schema, at, value, label, help, required, onReset}) {
   const s = resolve(schema);
   if (value === undefined)
@@ -104,14 +104,14 @@ function Json({at, value, label, help, onReset}) {
   return html`<${Row} label=${label} help=${help} at=${at} isSet onReset=${onReset} wide><textarea aria-label=${label} rows="3" spellcheck="false" onChange=${send}>${JSON.stringify(value)}</textarea></${Row}>`;
 }
 
-/** All keys of an object; `only` and `without` choose among them. An object with a "type" shows the keys of its type. */
+/** Fields for all keys of an object; `only` and `without` select among them. An object with a "type" shows its type's keys. */
 export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   const types = variants(schema);
   const s = types ? types[value?.type] ?? {} : branch(schema, value);
   const required = s.required ?? [];
-  const needs = (key) => s.if?.properties[key] && ((next) => {  // what another value of that key asks for as well
+  const needs = (key) => s.if?.properties[key] && ((next) => {  // sets the key, and others that its new value requires
     const chosen = {...value, [key]: next}, more = s.if.properties[key].const === next ? missing({...s, required: []}, chosen) : {};
-    const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // it has none
+    const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // glass has no colour
     store.edit([...gone, ...Object.entries({...more, [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))]);
   });
   const partners = s.dependentRequired ?? {};  // "from" and "to": both or none
@@ -121,7 +121,7 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
     const all = [...(s.not?.anyOf ?? []).filter(has), ...ways].flatMap((one) => one.required ?? []);
     return [...new Set(all)].filter((other) => other !== key && value?.[other] !== undefined);
   };
-  const instead = (key) => {  // a key takes the place of those that exclude it, and brings what it needs
+  const instead = (key) => {  // the key replaces those that exclude it, and adds those that it requires
     const gone = [key, ...(partners[key] ?? [])].flatMap(rivals).flatMap(withPartners).filter((other) => other !== key);
     const kept = Object.fromEntries(Object.entries(value ?? {}).filter(([other]) => !gone.includes(other)));
     const alone = (partners[key] ?? []).some((other) => !(other in kept));

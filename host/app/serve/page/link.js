@@ -1,5 +1,5 @@
-// The line to the server: calls over HTTP with the token in a header, messages and pictures over a socket whose first message is
-// the token. It comes back by itself when the server does.
+// The connection to the server: calls over HTTP with the token in a header, messages and pictures over a socket whose first message is
+// the token. It reconnects by itself when the server is back.
 export function tokenOfAddress() {
   const found = new URLSearchParams(location.hash.slice(1)).get('token');
   try {
@@ -31,7 +31,7 @@ export class Link {
 
   start() {
     const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`);
-    const patience = setTimeout(() => socket.close(), 10000);  // a proxy may swallow it
+    const patience = setTimeout(() => socket.close(), 10000);  // a proxy may swallow the connection
     let welcome = false;
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
@@ -62,7 +62,7 @@ export class Link {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  /** Bytes: length of the header, the header as JSON, an image file. The next one is sent when this one is on the screen. */
+  /** Shows a picture. `bytes`: length of the header, the header as JSON, an image file. Acknowledges it once it is on the screen. */
   async takePicture(bytes) {
     const length = new DataView(bytes).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));

@@ -11,7 +11,7 @@ const place = (m, p) => rows(m).slice(0, 3).map((r) => r[0] * p[0] + r[1] * p[1]
 const corner = (box, i) => [0, 1, 2].map((axis) => (i >> axis & 1 ? box.max : box.min)[axis]);
 const edges = [...Array(8).keys()].flatMap((i) => [0, 1, 2].filter((axis) => !(i >> axis & 1)).map((axis) => [i, i | 1 << axis]));
 
-/** A handle that is dragged in the picture: `start` gives what `move(dx, dy, started)` gets back, in pixels of the picture. */
+/** A handle that is dragged in the picture: `move(dx, dy, started)` gets pixels of the picture, and the value of `start()`. */
 function Handle({at, label, shape, factor, start, move, children}) {
   const state = useRef(null);
   const down = (event) => {
@@ -47,7 +47,7 @@ function LightHandle({light, index, camera, width, height, factor}) {
     <circle r="11" class="halo" /><circle r="5" /></${Handle}>`;
 }
 
-/** One face of the interval: it moves along its axis. */
+/** One face of the interval, which moves along its axis. */
 function FaceHandle({object, axis, side, camera, width, height, factor}) {
   const {interval, world, at: pointer} = object;
   const middle = [0, 1, 2].map((i) => (interval.min[i] + interval.max[i]) / 2);

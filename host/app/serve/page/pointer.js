@@ -29,13 +29,13 @@ function changed(value, keys, next) {
   return copy;
 }
 
-/** The document with one change: {at, value}, or {at} alone to take it out. */
+/** The document with one change: {at, value} sets a value, {at} alone removes it. */
 export function apply(document, change) {
   if (!('value' in change) && get(document, change.at) === undefined) return document;
   return changed(document, parts(change.at), change.value);
 }
 
-/** Whether two documents say the same; the order of keys says nothing. */
+/** Whether two documents are equal, whatever the order of keys. */
 export function equal(a, b) {
   if (a === b) return true;
   if (a === null || b === null || typeof a !== 'object' || typeof b !== 'object' || Array.isArray(a) !== Array.isArray(b)) return false;
@@ -43,7 +43,7 @@ export function equal(a, b) {
   return keys.length === Object.keys(b).length && keys.every((key) => Object.hasOwn(b, key) && equal(a[key], b[key]));
 }
 
-/** Whether a pointer leads to the same thing in both documents: no list on its way has moved its items. */
+/** Whether a pointer leads to the same thing in both documents, i.e. no list on the way has moved its items. */
 export function leadsToSame(before, after, at) {
   let a = before, b = after;
   for (const key of parts(at)) {

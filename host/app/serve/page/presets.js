@@ -1,4 +1,4 @@
-// Presets: materials, lights and render settings that are often wanted, as parts of a scene. A preset is an edit like any other.
+// Presets: frequently used materials, lights and render settings, as parts of a scene. Choosing a preset is an ordinary edit.
 import {presetNames} from './form.js';
 import {html, Button, useState} from './ui.js';
 import {store} from './store.js';
@@ -6,7 +6,7 @@ import {join} from './pointer.js';
 
 const glossy = (coefficient, exponent) => ({specular: {coefficient, exponent}});
 
-/** Presets of materials. Phong's keep the material's colour; the others are the scene's own presets. */
+/** Presets of materials. Phong presets keep the material's colour; the others are presets of the scene format. */
 const painted = {
   matte: {ambient: 0.2, diffuse: 0.9},
   plastic: {ambient: 0.2, diffuse: 0.8, ...glossy(0.5, 40)},
@@ -23,7 +23,7 @@ export const lights = {
   'Soft window': [{type: 'ambient', intensity: 0.5}, {type: 'rectangle', position: [-3, 3, 2], direction: [1, -1, -0.7], size: [2, 2], intensity: 6, samples: 4}],
 };
 
-/** Presets of the render's settings; they set only these keys. */
+/** Presets of render settings; they set only these keys. */
 export const qualities = {
   Draft: {samples: 1, max_depth: 3},
   Good: {samples: 4, max_depth: 6},
@@ -40,7 +40,7 @@ export const setLights = (name) => store.set('/lights', structuredClone(lights[n
 export const setQuality = (name) =>
   store.edit(Object.entries(qualities[name]).map(([key, value]) => ({at: join('/render', key), value})), 'quality' + ++gestures);
 
-/** A list of presets and a button that takes the chosen one. */
+/** A list of presets and a button that applies the chosen one. */
 export function Presets({title, list, onTake}) {
   const names = Object.keys(list);
   const [name, choose] = useState(names[0]);

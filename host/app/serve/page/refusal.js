@@ -1,6 +1,6 @@
-// Why the server or a proxy before it refuses this page, which browsers keep to themselves. No module: browsers send
-// `Origin` with those, so they are refused too.
-/** A request with the socket's headers has the reason; empty: there is no server. */
+// Finds out why the server, or a proxy in front of it, refuses this page, which browsers do not report. Not a module: browsers
+// send `Origin` with modules, so they would be refused too.
+/** The reason, from a request with the same headers as the socket's; empty: there is no server. */
 window.refusal = async () => {
   try {
     const answer = await fetch('/ws', {method: 'POST', signal: AbortSignal.timeout(10000)});

@@ -1,10 +1,10 @@
-// Reading the scene's JSON Schema for the panels: references, variants by "type" or by what fits, defaults, and small valid values.
+// Reads the scene's JSON Schema for the panels: references, variants by "type" or by fit, defaults, and small valid values.
 import {store} from './store.js';
 
 const defs = () => store.state.schema.$defs;
 export const nameOf = (schema) => schema?.$ref?.replace('#/$defs/', '');
 
-/** The schema with its references followed; what stands beside a reference wins. */
+/** The schema with its references resolved; keys beside a reference take precedence. */
 export function resolve(schema) {
   let out = schema ?? {};
   for (let i = 0; out.$ref && i < 10; ++i) {
@@ -25,14 +25,14 @@ export function variants(schema) {
 const holds = (condition, value) => (condition.required ?? []).every((key) => key in value) &&
   Object.entries(condition.properties ?? {}).every(([key, {const: wanted}]) => value[key] === wanted);
 
-/** The schema of a value whose own "if" chooses among several, as that of a material does. */
+/** The schema that a value selects by "if", as a material's does. */
 export function branch(schema, value = {}) {
   let s = resolve(schema);
   while (s.then?.$ref) s = resolve(holds(s.if, value) ? s.then : s.else);
   return s;
 }
 
-/** Whether a value may be meant for a schema: its JSON type, its required keys, whether its keys are known. */
+/** Whether a value fits a schema by its JSON type and limits, its required keys, and its known keys. */
 export function fits(schema, value) {
   const s = resolve(schema);
   if (s.anyOf) return s.anyOf.some((one) => fits(one, value));
@@ -51,11 +51,11 @@ export function fits(schema, value) {
 /** Whether a text names a texture. */
 export const isTextureName = (s) => s.kind === 'texture_name' || (s.type === 'string' && /^The name of a texture\b/.test(s.description));
 
-const firstTypes = {texture: 'checker', environment: 'sky'};  // that need no file
+const firstTypes = {texture: 'checker', environment: 'sky'};  // types that need no file
 const byKey = {direction: [-1, -1, -0.5], axis: [0, 1, 0], position: [3, 4, 3], ior: 1.5, from: [0, 0, 0], to: [0, 1, 0], min: [-1, -1, -1], max: [1, 1, 1]};
 const newTexture = 'checks';
 
-/** The keys that an object needs beside those of `kept`; of several ways the first that names nothing else. */
+/** The keys that an object needs besides those of `kept`. Prefers the first alternative that needs neither a file nor a medium. */
 function needed(s, kept) {
   const holds = Object.entries(s.if?.properties ?? {}).every(([key, {const: wanted}]) => kept[key] === wanted);
   const ways = [s.oneOf, s.anyOf, holds && s.then?.anyOf].filter((list) => list?.[0]?.required);
@@ -65,21 +65,21 @@ function needed(s, kept) {
   return [...(s.required ?? []), ...chosen, ...partners].filter((key) => !(key in kept));
 }
 
-/** The keys of an object that it must have, and has not. */
+/** The required keys that an object lacks, with sample values. */
 export function missing(schema, kept, depth = 0) {
   const s = resolve(schema);
   const keys = depth < 6 ? needed(s, kept).filter((key) => s.properties?.[key]) : [];
   return Object.fromEntries(keys.map((key) => [key, byKey[key] ?? sample(s.properties[key], depth + 1)]));
 }
 
-/** The changes that set a small value at `at`, and what it needs: a texture, where the scene has none. */
+/** The changes that set a sample value at `at`, and add the texture that it needs if the scene has none. */
 export function changesFor(schema, at, kept = {}) {
   const value = sample(schema, 0, kept), textures = Object.keys(store.state.document.textures ?? {});
   const makes = textures.length === 0 && JSON.stringify(value).includes(`"${newTexture}"`);
   return [...(makes ? [{at: '/textures/' + newTexture, value: {type: 'checker'}}] : []), {at, value}];
 }
 
-/** A small value that the schema takes: its default, its first example, or the least of each part. An object has what is `kept`. */
+/** A small value that the schema accepts: its default, its first example, or a minimum of each part. An object includes `kept`. */
 export function sample(schema, depth = 0, kept = {}) {
   const s = resolve(schema);
   if ('default' in s) return s.default;
@@ -104,10 +104,10 @@ export function sample(schema, depth = 0, kept = {}) {
   return {...missing(s, kept, depth), ...kept};
 }
 
-/** "light_samples" as a person writes it. */
+/** "light_samples" as "Light samples". */
 export const words = (key) => String(key).replace(/_/g, ' ').replace(/^./, (c) => c.toUpperCase());
 
-/** Degrees, pixels, MiB: what the description says of its unit. */
+/** The unit that a description states (degrees, pixels, ...). */
 export function unitOf(description = '') {
   if (/\bdegrees?\b/i.test(description)) return '°';
   if (/\bin pixels\b/i.test(description)) return 'px';

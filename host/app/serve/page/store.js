@@ -1,5 +1,5 @@
-// The page's state: the document of the server and of the user, the server's answers, and the selection.
-// Changes are drawn here at once and sent one message at a time (edits.js); texts belong to their editors meanwhile (drafts.js).
+// The page's state: the server's document with the user's edits, the server's answers, and the selection.
+// Changes are shown at once and sent one message at a time (edits.js); texts belong to their editors meanwhile (drafts.js).
 import {Drafts} from './drafts.js';
 import {Edits} from './edits.js';
 import {apply, equal} from './pointer.js';
@@ -10,8 +10,8 @@ class Store {
     connected: 'connecting', refusal: '', client: 0, document: null, opened: null, file: '', version: 0, canUndo: false, canRedo: false,
     resolved: null, status: null, devices: [], options: {split: 'dynamic', work_group: 'auto', coarse: true}, lights: [],
     schema: null, formulas: [], functions: [], selection: null, picked: null, error: null, picture: null, tab: 'build', notice: '',
-    mostUpload: Infinity, models: [],  // extensions of files
-    question: null, since: null, scenes: 0,  // the version that was opened; how many whole documents have come
+    mostUpload: Infinity, models: [],  // models: file extensions
+    question: null, since: null, scenes: 0,  // since: the version that was opened; scenes: whole documents received
   };
   listeners = new Set();
   edits = new Edits();
@@ -24,7 +24,7 @@ class Store {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);
   }
-  /** Waits until the state is as `test` wants it. */
+  /** Waits until the state passes `test`. */
   until(test) {
     return new Promise((resolve) => {
       const stop = this.listen(() => {
@@ -47,7 +47,7 @@ class Store {
         this.update({connected: 'yes', refusal: ''});
       },
       closed: (why) => {
-        this.edits.sent = null;  // whether the server has it is seen when it is there again
+        this.edits.sent = null;  // the document shows whether the server has it, once it is back
         this.update({connected: why, refusal: why === 'token' ? '' : this.state.refusal});
       },
       refused: (refusal) => this.update({refusal}),
@@ -57,7 +57,7 @@ class Store {
     this.link.start();
     this.load();
   }
-  /** Another address in this tab does not load the page again: where its own token finds no server, it takes the new one. */
+  /** Takes the token of a new address, which does not reload the page in this tab, unless the old token still works. */
   takeToken() {
     if (this.state.connected === 'yes') return;
     this.link.token = tokenOfAddress();
@@ -90,7 +90,7 @@ class Store {
     const message = this.edits.next(++this.lastId);
     if (message) this.link.send(message);
   }
-  /** Takes back the last step: where a text was refused, that text. */
+  /** Undoes the last step or, if a text was refused, drops that text. */
   undo() {
     this.drafts.sendAll();
     const refused = this.edits.idle && this.drafts.refused();
@@ -105,7 +105,7 @@ class Store {
     this.edits.addStep(step);
     this.flush();
   }
-  /** Whether the document has edits that no file has; compared once for each document. */
+  /** Whether the document has unsaved edits; compared once for each document. */
   get unsaved() {
     const {document, opened} = this.state, {compared, saved} = this;
     if (compared?.document !== document || compared.opened !== opened || compared.saved !== saved)
@@ -113,7 +113,7 @@ class Store {
     return this.compared.differs;
   }
 
-  /** Asks for what a pixel shows. */
+  /** Asks the server which object a pixel shows. */
   pick(x, y) {
     const id = ++this.lastId;
     this.link.send({do: 'pick', id, x, y});
@@ -122,7 +122,7 @@ class Store {
   say(what, more = {}) {
     this.link.send({do: what, ...more});
   }
-  /** The balance of light groups, as `sundog mix --light` takes it. */
+  /** Sets the balance of light groups, as for `sundog mix --light`. */
   balance(lights) {
     this.update({lights});
     this.say('balance', {lights});
@@ -150,7 +150,7 @@ class Store {
     };
     takers[message.is]?.();
   }
-  /** A server that was started anew has the scene's file again: it gets back what this page shows. */
+  /** Sends this page's document to a restarted server, which has opened the scene's file again. Returns whether it did. */
   async giveBack(message) {
     if (!this.comesBack) return false;
     this.comesBack = false;
@@ -179,14 +179,14 @@ class Store {
     const error = {at: message.at ?? '', reason: message.reason};
     if (message.id !== undefined && message.id === this.edits.sent?.id) {
       const {changes = []} = this.edits.refuse(), undone = this.edits.waiting[0]?.step === 'undo';
-      if (undone) this.edits.waiting.shift();  // it meant what is refused
+      if (undone) this.edits.waiting.shift();  // it meant the refused edit
       this.shows(this.edits.confirmed);
       this.drafts.refuse(changes, error);
       if (undone) for (const {at} of changes) this.drafts.drop(at);
     }
     this.update({error});
   }
-  /** After the server's word; `message` has more than the document. A camera that still moves stays where the person has it. */
+  /** Shows the document after a server's answer; `message` has further values. A camera that the user is moving stays. */
   shows(before, message, more = {}) {
     if (message) this.told = message.resolved;
     const moving = this.edits.concern('/camera') && this.state.resolved;
@@ -197,7 +197,7 @@ class Store {
     this.drafts.settle(before, this.edits.confirmed);
     this.flush();
   }
-  /** Rates are by the server's clock: messages may come late, and then several at once. */
+  /** Takes a status. Computes rates by the server's clock, because messages may arrive late and several at once. */
   takeStatus(status) {
     const total = status.rays.primary + status.rays.reflection + status.rays.refraction + status.rays.shadow;
     const before = this.counted?.shown === status.shown ? this.counted : {total: 0, seconds: 0};

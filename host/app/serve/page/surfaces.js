@@ -1,4 +1,4 @@
-// The list of surfaces with their pictures: /surfaces.jpg has one tile for each, in the order of the list.
+// The list of surfaces with their pictures, which are tiles of /surfaces.jpg in the list's order.
 import {html, Dialog, useState, useStore} from './ui.js';
 import {store} from './store.js';
 

@@ -1,6 +1,6 @@
-// The value of a track with keys at a frame, as host/scene/read/tracks.cpp has it.
+// Computes the value of a track with keys at a frame, like host/scene/read/tracks.cpp.
 
-/** Slope of component c at a key: Catmull-Rom's, limited so that nothing overshoots; 0 at the ends unless the track is a cycle. */
+/** The slope of component c at a key: Catmull-Rom, limited to avoid overshooting; 0 at the ends unless the track is a cycle. */
 function slopeAt({keys, cycle}, i, c) {
   const last = keys.length - 1, end = i === 0 || i === last;
   if (end && (!cycle || last === 0)) return 0;
@@ -15,7 +15,7 @@ function slopeAt({keys, cycle}, i, c) {
 
 const bezier = ([a, b, c, d], s) => (1 - s) ** 3 * a + 3 * (1 - s) ** 2 * s * b + 3 * (1 - s) * s * s * c + s ** 3 * d;
 
-/** Where a Bezier curve whose frames rise passes `frame`: 0 to 1. */
+/** The parameter, 0 to 1, at which a Bezier curve with rising frames passes `frame`. */
 function placeOf(frames, frame) {
   let low = 0, high = 1;
   for (let i = 0; i < 60; ++i) {
@@ -26,7 +26,7 @@ function placeOf(frames, frame) {
   return (low + high) / 2;
 }
 
-/** The value, an array of numbers, at a frame. */
+/** The track's value at a frame, an array of numbers. */
 export function valueAt(track, frame) {
   const {keys, type, cycle} = track, first = keys[0].frame, last = keys[keys.length - 1].frame;
   if (cycle && last > first) frame -= Math.floor((frame - first) / (last - first)) * (last - first);

@@ -1,4 +1,4 @@
-// Preact and htm for all modules, and the few widgets that everything is made of.
+// Exports Preact and htm for all modules, and the basic widgets.
 import {h, render, Fragment} from './vendor/preact.module.js';
 import {useState, useEffect, useRef, useMemo, useLayoutEffect} from './vendor/hooks.module.js';
 import htm from './vendor/htm.module.js';
@@ -6,7 +6,7 @@ import htm from './vendor/htm.module.js';
 export const html = htm.bind(h);
 export {render, Fragment, useState, useEffect, useRef, useMemo, useLayoutEffect};
 
-/** Follows what `select` takes from the store; draws again when that changes. */
+/** Returns what `select` takes from the store; renders again when that changes. */
 export function useStore(store, select) {
   const [, redraw] = useState(0);
   const last = useRef();
@@ -22,7 +22,7 @@ export function Button({label, title, onClick, disabled, pressed, kind = ''}) {
     aria-pressed=${pressed} onClick=${onClick}>${label}</button>`;
 }
 
-/** A group that folds; it stays as the person has left it. */
+/** A group that folds; it stays as the user has left it. */
 const folded = new Map();
 export function Group({title, id = title, open = true, actions, children}) {
   const [shown, show] = useState(folded.has(id) ? folded.get(id) : open);
@@ -37,7 +37,7 @@ export function Group({title, id = title, open = true, actions, children}) {
   </details>${actions && html`<span class="actions">${actions}</span>`}</div>`;
 }
 
-/** The dialog element of the page, closed by Escape, by its button, and by a click beside it. */
+/** A dialog, closed by Escape, by its button, or by a click beside it. */
 export function Dialog({title, onClose, children, wide}) {
   const box = useRef();
   useEffect(() => {
@@ -59,5 +59,5 @@ export const short = (n) => {
 
 export const seconds = (s) => (s < 0 ? '–' : s < 1 ? Math.round(1000 * s) + ' ms' : s.toFixed(s < 10 ? 2 : 1) + ' s');
 
-/** A number as it is typed: at most seven digits, nothing that floating point has added. */
+/** A number as text with at most seven digits, which hides rounding errors. */
 export const plain = (n) => (typeof n === 'number' ? String(Number(n.toPrecision(7))) : '');

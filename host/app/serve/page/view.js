@@ -1,4 +1,4 @@
-// The picture: a canvas that shows the newest frame, and what mouse, fingers and keys do to the camera over it.
+// The picture: a canvas that shows the newest frame; mouse, fingers and keys on it move the camera.
 import {html, useEffect, useRef, useState, useStore} from './ui.js';
 import {store} from './store.js';
 import * as cam from './camera.js';
@@ -87,7 +87,7 @@ async function lookThere(event, canvas) {
   setCamera(cam.withView(c, c.position, picked.position), 'look' + ++gestures);
 }
 
-/** Keys that are held move the camera until they are let go. */
+/** Moves the camera while keys are held. */
 function useFlight() {
   const held = useRef(new Set());
   const running = useRef(false);
@@ -126,7 +126,7 @@ function useFlight() {
   return {down, up, leave};
 }
 
-/** Fits the picture into the place there is, as large as it goes. */
+/** The largest size at which the picture fits into its container. */
 function useFit(place, width, height) {
   const [size, setSize] = useState([0, 0]);
   useEffect(() => {

@@ -1,9 +1,9 @@
-// The balance of light groups: sliders that develop the picture anew without drawing it.
+// The balance of light groups: sliders that change the picture without rendering it again.
 import {html, Group, Button, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {NumberField, Row} from '../fields.js';
 
-/** "key=2,#ffddaa" of {factor: 2, color: '#ffddaa'}, as `sundog mix --light` takes it. */
+/** "key=2,#ffddaa" for ['key', {factor: 2, color: '#ffddaa'}], as for `sundog mix --light`. */
 const written = ([name, {factor, color}]) => `${name}=${factor},${color}`;
 function read(lights) {
   return new Map(lights.map((light) => {

@@ -1,4 +1,4 @@
-// Build: which surface, its parameters, the interval it is built in, its material, smoothing.
+// Build: an object's surface, its parameters, the interval that bounds it, its material, and smoothing.
 import {html, Group, Button, useEffect, useRef, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {get, join} from '../pointer.js';
@@ -8,7 +8,7 @@ import {Fields, Table} from '../form.js';
 import {SurfaceList, Thumbnail} from '../surfaces.js';
 import {Presets, materials, setMaterial} from '../presets.js';
 
-/** All objects with their pointers, those of groups behind their group. */
+/** All objects with their pointers; a group's objects follow it. */
 export function allObjects(document, at = '/objects', depth = 0) {
   return (get(document, at) ?? []).flatMap((object, i) => {
     const here = join(at, i);
@@ -26,9 +26,9 @@ function useSelected() {
   return {all, chosen, document};
 }
 
-const namedIn = {mesh: 'meshes', field: 'fields', scatter: 'meshes'};  // types that are made of an entry of a table
+const namedIn = {mesh: 'meshes', field: 'fields', scatter: 'meshes'};  // types that refer to an entry of a table
 
-/** Scrolls the list alone, not the panel around it. */
+/** Scrolls only the list, not the panel around it. */
 function showIn(list, row) {
   if (!row) return;
   const outer = list.getBoundingClientRect(), inner = row.getBoundingClientRect();
@@ -116,7 +116,7 @@ function OwnFormula({at, object}) {
     <${Group} title="Functions of the language" open=${false}><dl class="functions">${functions.map((f) => html`<dt><code>${f.call}</code></dt><dd>${f.meaning}</dd>`)}</dl></${Group}>`;
 }
 
-/** The box that a field is built in, axis by axis. */
+/** The box that bounds a distance field, axis by axis. */
 function Interval({at, object, resolved}) {
   const shown = object.interval ?? resolved?.interval;
   if (!shown) return null;

@@ -1,4 +1,4 @@
-// Camera: its place and view, and two commands: turn about a vector by an angle, move by a vector.
+// Camera: its position and view, and two commands: turn about a vector by an angle, and move by a vector.
 import {html, Group, Button, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {VectorField, NumberField, ChoiceField} from '../fields.js';

@@ -1,4 +1,4 @@
-// Devices: which draw, how they share, and what each does while you watch.
+// Devices: which of them draw, how they share the work, and their current activity.
 import {html, Group, useStore, short, seconds} from '../ui.js';
 import {store} from '../store.js';
 import {BooleanField, ChoiceField, TextField} from '../fields.js';

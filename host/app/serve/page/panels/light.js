@@ -1,4 +1,4 @@
-// Light: ambient, directional, point and all others; light from all around; fog.
+// Light: ambient, directional, point and all other lights; the environment; fog.
 import {html, Group, Button, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {Fields, Field} from '../form.js';

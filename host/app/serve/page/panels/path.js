@@ -1,4 +1,4 @@
-// A camera path: views that are kept with their frames become tracks of the scene ("animate"), which `sundog render --frames` renders.
+// A camera path: views saved with their frames become tracks of the scene ("animate"), which `sundog render --frames` renders.
 import {html, Group, Button, useEffect, useRef, useState, useStore} from '../ui.js';
 import {store} from '../store.js';
 import {NumberField} from '../fields.js';
@@ -11,11 +11,11 @@ const tracksOf = (document) => document?.animate ?? [];
 const isOwn = (track, part) => track.value === pointerOf(part) && track.keys?.length > 0 && track.keys.every((key) => key.value?.length === 3);
 const ownTrack = (document, part) => tracksOf(document).find((track) => isOwn(track, part));
 
-/** The first track that moves the camera's place or target in another way: views cannot be kept beside it. */
+/** The index of the first other track that moves the camera's position or target, which rules out saving views; -1: none. */
 export const otherTrack = (document) =>
   tracksOf(document).findIndex((track) => parts.some((part) => `${track.value}/`.startsWith(`${pointerOf(part)}/`) && track !== ownTrack(document, part)));
 
-/** The views of the path by rising frame, one at each key: [{frame, position, target}]. */
+/** The path's views in ascending order of frames, one for each key: [{frame, position, target}]. */
 export function viewsOf(document) {
   const tracks = parts.map((part) => ownTrack(document, part));
   const frames = [...new Set(tracks.flatMap((track) => track?.keys.map((key) => key.frame) ?? []))].sort((a, b) => a - b);
@@ -32,7 +32,7 @@ function viewAt(document, frame) {
   return view;
 }
 
-/** The path's own tracks with other keys, the rest as it was; `change` makes a part's keys of those that it has. */
+/** Changes the keys of the path's own tracks; other tracks stay. `change` returns a part's new keys from its old ones. */
 function write(change) {
   const document = store.state.document;
   const made = new Map();
@@ -49,18 +49,18 @@ function write(change) {
   store.set('/animate', all.length ? all : undefined);
 }
 
-/** As a shell reads it: in quotes where it needs them. */
+/** Quotes a word for a shell if necessary. */
 const shellWord = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
 const without = (keys, frame) => keys.filter((key) => key.frame !== frame);
 
-/** Keeps the camera's view at that frame. */
+/** Saves the camera's view for this frame. */
 export function keepView(camera, frame) {
   const {position, target} = store.state.resolved.camera, view = {position: position.slice(), target: target.slice()};
   const last = viewsOf(store.state.document).at(-1);
   const needed = parts.filter((part) => !store.state.document.camera?.[part]);
   if (needed.length) store.edit(needed.map((part) => ({at: pointerOf(part), value: view[part]})));
-  const begun = (keys, part) => (keys.length || !last ? keys : [{frame: last.frame, value: last[part]}]);  // what stood still so far
+  const begun = (keys, part) => (keys.length || !last ? keys : [{frame: last.frame, value: last[part]}]);  // a part that stood still so far
   write((keys, part) => [...without(begun(keys, part), frame), {frame, value: view[part]}].sort((a, b) => a.frame - b.frame));
 }
 

@@ -1,4 +1,4 @@
-// Statistics: rays by kind, times since the last change, and what the change cost.
+// Statistics: rays by kind, times since the last change, and the work that it caused.
 import {html, Group, useStore, short, seconds} from '../ui.js';
 import {store} from '../store.js';
 import {Plot} from './devices.js';
