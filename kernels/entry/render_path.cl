@@ -81,12 +81,12 @@ NEVER_INLINE MASK fill_idle_lanes(const Scene* scene, const Launch* launch,
   return begun;
 }
 
-// The surfaces that the paths of `lanes` have met cover their part of the pixels.
+// The surfaces and media that the paths of `lanes` have met cover their part of the pixels.
 #if HAS_MATTES
 static inline void add_mattes(const Scene* scene, const Launch* launch, const LaneWork* work, MASK lanes,
                               __global float4* restrict film) {
   const PathStates* paths = &work->paths;
-  EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f)) {
+  EACH_LANE(lane, lanes & MASK_OF(paths->matte != 0.0f) & MASK_OF(paths->instance != (int)NO_INSTANCE)) {
     add_matte(scene, sample_sums(launch, film, (u32)MASK_LANE(work->place, lane) - 1u),
               MASK_LANE(paths->instance, lane), MASK_LANE(paths->material, lane),
               sign_of(work, lane) * REAL_LANE(paths->matte, lane));

@@ -44,7 +44,7 @@
   FEATURE(bool, HAS_COAT_MAPS, coat_maps, rounds)       /* some has a coat weight texture */                      \
   FEATURE(bool, HAS_SPECULAR_MAPS, specular_maps, rounds) /* some has a specular texture */                       \
   FEATURE(bool, HAS_FUZZ_MAPS, fuzz_maps, rounds)       /* some has a fuzz color texture */                       \
-  FEATURE(bool, HAS_LAYER_FILTERS, layer_filters, rounds) /* paths: shadow rays go through fuzz or coats */       \
+  FEATURE(bool, HAS_LAYER_FILTERS, layer_filters, rounds) /* shadow rays go through fuzz or coats */              \
   FEATURE(bool, HAS_LENS, lens, alters)                 /* the camera has a lens */                               \
   FEATURE(bool, HAS_ORTHOGRAPHIC, orthographic, alters) /* the camera's rays are parallel */                      \
   FEATURE(bool, HAS_CAMERA_MOTION, camera_motion, rounds) /* the camera moves while the shutter is open */        \

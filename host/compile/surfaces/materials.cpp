@@ -231,7 +231,7 @@ u32 add_materials(const SurfaceInputs& in, Surfaces& out) {
     const bool of_world = !differs_in_index(out.media.rows()[packed.medium], out.media.rows()[0]);
     if (stops_shadows(in, material, bends, of_world))
       packed.flags |= MATERIAL_SHADOW_OPAQUE;
-    else if (in.paths && passes_layers(material))
+    else if (passes_layers(material))
       out.features.layer_filters = true;
     out.features.checker |= material.checker;
     if (material.shadow_catcher && !in.paths)

@@ -186,7 +186,7 @@
 #ifndef HAS_PATHS
 #define HAS_PATHS 0
 #endif
-#define HAS_LAYERED_FILTERS (HAS_LAYERS && HAS_LAYER_FILTERS && HAS_PATHS)
+#define HAS_LAYERED_FILTERS (HAS_LAYERS && HAS_LAYER_FILTERS)
 
 // Whether rays continue behind surfaces: interfaces that they do not see, or filters.
 #define HAS_CROSSINGS ANY_OF(HAS_MEDIA, ANY_OF(HAS_SHADOW_FILTERS, HAS_CATCHERS))

@@ -45,14 +45,14 @@ static inline void uncover(const TileSamples* tile, MASK pixel, REAL part, MASK 
   EACH_LANE(i, lanes) { tile->radiance[MASK_LANE(pixel, i)].w -= REAL_LANE(part, i); }
 }
 
-// Adds `part`, which may be negative, to what the surfaces of `lanes` cover of their pixels.
+// Adds `part`, which may be negative, to what the surfaces or media of `lanes` cover of their pixels.
 #if HAS_MATTES
-static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pixels,
-                            const SurfaceInteractions* s, MASK lanes, REAL part) {
+static inline void cover_by(const Scene* scene, const TileSamples* tile, MASK pixels, MASK instances,
+                            MASK materials, MASK lanes, REAL part) {
   EACH_LANE(i, lanes) {
     const u32 pixel = (u32)MASK_LANE(pixels, i);
     add_matte(scene, tile->sums + (u32)MASK_LANE(tile->place, pixel) * SAMPLE_VECTORS,
-              MASK_LANE(s->instance, i), MASK_LANE(s->material, i),
+              MASK_LANE(instances, i), MASK_LANE(materials, i),
               REAL_LANE(tile->sign, pixel) * REAL_LANE(part, i));
   }
 }

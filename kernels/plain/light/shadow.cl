@@ -42,8 +42,7 @@ static float3 textured_filter(UNIFORM const Scene* scene, const SceneRay* ray, c
   return mapped_filter(scene, &s, hidden, plain);
 }
 
-// The transmittance of a surface for straight light with its fuzz and coats; `through`: without. For paths
-// only: Whitted's layers take nothing from transmitted light.
+// The transmittance of a surface for straight light with its fuzz and coats; `through`: without.
 HAVING(HAS_LAYERED_FILTERS)
 static float3 transmittance_layers(UNIFORM const Scene* scene, const SceneRay* ray, const SurfaceHit* hit,
                                    const Face* face, float3 through) {

@@ -145,7 +145,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   follow_hero(&path->wavelengths, &at.bsdf);
   if (HAS_CATCHERS && path->straight && (at.bsdf.flags & (int)MATERIAL_CATCHER) != 0 && may_cross(ray)) {
     pass_catcher(scene, met, &at, path, ray, counts);
-    note_matte(path, &at.s, true);
+    note_matte(path, at.s.instance, at.s.material, true);
     return true;
   }
   if (HAS_EMISSION)
@@ -170,7 +170,7 @@ static bool reach_surface(UNIFORM const Scene* scene, const Encounter* met, Path
   const Arrival arrival = arrival_of(path, ray);
   bool going = false;
   if (!deep || may_pass) going = scatter(scene, met, &at, &lobes, cut_out, path, ray, counts);
-  note_matte(path, &at.s, going);
+  note_matte(path, at.s.instance, at.s.material, going);
   SampledSpectrum by_photons = (SampledSpectrum)(0.0f);
   // After scatter(), for a GPU needs the most registers here.
   if (scatters) by_photons = light_of_photons(scene, path, &arrival, ray, &at, &lobes);
@@ -186,7 +186,8 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   Encounter met;
   if (HAS_MATTES) path->matte = 0.0f;
   const BegunRay begun = begun_ray_of(ray);
-  bool crossing = meet_interfaces(scene, ray, coherent, &met, counts);
+  const bool unseen = meet_interfaces(scene, ray, coherent, &met, counts);
+  bool crossing = unseen;
   if (!crossing && path->depth == 1) crossing = pass_hidden(scene, ray, &met);
   if (HAS_GLOW)
     path->radiance += met_light(path, SEEN_EMISSION, NO_LIGHT_GROUP,
@@ -195,6 +196,7 @@ ENTRY static bool step_path(UNIFORM const Scene* scene, PathState* path, SceneRa
   bool turned;  // the medium has scattered the path, which may continue
   if (scatter_in_media(scene, path, &begun, ray, &met, &turned, counts)) return turned;
   path->throughput *= spectrum_kept(&path->wavelengths, met.absorbed);
+  if (HAS_MATTES && unseen) note_matte(path, met.hit.instance, met.face.material, true);
   if (crossing) {  // light chosen at the last vertex cannot pass it if it stops shadow rays
     if ((met.face.flags & (int)MATERIAL_SHADOW_OPAQUE) != 0) path->pdf = 0.0f;
     return true;

@@ -40,8 +40,8 @@ typedef struct PathState {
   HAVING(HAS_CAUSTICS) int gathered;          // GATHERED_*
   HAVING(HAS_CAUSTICS) float3 narrow;         // the part of the throughput by narrow lobes of what gathered
   HAVING(HAS_MATTES) float clear;             // of the background, straight on, behind its last surface
-  HAVING(HAS_MATTES) float matte;             // what the last surface took of that
-  HAVING(HAS_MATTES) int instance, material;  // of that surface
+  HAVING(HAS_MATTES) float matte;             // what the last surface or medium took
+  HAVING(HAS_MATTES) int instance, material;  // of that surface or medium
   HAVING(HAS_LIGHT_SUMS) LightParts parts;
   HAVING(HAS_LIGHT_PARTS) int scatterings;     // since the camera, without straight ways through surfaces
   HAVING(HAS_LIGHT_PARTS) LobeShares shares;   // at the first of them
@@ -72,7 +72,7 @@ ENTRY static inline PathState start_path(UNIFORM const Scene* scene, const Sampl
   if (HAS_MATTES) {
     path.clear = 1.0f;
     path.matte = 0.0f;
-    path.instance = 0;
+    path.instance = (int)NO_INSTANCE;
     path.material = 0;
   }
 #define CLEAR_PART(name) path.parts.name = (SampledSpectrum)(0.0f);
@@ -95,15 +95,26 @@ static inline float clear_part(const PathState* path) {
   return spectrum_mean(path->throughput) * path->spread;
 }
 
-// The surface covers what does not go further straight on. `going`: the path continues.
-static inline void note_matte(PathState* path, const SurfaceInteraction* s, bool going) {
+// A surface or a medium covers what does not go further straight on. `going`: the path continues.
+static inline void note_matte(PathState* path, int instance, int material, bool going) {
   if (HAS_MATTES) {
     const float clear = going && path->straight ? clear_part(path) : 0.0f;
     path->matte = path->clear - clear;
     path->clear = clear;
-    path->instance = s->instance;
-    path->material = s->material;
+    path->instance = instance;
+    path->material = material;
   }
+}
+
+// The medium before what the path would have met has scattered it. It belongs to the object that the ray
+// leaves there, else to the one that the path has crossed last, else, as fog does, to what lies there.
+HAVING(HAS_MATTES)
+static inline void note_medium(PathState* path, const Encounter* met) {
+  const bool leaves = !met->face.entering && met->face.medium == met->before;
+  if (met->before == 0 || leaves || path->instance == (int)NO_INSTANCE)
+    note_matte(path, met->hit.instance, met->face.material, false);
+  else
+    note_matte(path, path->instance, path->material, false);
 }
 
 // The alpha of the path's sample: 1, or the part of the background that it has lost on a straight way there.

@@ -86,7 +86,8 @@ static SampledSpectrum light_on_segment(UNIFORM const Scene* scene, PathState* p
 // The path is scattered at the distance `at` of its segment. Returns whether it continues.
 HAVING(HAS_SCATTERING)
 static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, const BegunRay* begun,
-                                   SceneRay* ray, const MediumSegment* s, float at, UNIFORM u32* counts) {
+                                   SceneRay* ray, const Encounter* met, const MediumSegment* s, float at,
+                                   UNIFORM u32* counts) {
   const int dimension = dimension_here(path->depth, BOUNCE_DIRECTION);
   const Numbers u = numbers_at(&path->at, dimension, true, true);
   const float pdf = free_pdf(s, at), cosine = phase_cosine(s->g, u.x);
@@ -99,6 +100,7 @@ static inline bool turn_on_segment(UNIFORM const Scene* scene, PathState* path, 
   path->from = along(s->o, at, s->d);
   if (HAS_FOG) path->unfog = 1.0f;
   path->straight = false;
+  if (HAS_MATTES) note_medium(path, met);
   if (HAS_LIGHT_PARTS) {
     const LobeShares shares = all_of_medium();
     note_scattering(path, &shares);
@@ -136,7 +138,7 @@ static bool scatter_on_segment(UNIFORM const Scene* scene, PathState* path, cons
   const float at = chosen > 0.0f ? depth_of_lost(v.x) / nonzero(chosen) : INFINITY;
   const bool turns = s.scatters && at < s.length;
   if (s.scatters && !turns) path->throughput *= 1.0f / real_max(chance_to_pass(&s), 1e-30f);
-  if (turns) *going = turn_on_segment(scene, path, begun, ray, &s, at, counts);
+  if (turns) *going = turn_on_segment(scene, path, begun, ray, met, &s, at, counts);
   return turns;
 }
 

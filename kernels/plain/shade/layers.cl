@@ -132,6 +132,22 @@ static inline float3 left_where_there(const Bsdf* bsdf, float3 through, float3 l
   return left * (through - beside) + beside;
 }
 
+// Attenuates perfect reflection and transmission by fuzz and coats, for a viewer at the cosine c. Those
+// behind the interface, on glass seen from within, reflect the light that they do not transmit.
+static inline void cover_interface(UNIFORM const Scene* scene, UNIFORM __global const Layers* m,
+                                   const Bsdf* bsdf, float c, Interface* interface) {
+  if (greatest(interface->kr) > 0.0f) interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
+  if (!interface->transmits) return;
+  const float3 left = left_by_layers(scene, m, bsdf, c, -interface->cos_t);
+  if (bsdf->coated_behind && (m->fuzz.w != 0.0f || m->coat.w != 0.0f)) {
+    const LayerBase base = above_base(m, bsdf);
+    const float open = 1.0f - bsdf->there, back = 1.0f - past_layers(scene, m, &base, interface->cos_t);
+    const float3 tint = coat_tints(m, &base, interface->cos_t);
+    interface->kr += (interface->kt - (float3)(open, open, open)) * tint * tint * back;
+  }
+  interface->kt = left_where_there(bsdf, interface->kt, left);
+}
+
 // Transmittance of the surface at the cosine c with its fuzz and coats; `through`: without.
 static inline float3 passed_by_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float c, float3 through) {
   float3 passed = through;
@@ -216,11 +232,7 @@ static inline LayerShare make_shares(UNIFORM const Scene* scene, const Bsdf* bsd
       shares.coat = bsdf->there * (by_fuzz - by_both);
       shares.shine = bsdf->there * (by_both * fma(opaque, 1.0f - by_shine, of_metal));
       shares.matte = bsdf->there * (by_both * by_shine * opaque * greatest(bsdf->base));
-      if (greatest(interface->kr) > 0.0f)
-        interface->kr = interface->kr * left_by_layers(scene, m, bsdf, c, c);
-      if (interface->transmits)
-        interface->kt =
-            left_where_there(bsdf, interface->kt, left_by_layers(scene, m, bsdf, c, -interface->cos_t));
+      cover_interface(scene, m, bsdf, c, interface);
     }
   return shares;
 }

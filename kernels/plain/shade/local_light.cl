@@ -14,10 +14,13 @@ static inline float3 local_light(UNIFORM const Scene* scene, const Bsdf* bsdf, f
   return light;
 }
 
-// Adds the layers' share that a reflected ray stands for.
+// Adds the layers' share that a reflected ray stands for, and attenuates the interface below them.
 static inline void mirror_layers(UNIFORM const Scene* scene, const Bsdf* bsdf, float3 wo,
                                  Interface* interface) {
-  if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material)
-  interface->kr = along(interface->kr, bsdf->there,
-                        mirrored_by_layers(scene, scene->layers + index, bsdf, dot(bsdf->ns, wo)));
+  if (HAS_LAYERS && is_layered(bsdf)) EACH_ALIKE(int, index, bsdf->material) {
+      __global const Layers* m = scene->layers + index;
+      const float c = dot(bsdf->ns, wo);
+      cover_interface(scene, m, bsdf, c, interface);
+      interface->kr = along(interface->kr, bsdf->there, mirrored_by_layers(scene, m, bsdf, c));
+    }
 }

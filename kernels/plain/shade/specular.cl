@@ -83,11 +83,12 @@ static inline bool has_highlight(const Bsdf* bsdf) {
 }
 
 // Whether the surface is absent, because its material is cut away or seen from its missing side: light goes
-// straight on. Rays pass as many of them as unseen interfaces.
+// straight on. Rays pass as many of them as unseen interfaces. Frosted walls that transmit all turn it.
 ENTRY static inline bool cut_away(const Bsdf* bsdf, const Interface* interface) {
   if (HAS_SHADOW_FILTERS) {
     const float3 rest = interface->kr + bsdf->diffuse;
-    return interface->transmits && (bsdf->flags & (int)MATERIAL_THIN) != 0 && interface->kt.x == 1.0f &&
+    const int kind = bsdf->flags & (int)(MATERIAL_THIN | MATERIAL_FROSTED);
+    return interface->transmits && kind == (int)MATERIAL_THIN && interface->kt.x == 1.0f &&
            interface->kt.y == 1.0f && interface->kt.z == 1.0f && rest.x + rest.y + rest.z == 0.0f &&
            !has_highlight(bsdf);
   }

@@ -72,7 +72,7 @@ static inline bool spawn_children(UNIFORM const Scene* scene, UNIFORM const Tile
   if (covers_behind(&facet, &interface)) next.depth = (path->depth + 1) | TURNED;
   if (spawn(scene, tile, &child, &next, COUNT_REFRACTION, counts)) {
     if (HAS_MATTES && is_straight(&next))
-      cover_by(scene, tile, path->pixel, &at->s, -mean_of(next.throughput));
+      cover_by(scene, tile, path->pixel, at->s.instance, at->s.material, -mean_of(next.throughput));
   }
   return nothing;
 }

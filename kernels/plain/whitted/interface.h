@@ -26,7 +26,7 @@ CALLED(note_rays) void note_pixel_ray(int pixel, HERE, UNIFORM u32* counts);
 // Light that a pixel receives.
 void add_light(UNIFORM const TileSamples* tile, int pixel, float3 light, HERE);
 
-// A pixel shows `part` less of the background; a surface covers `part` of its pixel.
+// A pixel shows `part` less of the background; a surface or a medium covers `part` of its pixel.
 void uncover(UNIFORM const TileSamples* tile, int pixel, float part, HERE);
-void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel,
-              const SurfaceInteraction* s, HERE, float part);
+void cover_by(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile, int pixel, int instance,
+              int material, HERE, float part);

@@ -52,6 +52,10 @@ ENTRY static inline float3 see_met(UNIFORM const Scene* scene, UNIFORM const Til
   if (HAS_GLOW) light = arriving * emitted(ray);
   path->throughput = arriving * met->absorbed;
   if (crossing) {
+    if (HAS_MATTES && is_straight(path)) {
+      const float taken = mean_of(arriving) - mean_of(path->throughput);
+      if (taken != 0.0f) cover_by(scene, tile, path->pixel, met->hit.instance, met->face.material, taken);
+    }
     wait_again(tile, ray, path);
     return light;
   }
@@ -61,7 +65,8 @@ ENTRY static inline float3 see_met(UNIFORM const Scene* scene, UNIFORM const Til
   if (meets_again(path)) return light;
   light += see_ambient(scene, ray, path, met, at);
   if (HAS_EMISSION) light += see_emission(scene, path, at);
-  if (HAS_MATTES && is_straight(path)) cover_by(scene, tile, path->pixel, &at->s, mean_of(arriving));
+  if (HAS_MATTES && is_straight(path))
+    cover_by(scene, tile, path->pixel, at->s.instance, at->s.material, mean_of(arriving));
   bool nothing = false;
   if (HAS_SECONDARY) nothing = spawn_children(scene, tile, ray, path, met, at, counts);
   if (!nothing && is_from_camera(path)) count(counts, COUNT_PRIMARY_HIT);

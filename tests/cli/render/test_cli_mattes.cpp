@@ -98,6 +98,43 @@ TEST_CASE("opacity splits a pixel between a pane and the wall behind it") {
   }
 }
 
+TEST_CASE("a medium covers for its object what it scatters or absorbs, before a wall and before nothing") {
+  const CliFolder folder;
+  const auto seen = [&](const std::string& key, const std::string& integrator, bool walled) {
+    const std::string scene =
+        R"({"camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 5},
+            "image": {"width": 8, "height": 8, "background": [0, 0, 0]},
+            "render": {"samples": 256, "integrator": ")" +
+        integrator + R"("}, "media": {"m": {"ior": 1, ")" + key +
+        R"(": [0.3, 0.3, 0.3]}}, "materials": {"m": {"type": "dielectric", "medium": "m"}, "w": {}},
+            "objects": [{"name": "mist", "type": "box", "half": 0.5, "material": "m"})" +
+        (walled ? R"(, {"name": "wall", "type": "rectangle", "size": [9, 9], "center": [0, 0, -3],
+                        "normal": [0, 0, 1], "material": "w"}]})"
+                : "]}");
+    const CommandResult result =
+        run_sundog({"render", folder.write("mist.json", scene).string(), "-o", folder.file("a.exr"),
+                    "--float", "--quiet", "--device", "0:0", "--aov", "crypto_object"});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const AovImages aovs = read_aovs(folder / "a.exr");
+    const Image picture = read_image(folder / "a.exr");
+    double mist = 0, wall = 0;
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) {
+        CHECK(coverage(aovs, "crypto_object", x, y) == Approx(picture.pixel(x, y)[3]).margin(1e-4));
+        mist += double(coverage(aovs, "crypto_object", x, y, "mist")) / 64;
+        wall += double(coverage(aovs, "crypto_object", x, y, "wall")) / 64;
+      }
+    CHECK(mist == Approx(1 - std::exp(-0.3)).margin(0.012));
+    CHECK(wall == Approx(walled ? std::exp(-0.3) : 0).margin(0.012));
+  };
+  for (const bool walled : {false, true}) {
+    seen("scattering", "path", walled);
+    seen("absorption", "path", walled);
+    seen("absorption", "whitted", walled);
+  }
+}
+
 TEST_CASE("mattes have the same bits whatever the tiles, and in parts that are merged") {
   const MatteFolder folder;
   folder.render({});

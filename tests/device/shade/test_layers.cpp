@@ -131,3 +131,21 @@ TEST_CASE("a coat darkens clear glass by next to nothing: what the base lets thr
     }
   }
 }
+
+TEST_CASE("smooth white glass below a coat or fuzz returns all light, from within too") {
+  Tester& tester = tester_on(picture_devices().front(), true);
+  const OpenPbr glass{.specular_roughness = 0, .transmission_weight = 1};
+  OpenPbr coated = glass, fuzzy = glass;
+  coated.coat_weight = 1;
+  fuzzy.fuzz_weight = 1;
+  for (const OpenPbr& values : {coated, fuzzy}) {
+    tester.set_layers(values);
+    const Layered made = layered(values);
+    for (const double cosine : {1.0, 0.8, 0.5}) {
+      INFO((values.coat_weight > 0 ? "coat at " : "fuzz at ") << cosine);
+      for (const double side : {1.0, -1.0})
+        CHECK(mean_weight(tester.draw(made.material, made.index, side * at_cosine(cosine), 4 * count)) ==
+              Approx(1).margin(0.005));
+    }
+  }
+}

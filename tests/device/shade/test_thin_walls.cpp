@@ -272,6 +272,24 @@ TEST_CASE(
   });
 }
 
+TEST_CASE(
+    "a ball of frosted wall that transmits all returns no more than it gets, beside what shadow rays pass") {
+  for (const bool beside : {false, true}) {
+    SceneDescription scene = path_scene({0, 0, 5}, {0, 0, 0}, 128);
+    scene.environment.type = EnvironmentType::gradient;
+    scene.environment.bottom = scene.environment.top = dvec3(1);
+    scenes::place(scene, SphereShape{}, add_wall(scene, 1));
+    MaterialDescription& frosted = scene.materials.back();
+    frosted.type = MaterialType::phong;
+    frosted.wall_ior = 0;
+    frosted.reflection = dvec3(0);
+    if (beside) scenes::place(scene, SphereShape{}, add_wall(scene, 0), at_height(50));
+    const Mean found = mean_on(picture_devices().front(), scene);
+    INFO((beside ? "beside another, " : "alone, ") << found.value.x << " +- " << found.error);
+    CHECK(found.value.x == Approx(0.996).margin(0.004));
+  }
+}
+
 TEST_CASE("what fuzz and a coat take from light behind a smooth wall, each way of finding it knows") {
   OpenPbr values{.specular_roughness = 0, .transmission_weight = 1};
   values.geometry_thin_walled = true;
@@ -334,6 +352,26 @@ TEST_CASE("light of a lamp goes straight through smooth thin walls, and stops at
     }
     CHECK(seen(device, 0.5, "path", 1) == 0);
     CHECK(seen(device, 0.5, "whitted", 1) == Approx(through * seen(device, 0, "whitted", -1)).epsilon(1e-4));
+  });
+}
+
+TEST_CASE("whitted's shadow of a thin wall with a clear coat lacks what the coat reflects, too") {
+  on_picture_devices([](const DeviceInfo& device) {
+    const auto seen = [&](double height) {
+      SceneDescription scene = path_scene({0, 0.5, 0.4}, {0, 0, 0}, 1);
+      scene.render.integrator = "whitted";
+      scene.lights.push_back(lamp(LightType::directional, {0, 0, 0}, 1));
+      scene.lights.back().direction = {0, -1, 0};
+      scenes::place(scene, PlaneShape{}, add_matte(scene, 1));
+      scenes::place(scene, PlaneShape{}, add_wall(scene, 0), at_height(height));
+      OpenPbr values{.specular_roughness = 0, .transmission_weight = 1, .coat_weight = 1};
+      values.geometry_thin_walled = true;
+      MediumDescription inside;
+      set_openpbr(values, scene.materials.back(), inside);
+      return mean_on(device, scene).value.x;
+    };
+    const double by_coat = 1 - std::pow((1.6 - 1) / (1.6 + 1), 2);
+    CHECK(seen(1) == Approx(by_coat * (1 - reflected_by_both(1, 1.5)) * seen(-1)).epsilon(1e-3));
   });
 }
 
