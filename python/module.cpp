@@ -350,7 +350,8 @@ void add_session(nb::module_& m) {
           [](OpenSession& session, int x, int y) {
             return interruptible([&] { return session.pick(x, y); }, [&] { session.cancel(); });
           },
-          nb::arg("x"), nb::arg("y"), "Casts one ray; the first may build a kernel.");
+          nb::arg("x"), nb::arg("y"),
+          "Casts one ray; the first may build a kernel. Ctrl-C stops the drawing too.");
 }
 
 }  // namespace

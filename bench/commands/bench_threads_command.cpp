@@ -297,6 +297,7 @@ std::vector<ThreadScaling> make_plans(const ThreadsOptions& options, const Threa
     };
     show_step(options, plan.scene + ", a small frame for the estimate");
     plan.cost = pixel_cost(plan);
+    enter_row("");
     // Without --budget, all sizes that the user names are measured.
     const double budget = options.budget >= 0 ? options.budget : options.sizes.empty() ? 100.0 : 0.0;
     if (budget > 0) {

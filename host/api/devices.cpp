@@ -34,12 +34,13 @@ const EnvironmentPtr& environment() {
   return read;
 }
 
-/// Owns the threads that drivers keep. Created after the drivers are loaded, hence destroyed before they are
-/// unloaded at the end of the process. A child of fork() lacks these threads, so it does not wait for them.
+/// Owns the threads that drivers keep. Created after the drivers are loaded, hence waited for before they are
+/// unloaded at the end of the process; never destroyed, because a session may end later.
 const std::shared_ptr<DriverThreads>& threads_of_process() {
-  static const std::shared_ptr<DriverThreads> threads(new DriverThreads, [](const DriverThreads* all) {
-    if (!is_forked()) delete all;
-  });
+  static const auto& threads = *[] {
+    std::atexit([] { wait_for_threads(); });
+    return new const auto(std::make_shared<DriverThreads>());
+  }();
   return threads;
 }
 

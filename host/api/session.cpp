@@ -3,6 +3,7 @@
 
 #include <sundog/session.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <set>
 
@@ -14,6 +15,7 @@ namespace {
 /// The open sessions. Never destroyed, because a thread may close a session during exit().
 struct OpenSessions {
   std::mutex mutex;
+  std::atomic<bool> at_exit = false;
   std::set<RenderSession*> all;
 };
 OpenSessions& open_sessions() {
@@ -26,9 +28,16 @@ void close_sessions() {
   if (is_forked()) return;
   {
     const std::lock_guard lock(open_sessions().mutex);
+    open_sessions().at_exit = true;
     for (RenderSession* session : open_sessions().all) session->close();
   }
   wait_for_threads();
+}
+
+/// Call with a picture: the driver's compiler has made its static objects by then, and the exit destroys them
+/// after what is registered now.
+void close_before_the_compiler() {
+  [[maybe_unused]] static const int registered = std::atexit(close_sessions);
 }
 
 }  // namespace
@@ -45,11 +54,13 @@ struct SUNDOG_LOCAL Session::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    // A forked child lacks the session's threads, so waiting would hang: the session leaks.
-    if (is_forked()) {
+    // It leaks in a forked child, which lacks the session's threads, so waiting would hang; and where a
+    // static object owns it, for the drivers may be gone by then.
+    if (is_forked() || open_sessions().at_exit) {
       [[maybe_unused]] const auto* const left = session.release();
       return;
     }
+    session->close();
     {
       const std::lock_guard lock(open_sessions().mutex);
       open_sessions().all.erase(session.get());
@@ -115,12 +126,14 @@ Snapshot Session::snapshot(bool with_picture) const {
     result.block = now.block;
     result.seconds = now.seconds;
     result.picture = share(std::move(now.picture));
+    if (now.shown > 0) close_before_the_compiler();
     return result;
   });
 }
 
 void Session::wait() const {
   translated([&] { impl_->entered().wait(); });
+  close_before_the_compiler();
 }
 bool Session::wait_for(double seconds) const {
   return translated([&] { return impl_->entered().wait_for(seconds); });
@@ -132,6 +145,7 @@ bool Session::wait_for_change(std::uint64_t revision, double seconds) const {
 Image Session::finish() const {
   return translated([&] {
     impl_->entered().wait();
+    close_before_the_compiler();
     core::Snapshot now = impl_->entered().snapshot();
     if (now.state == core::SessionState::failed) std::rethrow_exception(now.cause);
     return share(std::move(now.picture));

@@ -24,7 +24,8 @@ namespace {
 
 template <class Fault>
 void parse(const std::string& text, std::deque<Fault>& faults) {
-  static const std::regex form(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9})(\+)?)?)");
+  static const auto& form =
+      *new const std::regex(R"(([a-z]+)(=(-?\d{1,9}))?(>(\d{1,12}))?@([^#,]+)(#(\d{1,9})(\+)?)?)");
   std::smatch match;
   if (!std::regex_match(text, match, form))
     throw UsageError("SUNDOG_FAULTS: wanted KIND[=VALUE][>SIZE]@WHERE[#N], found " + text);

@@ -61,11 +61,11 @@ std::string shortened(std::string name) {
 /// Temporary files are named PATH.HOST.PID.N.tmp and locked while written; if one is unlocked, its writer has
 /// died. The name contains the host, because locks may be invisible to other machines.
 std::string temporary_prefix(const fs::path& path) {
-  static const std::string host = [] {
+  static const auto& host = *new const auto([] {
     char name[256] = {};
     ::gethostname(name, sizeof name - 1);
     return fmt::format("{:08x}", std::hash<std::string>()(name) & 0xFFFFFFFFu);
-  }();
+  }());
   return fmt::format("{}.{}.", shortened(path.filename().string()), host);
 }
 

@@ -20,7 +20,7 @@ class SharedTable {
   SharedTable(std::vector<T> rows) : rows_(std::make_shared<std::vector<T>>(std::move(rows))) {}
 
   const std::vector<T>& rows() const {
-    static const std::vector<T> none;
+    static const auto& none = *new const std::vector<T>;
     return rows_ ? *rows_ : none;
   }
   operator const std::vector<T>&() const { return rows(); }

@@ -17,8 +17,8 @@ namespace {
 
 /// Normalises the spelling of a type ("unsigned int" and "uint" become "u32").
 std::string plain_type(std::string type) {
-  static const std::map<std::string, std::string> spellings = {
-      {"unsigned int", "u32"}, {"uint", "u32"}, {"int", "i32"}};
+  static const auto& spellings =
+      *new const std::map<std::string, std::string>{{"unsigned int", "u32"}, {"uint", "u32"}, {"int", "i32"}};
   const bool pointer = type.ends_with('*');
   if (type.starts_with("struct ")) type.erase(0, std::string_view("struct ").size());
   if (pointer) type.pop_back();

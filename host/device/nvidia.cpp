@@ -29,7 +29,7 @@ void add(std::optional<std::uint64_t>& sum, const std::optional<std::uint64_t>& 
 }  // namespace
 
 std::map<std::string, PtxasFigures> read_ptxas_log(const std::string& log) {
-  static const std::regex entry(R"(Compiling entry function '([^']+)')");
+  static const auto& entry = *new const std::regex(R"(Compiling entry function '([^']+)')");
   std::map<std::string, PtxasFigures> kernels;
   PtxasFigures* kernel = nullptr;
   std::istringstream in(log);

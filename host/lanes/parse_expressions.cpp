@@ -12,7 +12,7 @@ bool is_assignment(std::string_view sign) { return sign.ends_with('=') && !compa
 
 /// The precedence of a binary operator, 0 for other tokens.
 int strength_of(const std::string& sign) {
-  static const std::map<std::string, int> strengths{
+  static const auto& strengths = *new const std::map<std::string, int>{
       {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {">", 7},
       {"<=", 7}, {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
   const auto found = strengths.find(sign);
@@ -132,7 +132,7 @@ ExpressionPtr Parser::unary() {
   if (sign.kind == Token::Kind::number) return postfix(number());
   if (at_name()) return postfix(named());
   if (sign.is("(")) return cast_or_brackets();
-  static const std::set<std::string_view> known{"-", "!", "~", "*", "&", "++", "--"};
+  static const auto& known = *new const std::set<std::string_view>{"-", "!", "~", "*", "&", "++", "--"};
   if (!known.contains(sign.text)) fail(sign.place, "'{}' begins no expression", sign.text);
   ++at_;
   ExpressionPtr of = unary();

@@ -52,7 +52,7 @@ const Variable* Parser::declare(const std::string& named, const Type& type, cons
 }
 
 bool Parser::begins_declaration() const {
-  static const std::set<std::string_view> others{"return", "goto", "do"};
+  static const auto& others = *new const std::set<std::string_view>{"return", "goto", "do"};
   const bool has_two_names = at_name() && word(1).kind == Token::Kind::name;
   return (has_two_names && !others.contains(word().text)) || (begins_type() && !word(1).is("("));
 }

@@ -98,7 +98,7 @@ bool compares(std::string_view sign) {
 bool joins(std::string_view sign) { return sign == "&&" || sign == "||"; }
 
 const BuiltIn* built_in_of(const std::string& name) {
-  static const std::map<std::string, BuiltIn> all = built_ins();
+  static const auto& all = *new const std::map<std::string, BuiltIn>(built_ins());
   const auto found = all.find(name);
   return found == all.end() ? nullptr : &found->second;
 }

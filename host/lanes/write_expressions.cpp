@@ -178,7 +178,7 @@ std::string Writer::parts_of(const Expression& e, std::string_view wanted) {
 }
 
 std::string Writer::varying_vector_binary(const Expression& e) {
-  static const std::map<std::string, std::string> names{
+  static const auto& names = *new const std::map<std::string, std::string>{
       {"+", "add"}, {"-", "subtract"}, {"*", "multiply"}, {"/", "divide"}};
   std::string name = names.at(e.text);
   const Expression *a = e.of[0].get(), *b = e.of[1].get();

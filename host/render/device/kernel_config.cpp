@@ -104,7 +104,7 @@ void define_features(const SceneFeatures& features, const Define& define) {
 enum class Effect { same, unlayered, rounds, mask, room, alters };
 
 Effect effect_of(const std::string& definition) {
-  static const std::map<std::string, Effect> effects = [] {
+  static const auto& effects = *new const auto([] {
     std::map<std::string, Effect> all{{"HAS_BVH", Effect::same},       {"HAS_MESH", Effect::rounds},
                                       {"HAS_SDF", Effect::rounds},     {"BVH_LEVELS", Effect::room},
                                       {"BVH_STACK", Effect::room},     {"LIGHT_ROOM", Effect::room},
@@ -116,7 +116,7 @@ Effect effect_of(const std::string& definition) {
     SCENE_FEATURES(SUNDOG_FEATURE_EFFECT)
 #undef SUNDOG_FEATURE_EFFECT
     return all;
-  }();
+  }());
   const auto found = effects.find(definition);
   return found == effects.end() ? Effect::alters : found->second;
 }

@@ -167,12 +167,12 @@ Film Film::cut(const Tile& area) const {
 }
 
 const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> names = [] {
+  static const auto& names = *new const auto([] {
     std::vector<std::string> all;
     for (const AovPlace& place : places) all.emplace_back(place.name);
     for (const char* of_samples : {"samples", "rays", "variance"}) all.emplace_back(of_samples);
     return all;
-  }();
+  }());
   return names;
 }
 

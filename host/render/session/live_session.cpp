@@ -59,15 +59,19 @@ void LiveSession::begin(const Workers& workers) {
 }
 
 void LiveSession::end() {
-  {
-    const std::lock_guard lock(mutex);
-    if (std::exchange(closing, true)) return;
-    drop_frame();
-    drop_picks();
-    note();
-  }
-  control.join();
-  FrameLoop::end();
+  std::call_once(ended, [&] {
+    {
+      const std::lock_guard lock(mutex);
+      closing = true;
+      set_pending(std::nullopt);
+      drop_frame();
+      drop_picks();
+      if (state != SessionState::idle && !is_at_rest(state)) set_state(SessionState::stopped);
+      note();
+    }
+    control.join();
+    FrameLoop::end();
+  });
 }
 
 void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {

@@ -45,6 +45,7 @@ struct LiveSession : FrameLoop {
   double pixel_seconds = 0;
   Generation rested = 0;  // the last generation after which a worker prepared for later work
   std::thread control;
+  std::once_flag ended;
   SceneCompiler compiler;       // the control thread's
   std::mutex rendering;         // locked before `mutex`: one frame at a time is rendered to its end
   const void* rated = nullptr;  // the last such frame's scene, by which the threads' speeds are known
@@ -79,7 +80,7 @@ struct LiveSession : FrameLoop {
   }
 
   void begin(const Workers& workers);
-  /// Ends the threads. A second call does nothing.
+  /// Ends the threads, once; other calls wait for that.
   void end();
   /// Renders a frame to its end, replacing the current one.
   void run_final(const std::shared_ptr<SessionFrame>& mine);

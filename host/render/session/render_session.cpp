@@ -62,6 +62,10 @@ Generation RenderSession::start(std::shared_ptr<const SceneDescription> scene,
   LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   ++s.newest;
+  if (s.closing) {  // the process exits
+    s.set_state(SessionState::stopped);
+    return s.newest;
+  }
   s.set_pending(LiveSession::Order{s.newest, std::move(scene), settings, Stopwatch()});
   if (is_at_rest(s.state) || !s.is_awaited()) s.drop_frame();
   s.drop_picks();
@@ -222,7 +226,8 @@ std::optional<Picked> RenderSession::pick(int x, int y) {
       return s.closing || s.newest != mine || is_at_rest(s.state) || s.state == SessionState::idle ||
              (s.current && s.drawn()->generation == mine);
     });
-    if (s.newest != mine || !s.current || s.drawn()->generation != mine || s.state == SessionState::failed)
+    if (s.closing || s.newest != mine || !s.current || s.drawn()->generation != mine ||
+        s.state == SessionState::failed)
       return std::nullopt;
     const SceneInfo& info = s.current->flat->info;
     if (x < 0 || y < 0 || x >= static_cast<int>(info.width) || y >= static_cast<int>(info.height))

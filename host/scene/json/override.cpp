@@ -153,20 +153,29 @@ bool leads_through(std::string_view longer, std::string_view shorter) {
 
 bool overlap(std::string_view a, std::string_view b) { return leads_through(a, b) || leads_through(b, a); }
 
-std::string resolve_names(const json& document, std::string_view pointer) {
+namespace {
+
+/// `appends`: "-" is the last item.
+std::string resolved(const json& document, std::string_view pointer, bool appends) {
   std::string result;
   const json* place = &document;
   for (const std::string& token : split_pointer(pointer)) {
     auto index = place && place->is_array() ? item_index(*place, token) : std::nullopt;
-    if (place && place->is_array() && !place->empty() && token == "-") index = place->size() - 1;
+    if (appends && place && place->is_array() && !place->empty() && token == "-") index = place->size() - 1;
     result = join_pointer(result, index ? std::to_string(*index) : token);
     if (place) place = index ? &(*place)[*index] : child_of(*place, token);
   }
   return result;
 }
 
+}  // namespace
+
+std::string resolve_names(const json& document, std::string_view pointer) {
+  return resolved(document, pointer, false);
+}
+
 std::string pointer_of(const json& document, std::string_view setting) {
-  return resolve_names(document, setting.substr(0, end_of_pointer(document, setting)));
+  return resolved(document, setting.substr(0, end_of_pointer(document, setting)), true);
 }
 
 void set_value(json& document, std::string_view pointer, json value, const fs::path& file,

@@ -18,10 +18,10 @@ void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::jso
 /// UsageError for a malformed override.
 void apply_override(nlohmann::json& document, std::string_view setting, const std::filesystem::path& file);
 
-/// The pointer with indices in place of items' names, and with the last item's index in place of "-".
+/// The pointer with indices in place of items' names.
 std::string resolve_names(const nlohmann::json& document, std::string_view pointer);
 
-/// resolve_names() of an override's pointer.
+/// resolve_names() of the pointer of an override that was applied: "-" is the last item.
 std::string pointer_of(const nlohmann::json& document, std::string_view setting);
 
 /// Whether the value at `longer` is the value at `shorter` or a part of it.
