@@ -252,7 +252,7 @@ TEST_CASE("a kernel that does not build is an error with the compiler's log") {
   CHECK(error.log().find("no_such_function") != std::string::npos);
   sundog::Session session(test_device());
   session.start(scene);
-  CHECK(error_of([&] { (void)session.finish(); }).kind() == ErrorKind::device);
+  CHECK(error_of([&] { (void)session.finish(); }).kind() == ErrorKind::build);
   CHECK(session.snapshot().state == sundog::SessionState::failed);
 }
 
