@@ -63,7 +63,7 @@ struct SUNDOG_LOCAL Device::Handle {
 /// parent used such threads: the child lacks them and would wait forever for their locks.
 void enter_threads();
 /// Makes exit() wait first for the threads still in drivers: a driver's compiler creates static objects as it
-/// runs, and exit() destroys these before threads_of_process().
+/// runs, and exit() would destroy these before it waits for threads_of_process().
 void wait_for_threads_at_exit() noexcept;
 /// Whether this process is a child of fork() as above. Call only after threads have been used.
 bool is_forked() noexcept;
