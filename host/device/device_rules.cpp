@@ -17,14 +17,12 @@ namespace {
 constexpr std::array rules{
     // Inlining everything keeps structs in registers. With 128 registers a multiprocessor holds 16 warps, and
     // most kernels spill little or nothing. The tracer by itself fits into 64 registers without spills, so 32
-    // warps run instead of 20; testing four boxes at a time (NODE_LOOP=2) would spill 80 bytes. With a lathe,
-    // 64 registers would spill 808 bytes; 128 registers (16 warps) spill none.
+    // warps run instead of 20; testing four boxes at a time (NODE_LOOP=2) would spill 80 bytes.
     DeviceRule{.name = "nvidia",
                .reports = "NVIDIA",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
                .of_tracer = "-cl-nv-maxrregcount=64",
-               .of_lathes = "-cl-nv-maxrregcount=128",
                .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Testing four boxes at a time, the traversal needs 79 registers instead of 103, so 16 waves fit instead
@@ -78,10 +76,7 @@ bool DeviceRule::matches(const DeviceInfo& device) const {
 
 std::string_view DeviceRule::of_program(const KernelText& text) const {
   if (text.entry == "entry/render_path.cl") return of_paths;
-  if (text.entry != "entry/trace_rays.cl") return {};
-  const auto lathes = text.defines.find("HAS_LATHE");
-  const bool has_lathe = lathes != text.defines.end() && lathes->second == "1";
-  return has_lathe && !of_lathes.empty() ? of_lathes : of_tracer;
+  return text.entry == "entry/trace_rays.cl" ? of_tracer : std::string_view{};
 }
 
 std::span<const DeviceRule> device_rules() { return rules; }

@@ -18,7 +18,6 @@ struct DeviceRule {
   bool vectors = false;
   std::string_view options{};    // compiler options, and definitions that override the kernels' defaults
   std::string_view of_tracer{};  // for entry/trace_rays.cl; replace `options` of the same name
-  std::string_view of_lathes{};  // instead of of_tracer for scenes with lathes; empty: of_tracer
   std::string_view of_paths{};   // for entry/render_path.cl; replace `options` of the same name
   std::string_view tries{};      // alternatives for `sundog tune`: options_to_try()
   bool matches(const DeviceInfo& device) const;

@@ -1,5 +1,6 @@
 // One stage: hits for given rays, for tests and benchmarks of the tracer alone. A work-item takes BATCH rays
 // in a row. `coherent` says that they run close together.
+#define TRACES_ALONE
 #include "lib/trace/traverse.cl"
 
 #if LANES == 16

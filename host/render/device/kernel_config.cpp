@@ -66,17 +66,17 @@ u32 levels(const std::vector<Bvh8Node>& nodes, u32 root) {
 }
 
 /// Entries of the compact tracer's stack (kernels/lib/trace/single.cl): one per level of the scene's BVH and
-/// of the deepest mesh's, a leaf's other instances, and four for the ray in world space.
+/// of the deepest mesh's, a leaf's other instances, and four for the ray in world space; in scenes with
+/// lathes at least seven for a ray and its hit while a solid is tested.
 unsigned waiting_levels(const CompiledScene& scene) {
-  constexpr unsigned instances_and_ray = 5;
   std::set<u32> meshes;
   for (const Instance& instance : scene.instances)
     if (instance.shape == SHAPE_MESH) meshes.insert(instance.root);
   u32 deepest = 0;
   for (const u32 root : meshes) deepest = std::max(deepest, levels(scene.nodes, root));
   const u32 root = scene.info.tlas_root;
-  return (scene.info.bounded_count == 0 || (root & BVH_LEAF) ? 0 : levels(scene.nodes, root)) + deepest +
-         instances_and_ray;
+  const u32 in_scene = scene.info.bounded_count == 0 || (root & BVH_LEAF) ? 0 : levels(scene.nodes, root);
+  return in_scene + 1 + std::max(deepest + 4, scene.features.shapes[SHAPE_LATHE] ? 7u : 0u);
 }
 
 /// Rays marched together: the largest vector size that divides a work-item's batch.

@@ -100,6 +100,14 @@
 #define CLEARED_ON_GPUS
 #endif
 
+// Whether the program is the tracer by itself on a GPU, where it has few registers
+// (host/device/device_rules.cpp).
+#if defined(TRACES_ALONE) && defined(DEVICE_INLINES_ALL)
+#define FEW_REGISTERS 1
+#else
+#define FEW_REGISTERS 0
+#endif
+
 // 1: eight boxes or triangles per instruction, with explicit vectors. 0: one by one in rolled loops, for
 // devices with one ray per lane (native vector width 1), where explicit vectors only make the program eight
 // times as long.

@@ -17,24 +17,41 @@
 // A hit's part: the number of the arc, above BOX_FACE.
 #define ARC_SHIFT 9
 
-// Rays, with distances s from `base`, the line's point nearest to the origin.
+// GPUs read an arc where they need it: compilers would keep the whole in registers, but cannot know that t is
+// at most 1. The tracer by itself keeps rays and the ends of an arc in memory, too.
+#ifdef DEVICE_INLINES_ALL
+#define READ_AGAIN(pointer, t) ((pointer) + ((t) > 1.0f))
+#else
+#define READ_AGAIN(pointer, t) (pointer)
+#endif
+#if FEW_REGISTERS
+#define KEEP_LATHE(type, name) KEEP_IN_MEMORY(type, name)
+#define KEPT_AGAIN(pointer, t) READ_AGAIN(pointer, t)
+#else
+#define KEEP_LATHE(type, name) \
+  type kept_##name;            \
+  type* const name = &kept_##name
+#define KEPT_AGAIN(pointer, t) (pointer)
+#endif
+
+// Rays, with distances s from `base`, the line's point nearest to the origin, and their nearest hits so far.
 typedef struct LatheRays {
+  REAL m2;  // m squared
   REAL3 base, e;
   REAL shift, length;  // t = shift + s / length
   REAL sine, inverse;  // S, and 1 / S or 0
   REAL climb;          // 1 / e.y
   REAL middle, level;  // s where the line is nearest to the axis; S times the height there
-  REAL m2;             // m squared
   REAL from, to;       // the range of s, slightly wider
   MASK steep;
+  REAL t_min, t;  // t: of the hit, else t_max
+  REAL3 ng;
+  MASK part;  // -1: no hit
 } LatheRays;
 
-// One of them, and the nearest hit so far: its t, or else t_max.
+// One of them, as arcs are searched with it.
 typedef struct LatheRay {
-  float3 base, e;
-  float shift, length, sine, inverse, middle, level, m2;
-  float t_min, t;
-  float3 ng;
+  float sine, level, m2;
 } LatheRay;
 
 static inline LatheRays lathe_rays(REAL3 o, REAL3 d, REAL t_min, REAL t_max, MASK active) {
@@ -63,20 +80,15 @@ static inline LatheRays lathe_rays(REAL3 o, REAL3 d, REAL t_min, REAL t_max, MAS
   const REAL from = (t_min - rays.shift) * rays.length, to = (t_max - rays.shift) * rays.length;
   rays.from = from - fma(fabs(from), (REAL)(1e-5f), (REAL)(1e-4f));
   rays.to = to + fma(fabs(to), (REAL)(1e-5f), (REAL)(1e-4f));
+  rays.t_min = t_min;
+  rays.t = t_max;
+  rays.ng = real3(zero, zero, zero);
+  rays.part = (MASK)(-1);
   return rays;
 }
 
 static inline LatheRay lathe_ray(const LatheRays* rays, u32 i) {
-  LatheRay ray;
-  ray.base = get3(&rays->base, i);
-  ray.e = get3(&rays->e, i);
-  ray.shift = REAL_LANE(rays->shift, i);
-  ray.length = REAL_LANE(rays->length, i);
-  ray.sine = REAL_LANE(rays->sine, i);
-  ray.inverse = REAL_LANE(rays->inverse, i);
-  ray.middle = REAL_LANE(rays->middle, i);
-  ray.level = REAL_LANE(rays->level, i);
-  ray.m2 = REAL_LANE(rays->m2, i);
+  const LatheRay ray = {REAL_LANE(rays->sine, i), REAL_LANE(rays->level, i), REAL_LANE(rays->m2, i)};
   return ray;
 }
 
@@ -124,39 +136,46 @@ static inline bool newton_step(float* t, float off, float slope, float low, floa
   return fabs(*t - before) > 0x1p-24f;
 }
 
+typedef struct ArcEnds {
+  ArcPlace first, last;
+} ArcEnds;
+
 // Where the radius becomes m on an arc of which an end, the first or the last, is inside. There both halves
 // begin, with the same E.
-static inline ArcPlace outer_end(const LatheRay* ray, const ProfileArc* arc, bool first_inside) {
+static inline ArcPlace outer_end(const LatheRay* ray, __global const ProfileArc* arc, bool first_inside) {
   float low = 0.0f, high = 1.0f, t = 0.5f;
 #pragma unroll 1
   for (u32 i = 0; i < 40u; ++i) {
-    const float r = arc_point(arc, t).x, off = outside_of(r, ray->m2);
+    const ProfileArc now = *READ_AGAIN(arc, t);
+    const float r = arc_point(&now, t).x, off = outside_of(r, ray->m2);
     if ((off < 0.0f) == first_inside)
       low = t;
     else
       high = t;
-    if (!newton_step(&t, off, 2.0f * r * arc_slope(arc, t).x, low, high)) break;
+    if (!newton_step(&t, off, 2.0f * r * arc_slope(&now, t).x, low, high)) break;
   }
-  ArcPlace end = arc_place(ray, arc, t);
+  const ProfileArc now = *READ_AGAIN(arc, t);
+  ArcPlace end = arc_place(ray, &now, t);
   end.q = 0.0f;
   return end;
 }
 
 // The root of E between two places where its signs differ.
-static inline float arc_root(const LatheRay* ray, const ProfileArc* arc, float g, const ArcPlace* a,
+static inline float arc_root(const LatheRay* ray, __global const ProfileArc* arc, float g, const ArcPlace* a,
                              const ArcPlace* b) {
   const float at_a = value_at(a, g), at_b = value_at(b, g);
   float low = a->t, high = b->t, t = fma(high - low, at_a / (at_a - at_b), low);
   if (!(t > low && t < high)) t = 0.5f * (low + high);
 #pragma unroll 1
   for (u32 i = 0; i < 40u; ++i) {
-    const ArcPlace place = arc_place(ray, arc, t);
+    const ProfileArc now = *READ_AGAIN(arc, t);
+    const ArcPlace place = arc_place(ray, &now, t);
     const float off = value_at(&place, g);
     if ((off < 0.0f) == (at_a < 0.0f))
       low = t;
     else
       high = t;
-    const float2 slope = arc_slope(arc, t);
+    const float2 slope = arc_slope(&now, t);
     const float rise = fma(ray->sine * slope.y, place.q, -(g * place.r * slope.x));
     const bool ends = place.q == 0.0f;  // the slope of E is infinite
     if (!newton_step(&t, ends ? off : off * place.q, ends ? 0.0f : rise, low, high)) break;
@@ -166,43 +185,49 @@ static inline float arc_root(const LatheRay* ray, const ProfileArc* arc, float g
 
 // The distance of the ray's point at s from the surface, by its tangent at p; its slope and the direction
 // away from the axis.
-static inline float off_surface(const LatheRay* ray, float2 p, float2 normal, float s, float* slope,
+static inline float off_surface(const LatheRays* rays, u32 i, float2 p, float2 normal, float s, float* slope,
                                 float2* out) {
-  const float3 at = ray->base + s * ray->e;
+  const float3 e = get3(&rays->e, i), at = get3(&rays->base, i) + s * e;
   const float rho = sqrt(fma(at.x, at.x, at.z * at.z));
   *out = rho > 0.0f ? (float2)(at.x, at.z) / rho : (float2)(0.0f);
-  *slope = fma(normal.x, dot(*out, (float2)(ray->e.x, ray->e.z)), normal.y * ray->e.y);
+  *slope = fma(normal.x, dot(*out, (float2)(e.x, e.z)), normal.y * e.y);
   return fma(normal.x, rho - p.x, normal.y * (at.y - p.y));
 }
 
 // Offers the hit at t of an arc, on the half `side` of the line, -1 or 1.
-static inline void offer_on_arc(const ProfileArc* arc, float side, float t, LatheRay* ray, bool* found) {
-  const float2 p = arc_point(arc, t), way = arc_way(arc, t);
+static inline void offer_on_arc(__global const ProfileArc* arc, int part, float side, float t,
+                                LatheRays* kept, u32 i) {
+  const ProfileArc now = *READ_AGAIN(arc, t);
+  LatheRays* rays = KEPT_AGAIN(kept, t);
+  const float2 p = arc_point(&now, t), way = arc_way(&now, t);
   const float2 normal = (float2)(way.y, -way.x) / sqrt(dot(way, way));
-  const float by_height = (p.y - ray->base.y) / ray->e.y, q = sqrt(fmax(outside_of(p.x, ray->m2), 0.0f)),
-              by_radius = fma(side * q, ray->inverse, ray->middle);
+  const float inverse = REAL_LANE(rays->inverse, i);
+  const float by_height = (p.y - REAL_LANE(rays->base.y, i)) / REAL_LANE(rays->e.y, i),
+              q = sqrt(fmax(outside_of(p.x, REAL_LANE(rays->m2, i)), 0.0f)),
+              by_radius = fma(side * q, inverse, REAL_LANE(rays->middle, i));
   float slope;
   float2 out;
   // From the height or from the radius: the one nearer to the surface.
-  const float high = off_surface(ray, p, normal, by_height, &slope, &out),
-              wide = off_surface(ray, p, normal, by_radius, &slope, &out);
-  float s = fabs(high) < fabs(wide) || ray->inverse == 0.0f ? by_height : by_radius;
-  for (u32 i = 0; i < 2u; ++i) {
-    const float off = off_surface(ray, p, normal, s, &slope, &out);
-    if (i == 0u && fabs(slope) >= 0.05f) s -= off / slope;
+  const float high = off_surface(rays, i, p, normal, by_height, &slope, &out),
+              wide = off_surface(rays, i, p, normal, by_radius, &slope, &out);
+  float s = fabs(high) < fabs(wide) || inverse == 0.0f ? by_height : by_radius;
+  for (u32 k = 0; k < 2u; ++k) {
+    const float off = off_surface(rays, i, p, normal, s, &slope, &out);
+    if (k == 0u && fabs(slope) >= 0.05f) s -= off / slope;
   }
-  const float along = ray->shift + s / ray->length;
-  if (!(along > ray->t_min && along <= ray->t)) return;
-  ray->t = along;
-  ray->ng = (float3)(normal.x * out.x, normal.y, normal.x * out.y);
-  *found = true;
+  const float along = REAL_LANE(rays->shift, i) + s / REAL_LANE(rays->length, i);
+  if (!(along > REAL_LANE(rays->t_min, i) && along <= REAL_LANE(rays->t, i))) return;
+  REAL_LANE(rays->t, i) = along;
+  set3(&rays->ng, i, (float3)(normal.x * out.x, normal.y, normal.x * out.y));
+  MASK_LANE(rays->part, i) = part;
 }
 
 // Whether E is monotone between two places where the radius and the height pull it different ways: one of
 // them outdoes the other.
-static inline bool one_outdoes(const LatheRay* ray, const ProfileArc* arc, float g, const ArcPlace* a,
-                               const ArcPlace* b) {
-  const float2 from = fabs(arc_slope(arc, a->t)), to = fabs(arc_slope(arc, b->t));
+static inline bool one_outdoes(const LatheRay* ray, __global const ProfileArc* arc, float g,
+                               const ArcPlace* a, const ArcPlace* b) {
+  const ProfileArc now = *READ_AGAIN(arc, a->t);
+  const float2 from = fabs(arc_slope(&now, a->t)), to = fabs(arc_slope(&now, b->t));
   const ArcPlace inner = a->r < b->r ? *a : *b, outer = a->r < b->r ? *b : *a;
   return ray->sine * fmin(from.y, to.y) * inner.q > fabs(g) * fmax(from.x, to.x) * inner.r ||
          ray->sine * fmax(from.y, to.y) * outer.q < fabs(g) * fmin(from.x, to.x) * outer.r;
@@ -217,25 +242,32 @@ static inline bool may_be_zero(float g, const ArcPlace* a, const ArcPlace* b) {
 // Intervals are halved this often: what a chord of the 4096th part of an arc cuts off is within rounding.
 #define ARC_HALVINGS 12u
 
-// Offers the hits of the half `side` of a line on an arc, between `first` and `last`.
-static inline void meet_half(const ProfileArc* arc, float side, const ArcPlace* first, const ArcPlace* last,
-                             LatheRay* ray, bool* found) {
-  const float g = side * ray->e.y, width = last->t - first->t;
-  const bool pulled_apart = (arc->end.y - arc->y.x) * g * (arc->end.x - arc->r.x) > 0.0f;
+// Offers the hits of the half `side` of a line on an arc, between the ends.
+static inline void meet_half(__global const ProfileArc* arc, int part, float side, const ArcEnds* ends,
+                             LatheRays* rays, u32 i) {
+  const LatheRay ray = lathe_ray(rays, i);
+  const float g = side * REAL_LANE(rays->e.y, i);
+  ArcPlace a = ends->first;
+  const ProfileArc whole = *READ_AGAIN(arc, a.t);
+  const bool pulled_apart = (whole.end.y - whole.y.x) * g * (whole.end.x - whole.r.x) > 0.0f;
   u32 number = 0, halvings = 0;  // of the interval that begins at a
-  ArcPlace a = *first;
 #pragma unroll 1
   while (number < 1u << halvings) {
     const u32 all = 1u << halvings;
-    ArcPlace b = *last;
-    if (number + 1u < all) b = arc_place(ray, arc, fma(width, (float)(number + 1u) / (float)(all), first->t));
+    ArcPlace b = KEPT_AGAIN(ends, a.t)->last;
+    if (number + 1u < all) {
+      const float first = KEPT_AGAIN(ends, a.t)->first.t,
+                  t = fma(b.t - first, (float)(number + 1u) / (float)(all), first);
+      const ProfileArc now = *READ_AGAIN(arc, t);
+      b = arc_place(&ray, &now, t);
+    }
     const bool meets = may_be_zero(g, &a, &b);
-    if (meets && pulled_apart && halvings < ARC_HALVINGS && !one_outdoes(ray, arc, g, &a, &b)) {
+    if (meets && pulled_apart && halvings < ARC_HALVINGS && !one_outdoes(&ray, arc, g, &a, &b)) {
       number *= 2u;
       ++halvings;
     } else {
       if (meets && (value_at(&a, g) < 0.0f) != (value_at(&b, g) < 0.0f))
-        offer_on_arc(arc, side, arc_root(ray, arc, g, &a, &b), ray, found);
+        offer_on_arc(arc, part, side, arc_root(&ray, arc, g, &a, &b), rays, i);
       a = b;
       ++number;
       const u32 ended = min(halvings, lowest_bit(number));  // halves whose second half is done
@@ -245,20 +277,28 @@ static inline void meet_half(const ProfileArc* arc, float side, const ArcPlace* 
   }
 }
 
-// Returns whether the arc has a hit in (t_min, t]. `sides`: bit 0, the half before the line's point nearest
-// to the axis; bit 1, the other.
-NEVER_INLINE bool closest_on_arc(const ProfileArc* arc, u32 sides, LatheRay* ray) {
-  ArcPlace first = arc_place(ray, arc, 0.0f), last = arc_place(ray, arc, 1.0f);
-  const bool first_inside = outside_of(first.r, ray->m2) < 0.0f,
-             last_inside = outside_of(last.r, ray->m2) < 0.0f;
-  if (first_inside && last_inside) return false;
-  if (first_inside) first = outer_end(ray, arc, true);
-  if (last_inside) last = outer_end(ray, arc, false);
-  bool found = false;
+// Offers the arc's hits. `sides`: bit 0, the half before the line's point nearest to the axis; bit 1, the
+// other.
+NEVER_INLINE void closest_on_arc(__global const ProfileArc* arc, int part, u32 sides, LatheRays* rays,
+                                 u32 i) {
+  const LatheRay ray = lathe_ray(rays, i);
+  const ProfileArc whole = *arc;
+  KEEP_LATHE(ArcEnds, ends);
+  ends->first = arc_place(&ray, &whole, 0.0f);
+  ends->last = arc_place(&ray, &whole, 1.0f);
+  const bool first_inside = outside_of(ends->first.r, ray.m2) < 0.0f,
+             last_inside = outside_of(ends->last.r, ray.m2) < 0.0f;
+  if (first_inside && last_inside) return;
+  if (first_inside || last_inside) {
+    const ArcPlace end = outer_end(&ray, arc, first_inside);
+    if (first_inside)
+      ends->first = end;
+    else
+      ends->last = end;
+  }
 #pragma unroll 1
-  for (u32 i = 0; i < 2u; ++i)
-    if (sides >> i & 1u) meet_half(arc, i ? 1.0f : -1.0f, &first, &last, ray, &found);
-  return found;
+  for (u32 k = 0; k < 2u; ++k)
+    if (sides >> k & 1u) meet_half(arc, part, k ? 1.0f : -1.0f, ends, rays, i);
 }
 
 // The box around an arc, as lines see it: S times heights less the level, and q.
@@ -268,7 +308,7 @@ typedef struct ArcBoxes {
   MASK reached;
 } ArcBoxes;
 
-static inline ArcBoxes arc_boxes(const LatheRays* rays, const ProfileArc* arc) {
+static inline ArcBoxes arc_boxes(const LatheRays* rays, __global const ProfileArc* arc) {
   const REAL zero = (REAL)(0.0f), inner = (REAL)(fmin(arc->r.x, arc->end.x)),
              outer = (REAL)(fmax(arc->r.x, arc->end.x));
   const REAL outside = fma(outer, outer, -rays->m2);
@@ -297,28 +337,26 @@ static inline MASK may_meet_arc(const LatheRays* rays, const ArcBoxes* box, floa
 
 static inline void closest_in_lathe(float4 parameters, REAL3 o, REAL3 d, REAL t_min, MASK active,
                                     SolidHits* hits) {
-  LatheRays rays = lathe_rays(o, d, t_min, hits->t, active);
-  active &= MASK_OF(rays.length > 0.0f) & MASK_OF(rays.m2 < parameters.z * parameters.z);
+  KEEP_LATHE(LatheRays, rays);
+  *rays = lathe_rays(o, d, t_min, hits->t, active);
+  active &= MASK_OF(rays->length > 0.0f) & MASK_OF(rays->m2 < parameters.z * parameters.z);
   if (!any_lane(active)) return;
   __global const ProfileArc* arcs = hits->profiles + (u32)parameters.x;
 #pragma unroll 1
   for (u32 index = 0; index < (u32)parameters.y; ++index) {
-    const ProfileArc arc = arcs[index];
-    const ArcBoxes box = arc_boxes(&rays, &arc);
-    const MASK reached = active & box.reached, before = reached & may_meet_arc(&rays, &box, -1.0f),
-               behind = reached & may_meet_arc(&rays, &box, 1.0f);
+    const ArcBoxes box = arc_boxes(rays, arcs + index);
+    const MASK reached = active & box.reached, before = reached & may_meet_arc(rays, &box, -1.0f),
+               behind = reached & may_meet_arc(rays, &box, 1.0f);
     EACH_LANE(i, before | behind) {
-      LatheRay ray = lathe_ray(&rays, i);
-      ray.t_min = REAL_LANE(t_min, i);
-      ray.t = REAL_LANE(hits->t, i);
       const u32 sides = (u32)(-MASK_LANE(before, i) - 2 * MASK_LANE(behind, i));
-      if (!closest_on_arc(&arc, sides, &ray)) continue;
-      REAL_LANE(hits->t, i) = ray.t;
-      set3(&hits->ng, i, ray.ng);
-      MASK_LANE(hits->part, i) = (int)(index << ARC_SHIFT);
-      MASK_LANE(hits->found, i) = -1;
+      closest_on_arc(arcs + index, (int)(index << ARC_SHIFT), sides, rays, i);
     }
   }
+  const MASK found = MASK_OF(rays->part >= 0);
+  hits->t = select(hits->t, rays->t, found);
+  hits->ng = select3(hits->ng, rays->ng, found);
+  hits->part = select(hits->part, rays->part, found);
+  hits->found |= found;
 }
 
 // The arc of a part, and its t at a point near it.

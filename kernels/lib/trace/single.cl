@@ -127,6 +127,18 @@ ALWAYS_INLINE float entry_distance(__global const BvhNode* node, u32 slot, const
   return as_float((u32)near & ~KEY_SLOT);
 }
 
+// A ray in three entries of the stack.
+ALWAYS_INLINE void write_ray(const LeanRay* ray, uint2* entries) {
+  entries[0] = as_uint2(ray->o.xy);
+  entries[1] = as_uint2((float2)(ray->o.z, ray->d.x));
+  entries[2] = as_uint2(ray->d.yz);
+}
+ALWAYS_INLINE void read_ray(const uint2* entries, LeanRay* ray) {
+  const float2 a = as_float2(entries[0]), b = as_float2(entries[1]), c = as_float2(entries[2]);
+  // One by one: Oclgrind ends at vectors in vectors.
+  *ray = lean_ray((float3)(a.x, a.y, b.x), (float3)(b.y, c.x, c.y));
+}
+
 // Takes the next word to visit from the stack, and the ray in world space when its mesh is done. False: none.
 ALWAYS_INLINE bool next_word(const Scene* scene, float t_min, float t_max, uint2* stack, u32* top,
                              LeanRay* ray, u32* mesh, u32* word) {
@@ -134,10 +146,7 @@ ALWAYS_INLINE bool next_word(const Scene* scene, float t_min, float t_max, uint2
     const uint2 next = stack[*top - 1u];
     if (next.y == WAITING_RAY) {
       *top -= 4u;
-      const float2 a = as_float2(stack[*top]), b = as_float2(stack[*top + 1u]),
-                   c = as_float2(stack[*top + 2u]);
-      // One by one: Oclgrind ends at vectors in vectors.
-      *ray = lean_ray((float3)(a.x, a.y, b.x), (float3)(b.y, c.x, c.y));
+      read_ray(stack + *top, ray);
       *mesh = NO_INSTANCE;
       continue;
     }
@@ -163,9 +172,7 @@ ALWAYS_INLINE bool next_word(const Scene* scene, float t_min, float t_max, uint2
 // Puts the ray on the stack and takes it into the mesh of the instance.
 ALWAYS_INLINE void enter_mesh(const Scene* scene, u32 index, float time, uint2* stack, u32* top,
                               LeanRay* ray) {
-  stack[*top] = as_uint2(ray->o.xy);
-  stack[*top + 1u] = as_uint2((float2)(ray->o.z, ray->d.x));
-  stack[*top + 2u] = as_uint2(ray->d.yz);
+  write_ray(ray, stack + *top);
   stack[*top + 3u] = (uint2)(0u, WAITING_RAY);
   *top += 4u;
   __global const Instance* instance = scene->instances + index;
@@ -173,6 +180,29 @@ ALWAYS_INLINE void enter_mesh(const Scene* scene, u32 index, float time, uint2* 
     *ray = lean_ray(object_point(instance, still_point(scene, index, ray->o, time)),
                     object_vector(instance, still_vector(scene, index, ray->d, time)));
 }
+
+#if HAS_LATHE && FEW_REGISTERS
+// Tests a solid while the ray and its hit wait on the stack: a lathe's test takes the registers.
+ALWAYS_INLINE void trace_solid_alone(const Scene* scene, u32 index, float t_min, float time, uint2* stack,
+                                     u32* top, LeanRay* ray, Hit* hit) {
+  uint2* to = stack + *top;
+  write_ray(ray, to);
+  to[3] = as_uint2((float2)(hit->t, hit->u));
+  to[4] = (uint2)(as_uint(hit->v), hit->prim);
+  to[5] = (uint2)(hit->instance, as_uint(hit->ng_x));
+  to[6] = as_uint2((float2)(hit->ng_y, hit->ng_z));
+  volatile u32 waiting_top = *top;  // compilers cannot know that they read what they have written
+  Hit met = {.t = hit->t, .instance = hit->instance};
+  trace_solid(scene, index, ray->o, ray->d, t_min, time, &met);
+  *top = waiting_top;
+  const uint2 *from = stack + *top, tu = from[3], v_prim = from[4], instance_x = from[5], yz = from[6];
+  read_ray(from, ray);
+  hit->t = as_float(tu.x), hit->u = as_float(tu.y), hit->v = as_float(v_prim.x);
+  hit->prim = v_prim.y, hit->instance = instance_x.x;
+  hit->ng_x = as_float(instance_x.y), hit->ng_y = as_float(yz.x), hit->ng_z = as_float(yz.y);
+  if (met.instance == index && (hit->instance != index || met.t < hit->t)) *hit = met;
+}
+#endif
 
 // Traces the bounded instances below `word` of the scene BVH, and their meshes' BVHs, in one loop. A hit's
 // prim is for finish_triangle.
@@ -207,7 +237,11 @@ static inline void trace_bounded(const Scene* scene, u32 word, float3 o, float3 
         word = scene->instances[index].root;
         continue;
       }
+#if HAS_LATHE && FEW_REGISTERS
+      trace_solid_alone(scene, index, t_min, time, stack, &top, &ray, &hit);
+#else
       trace_solid(scene, index, ray.o, ray.d, t_min, time, &hit);
+#endif
       if (any && hit.instance != NO_INSTANCE) break;
     }
     if (!next_word(scene, t_min, hit.t, stack, &top, &ray, &mesh, &word)) break;

@@ -118,6 +118,10 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
   return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
 }
 
+// Whether solids are tested in turn: with meshes, only planes are, which have no bounds. Scenes with lathes
+// save a second copy of their long test, and its registers, by it.
+#define SOLIDS_IN_TURN (HAS_SOLID && (!HAS_LATHE || !HAS_MESH || HAS_PLANE))
+
 // Sets the hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, if objects move. `way`:
 // TRACE_* bits.
 static inline void find_hits(const Scene* scene, const TraceRays* rays, REAL t_max, REAL time, MASK active,
@@ -129,7 +133,7 @@ static inline void find_hits(const Scene* scene, const TraceRays* rays, REAL t_m
   active &= traceable(rays->o, rays->d, *rays->t_min, t_max);
   const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);
   const u32 first = in_tree ? scene->info->bounded_count : 0u;
-  if (HAS_SOLID && first < scene->info->instance_count)
+  if (SOLIDS_IN_TURN && first < scene->info->instance_count)
     hit_solids(scene->instances, (uint2)(first, scene->info->instance_count), rays->o, rays->d, rays->t_min,
                active, way & TRACE_ANY, hits);
   if (!HAS_BVH) return;

@@ -39,16 +39,10 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
   }
 }
 
-TEST_CASE("NVIDIA's tracer takes twice the registers for lathes, which would spill") {
-  const auto tracer = [](const DeviceInfo& device, const char* has_lathe) {
-    return all_build_options(device, {},
-                             {.entry = "entry/trace_rays.cl", .defines = {{"HAS_LATHE", has_lathe}}});
-  };
+TEST_CASE("NVIDIA's tracer by itself takes half the registers") {
   const DeviceInfo nvidia = gpu("NVIDIA Corporation", "NVIDIA CUDA");
-  CHECK_THAT(tracer(nvidia, "0"), ContainsSubstring("-cl-nv-maxrregcount=64"));
-  CHECK_THAT(tracer(nvidia, "1"), ContainsSubstring("-cl-nv-maxrregcount=128"));
-  const DeviceInfo intel = gpu("Intel(R) Corporation", "Intel(R) OpenCL Graphics");
-  CHECK(tracer(intel, "1") == tracer(intel, "0"));
+  CHECK_THAT(options_of(nvidia, "trace_rays"), ContainsSubstring("-cl-nv-maxrregcount=64"));
+  CHECK_THAT(options_of(nvidia, "render_path"), ContainsSubstring("-cl-nv-maxrregcount=128"));
 }
 
 TEST_CASE("a tuning's options take the place of the rule's, and a user's take theirs") {
