@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/names.h"
+#include "scene/json/members.h"
 #include "scene/materials/presets.h"
 #include "scene/read/surface_terms.h"
 #include "scene/read/textures.h"
@@ -275,8 +276,7 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
     MediumDescription medium{.name = std::move(name)};
     read_index(object, medium);
     if (const auto absorption = object.find("absorption")) medium.absorption = read_absorption(*absorption);
-    object.read("scattering", medium.scattering, "anisotropy", medium.anisotropy, "priority",
-                medium.priority);
+    read_members(object, medium, {"ior", "absorption"});
     return medium;
   });
 }
@@ -290,10 +290,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.name = std::move(name);
     std::string shading;
     object.read("type", material.type, "shading", shading);
-#define SUNDOG_READ_KEY(of, name, ...) object.read(#name, material.name);
-    LOBE_KEYS(SUNDOG_READ_KEY)
-#undef SUNDOG_READ_KEY
-    object.read("multiple_scattering", material.multiple_scattering);
+    object.read("roughness", material.roughness, "multiple_scattering", material.multiple_scattering);
     const bool dielectric = material.type == MaterialType::dielectric;
     read_local_terms(object, material, textures);
     material.blinn = shading == "blinn";

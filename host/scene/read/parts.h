@@ -27,6 +27,7 @@ std::filesystem::path find_file(const JsonValue& value);
 /// Reads the camera. `position` and `target` must both be given or both be missing; `placed` returns whether
 /// they are given. Focal lengths are in millimetres, so `unit` is needed: metres per scene unit.
 Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed);
+ToneMap read_tone_map(const JsonValue& value);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
 /// `unit`: metres per scene unit, for the power of lamps.
