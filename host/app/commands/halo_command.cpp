@@ -65,8 +65,15 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
 
 EnvironmentDescription halo_of(const HaloOptions& options) {
   EnvironmentDescription e = read_halo(options);
-  if (!options.altitude.empty()) e.sun_altitude = parse_real("--altitude", options.altitude, 0, 90);
-  if (!options.rays.empty()) e.halo.rays = parse_number("--rays", options.rays, 1000, 400'000'000);
+  if (!options.altitude.empty()) {
+    const Range limits = limits_of("halo_sun", "altitude");
+    e.sun_altitude = parse_real("--altitude", options.altitude, limits.low, limits.high);
+  }
+  if (!options.rays.empty()) {
+    const Range limits = limits_of("halo_environment", "rays");
+    e.halo.rays =
+        parse_number("--rays", options.rays, static_cast<int>(limits.low), static_cast<int>(limits.high));
+  }
   return e;
 }
 

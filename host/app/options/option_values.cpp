@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/numbers.h"
+#include "render/film/film.h"
 #include "scene/json/value.h"
 #include "scene/read/parts.h"
 
@@ -38,11 +39,6 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
-/// The schema's limits for a number in a section of a scene.
-Range limits_of(const char* section, const char* key, SchemaRule::Type type) {
-  return schema_rule(section)->keys.at(key).rule->as(type)->range;
-}
-
 /// The options for a picture's colours that were given, as members of /image/tone_map.
 json tone_values(const PictureOptions& picture) {
   json values = json::object();
@@ -63,6 +59,10 @@ json tone_values(const PictureOptions& picture) {
 }
 
 }  // namespace
+
+Range limits_of(const char* kind, const char* key) {
+  return schema_rule(kind)->keys.at(key).rule->as(SchemaRule::Type::number)->range;
+}
 
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture) {
   std::vector<std::string> all;
@@ -85,7 +85,7 @@ int parse_number(const char* option, const std::string& text, int low, int high)
 }
 
 std::string render_setting(const char* option, const char* key, const std::string& text) {
-  const Range limits = limits_of("render", key, SchemaRule::Type::integer);
+  const Range limits = limits_of("render", key);
   return fmt::format("/render/{}={}", key,
                      parse_number(option, text, static_cast<int>(limits.low), static_cast<int>(limits.high)));
 }
@@ -171,6 +171,14 @@ std::vector<std::string> parse_image_size(const std::string& text) {
     throw UsageError(
         fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
   return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
+}
+
+std::vector<std::string> made_aovs(const RenderCommand& command) {
+  std::vector<std::string> aovs = command.aovs;
+  if (command.denoise)
+    for (const char* wanted : {feature_albedo, feature_normal})
+      if (std::ranges::count(aovs, wanted) == 0) aovs.emplace_back(wanted);
+  return aovs;
 }
 
 void check_override(const std::string& setting) {

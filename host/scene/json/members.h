@@ -5,7 +5,7 @@
 #include <boost/pfr.hpp>
 #include <initializer_list>
 
-#include "base/member_names.h"
+#include "base/code_names.h"
 #include "scene/json/value.h"
 
 namespace sundog {

@@ -30,11 +30,12 @@ dvec3 read_absorption(const JsonValue& value) {
 
 /// Checks that a dispersion formula gives a valid index at every visible wavelength.
 void check_indices(const JsonValue& value, MediumDescription& medium) {
+  const Range range = schema_rule("ior")->as(SchemaRule::Type::number)->range;
   for (double wavelength = 380; wavelength <= 780; wavelength += 5) {
     const double index = index_at(medium.dispersion, medium.ior, wavelength);
-    if (!(index >= ior_range.low && index <= ior_range.high))
+    if (!(index >= range.low && index <= range.high))
       value.fail(fmt::format("the index of refraction at {} nm is {:.4g}, and should be from {} to {}",
-                             wavelength, index, ior_range.low, ior_range.high));
+                             wavelength, index, range.low, range.high));
   }
   medium.ior = index_at(medium.dispersion, medium.ior, line_d);
 }

@@ -32,6 +32,9 @@ ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
 /// `unit`: metres per scene unit, for the power of lamps.
 LightDescription read_light(const JsonValue& value, double unit);
+/// Refuses more groups of lights than a film has sums for.
+void check_light_groups(const SceneDescription& scene, const JsonValue& root);
+
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);

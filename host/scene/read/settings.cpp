@@ -1,5 +1,6 @@
 // Reads the camera, the image, the render settings, the environment and the lights.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "scene/json/members.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
+#include "scene/light_groups.h"
 #include "scene/read/parts.h"
 #include "scene/spectra/cie.h"
 
@@ -239,7 +241,7 @@ EnvironmentDescription read_environment(const JsonValue& value,
   const std::string type = value.type();
   return value.object(type + "_environment", [&](JsonObject& object) {
     EnvironmentDescription e;
-    e.type = *value_named(environment_types, type);
+    e.type = enumerator_named<EnvironmentType>(type);
     read_members(object, e, {"type", "up"});
     if (const auto up = object.find("up")) e.up = up->direction();
     if (e.type == EnvironmentType::image) {
@@ -272,6 +274,12 @@ LightDescription read_light(const JsonValue& value, double unit) {
     if (object.knows("watts")) read_power(object, unit, light);
     return light;
   });
+}
+
+void check_light_groups(const SceneDescription& scene, const JsonValue& root) {
+  if (const auto groups = light_groups(scene); groups.size() > most_light_groups)
+    root.fail(fmt::format("wanted at most {} groups of lights, found {}: {}", most_light_groups,
+                          groups.size(), fmt::join(groups, ", ")));
 }
 
 }  // namespace sundog

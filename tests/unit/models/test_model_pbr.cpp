@@ -1,8 +1,8 @@
 // MTL's PBR statements, as Blender writes them, against the same materials as glTF.
 #include <models/model.h>
 
+#include "base/code_names.h"
 #include "base/image_io.h"
-#include "base/member_names.h"
 #include "catch.h"
 #include "gltf_text.h"
 #include "model_files.h"
