@@ -82,8 +82,8 @@ Choices choices_of_frame(const DeviceInfo& device, const CompiledScene& scene) {
   }
   choices.launches.insert(choices.launches.end(), {10, 25, 100, 200});
   choices.tiles.insert(choices.tiles.end(), {50, 100, 500, 1000});
-  for (std::vector<std::string>& values : options_to_try(device, find_integrator(scene.integrator)->entry)) {
-    if (values.front().starts_with("-DNODE_LOOP") && !traces_compact(scene, device)) continue;
+  for (std::vector<std::string>& values :
+       options_to_try(device, find_integrator(scene.integrator)->entry, traces_compact(scene, device))) {
     values.insert(values.begin(), "");
     choices.options.push_back(std::move(values));
   }

@@ -18,7 +18,6 @@ enum class ToneCurve { none, reinhard, aces, agx };
 inline constexpr std::array tone_curves = {
     NamedValue<ToneCurve>{"none", ToneCurve::none}, NamedValue<ToneCurve>{"reinhard", ToneCurve::reinhard},
     NamedValue<ToneCurve>{"aces", ToneCurve::aces}, NamedValue<ToneCurve>{"agx", ToneCurve::agx}};
-inline constexpr auto tone_curve_names = names_of(tone_curves);
 
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;

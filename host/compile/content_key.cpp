@@ -107,6 +107,11 @@ KeyMaker& KeyMaker::add(const Camera& camera) {
   return *this;
 }
 
+KeyMaker& KeyMaker::add(const ToneMap& map) {
+  add_members(*this, map);
+  return *this;
+}
+
 KeyMaker& KeyMaker::add(const LightDescription& light) {
   add_members(*this, light);
   return *this;

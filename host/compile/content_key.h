@@ -66,6 +66,7 @@ class KeyMaker {
 
   // Each hashes all members that compile() reads, without names and places, which appear only in messages.
   KeyMaker& add(const Camera& camera);
+  KeyMaker& add(const ToneMap& map);
   KeyMaker& add(const LightDescription& light);
   KeyMaker& add(const EnvironmentDescription& environment);
   /// The inputs of a halo map.

@@ -56,11 +56,13 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, c
   return options;
 }
 
-std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry) {
+std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry,
+                                                     bool compact) {
   const KernelText text{.entry = std::string(entry)};
   const std::string usual = all_build_options(device, {}, text);
   std::map<std::string, std::vector<std::string>> by_name;
-  for (const std::string& option : words(rule_of(device).tries))
+  const DeviceRule& rule = rule_of(device);
+  for (const std::string& option : words(fmt::format("{} {}", rule.tries, compact ? rule.tries_compact : "")))
     if (all_build_options(device, {.tuned = option}, text) != usual)
       by_name[name_of(option)].push_back(option);
   std::vector<std::vector<std::string>> all;
@@ -71,7 +73,7 @@ std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, s
 bool may_be_tuned(std::string_view options) {
   return std::ranges::all_of(words(options), [](const std::string& option) {
     return std::ranges::any_of(device_rules(), [&](const DeviceRule& rule) {
-      return std::ranges::count(words(rule.tries), option) > 0;
+      return std::ranges::count(words(fmt::format("{} {}", rule.tries, rule.tries_compact)), option) > 0;
     });
   });
 }

@@ -22,7 +22,9 @@ std::string all_build_options(const DeviceInfo& device, const BuildWish& wish, c
 
 /// Options that a tuning may build `entry` with on the device. Each list has the alternatives of one name
 /// (options, or "!OPTION" to remove one) that change the build. Those of different names may be combined.
-std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry);
+/// `compact`: the scene is traced by the compact tracer.
+std::vector<std::vector<std::string>> options_to_try(const DeviceInfo& device, std::string_view entry,
+                                                     bool compact);
 
 /// Whether a tuning could have produced these options: each is listed to be tried on some device.
 bool may_be_tuned(std::string_view options);

@@ -23,18 +23,19 @@ constexpr std::array rules{
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
                .of_tracer = "-cl-nv-maxrregcount=64",
-               .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 -cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
+               .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2",
+               .tries = "-cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Testing four boxes at a time, the traversal needs 79 registers instead of 103, so 16 waves fit instead
-    // of
-    // 12. Ten waves (RDNA 3 and newer) spill nothing in plain scenes; textures, layers or rough glass spill
-    // up
-    // to 240 registers, where 5 to 9 waves would fit without spills.
+    // of 12. Ten waves (RDNA 3 and newer) spill nothing in plain scenes; textures, layers or rough glass
+    // spill
+    // up to 240 registers, where 5 to 9 waves would fit without spills.
     DeviceRule{.name = "amd",
                .reports = "Advanced Micro Devices",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_WAVES=10",
-               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
+               .tries_compact = "-DNODE_LOOP=0 -DNODE_LOOP=1",
+               .tries = "-DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
                         "!-DDEVICE_INLINES_ALL"},
     // Intel's own driver. If the GPU offers 256 registers per thread instead of 128, at half the threads, the
     // compiler uses them for programs that spill. render_path and the tracer always get them; the tracer then
@@ -46,24 +47,27 @@ constexpr std::array rules{
                           "-cl-intel-enable-auto-large-GRF-mode",
                .of_tracer = "-cl-intel-256-GRF-per-thread",
                .of_paths = "-cl-intel-256-GRF-per-thread",
-               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 -cl-intel-256-GRF-per-thread "
+               .tries_compact = "-DNODE_LOOP=0 -DNODE_LOOP=1",
+               .tries = "-cl-intel-256-GRF-per-thread "
                         "!-cl-intel-256-GRF-per-thread !-cl-intel-enable-auto-large-GRF-mode "
                         "!-DDEVICE_INLINES_ALL"},
     // Intel GPUs under other drivers, which do not know the options above.
     DeviceRule{.reports = "Intel",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2",
-               .tries = "-DNODE_LOOP=0 -DNODE_LOOP=1 !-DDEVICE_INLINES_ALL"},
+               .tries_compact = "-DNODE_LOOP=0 -DNODE_LOOP=1",
+               .tries = "!-DDEVICE_INLINES_ALL"},
     DeviceRule{.of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL",
-               .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2 !-DDEVICE_INLINES_ALL"},
+               .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2",
+               .tries = "!-DDEVICE_INLINES_ALL"},
     // Mesa's compilers inline every call; they would take minutes for the interpreter of distance fields
     // (kernels/lib/sdf/interpret.cl).
-    DeviceRule{.reports = "rusticl", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
-    DeviceRule{.reports = "Clover", .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{.reports = "rusticl", .vectors = true, .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{.reports = "Clover", .vectors = true, .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
     // Under PoCL with AVX-512, the wide tracer is 7 times as fast as the compact one for primary rays and 3
     // times as fast for bounce rays. A loop over boxes (NODE_LOOP) is slower there.
-    DeviceRule{.calls = true, .vectors = true, .tries = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
+    DeviceRule{.calls = true, .vectors = true, .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2"},
 };
 
 }  // namespace

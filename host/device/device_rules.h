@@ -16,10 +16,11 @@ struct DeviceRule {
   bool calls = false;          // the compiler keeps function calls
   // A work-item takes 16 rays in vectors (lanes) if the device reports vectors; otherwise one.
   bool vectors = false;
-  std::string_view options{};    // compiler options, and definitions that override the kernels' defaults
-  std::string_view of_tracer{};  // for entry/trace_rays.cl; replace `options` of the same name
-  std::string_view of_paths{};   // for entry/render_path.cl; replace `options` of the same name
-  std::string_view tries{};      // alternatives for `sundog tune`: options_to_try()
+  std::string_view options{};        // compiler options, and definitions that override the kernels' defaults
+  std::string_view of_tracer{};      // for entry/trace_rays.cl; replace `options` of the same name
+  std::string_view of_paths{};       // for entry/render_path.cl; replace `options` of the same name
+  std::string_view tries_compact{};  // alternatives for `sundog tune` in the compact tracer, and
+  std::string_view tries{};          // in every program: options_to_try()
   bool matches(const DeviceInfo& device) const;
   /// The program's own options, which add to `options` and replace those of the same name.
   std::string_view of_program(const KernelText& text) const;

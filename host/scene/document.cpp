@@ -92,6 +92,7 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
       surface_sections(), [&](std::string_view key) { return same_section(before, after, key); });
   if (!same_surfaces && !change_surfaces(*changed, before, after, context)) return nullptr;
   if (!same_section(before, after, "lights")) change_lights(*changed, after, context);
+  check_light_groups(*changed, JsonValue(after, context));
   return changed;
 }
 

@@ -18,9 +18,9 @@ struct HaloCrystals {
 struct HaloDescription {
   std::vector<HaloCrystals> crystals;
   double optical_depth = 0.05;  // the cloud's, vertically, for scattered light
-  double index = 0;             // refractive index for all colours; 0: that of ice
+  double ior = 0;               // index of refraction for all colours; 0: that of ice
   int rays = 10'000'000;        // rays that hit crystals
-  int size = 1024;              // cells per side of the map
+  int cells = 1024;             // per side of the map
 };
 
 /// Light scattered by crystals, by direction: the sphere mapped to a square as in

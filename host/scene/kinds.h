@@ -62,12 +62,6 @@ inline constexpr std::array light_types = {LightTypeFacts{.name = "ambient", .va
 #undef SUNDOG_LIGHT_FACTS
 };
 
-inline constexpr std::array environment_types = {
-    NamedValue<EnvironmentType>{"image", EnvironmentType::image},
-    NamedValue<EnvironmentType>{"gradient", EnvironmentType::gradient},
-    NamedValue<EnvironmentType>{"sky", EnvironmentType::sky},
-    NamedValue<EnvironmentType>{"halo", EnvironmentType::halo}};
-
 constexpr const LightTypeFacts& facts_of(LightType type) {
   return light_types.at(static_cast<std::size_t>(type));
 }

@@ -1,6 +1,7 @@
 // Lights that have a position or a direction. The lists generate LIGHT_*, the description's LightType, names
 // in scene files and figures, and what kernels call for a light. A light is a row here and a file of
-// plain/light/lights/; host/scene/lamps.cpp reads its keys. Ambient lights are summed in SceneInfo.ambient.
+// plain/light/lights/; its keys are members of LightDescription. Ambient lights are summed in
+// SceneInfo.ambient.
 //   LIGHT(constant after LIGHT_, name, 1 = it has a position, 1 = it has a direction, LightExtent)
 // LightExtent (host/scene/kinds.h): `none`: light from a point or direction, with a falloff if it has a
 // position; `sampled`: an area that is sampled but invisible to rays; `met`: sampled and visible to rays.
@@ -34,28 +35,6 @@ SUNDOG_SHARED_BEGIN
 // corner and two edges; the environment (shared/environment.h).
 #define SKY_LIGHTS(LIGHT) LIGHT(SUN, sun, 0, 1, met)
 #define MESH_LIGHTS(LIGHT) LIGHT(TRIANGLE, triangle, 1, 1, met)
-
-// Keys in scene files: the members of the host's LightDescription, with defaults.
-//   KEY(type, name, default)
-#define LIGHT_KEYS(KEY)                                                                   \
-  KEY(dvec3, color, {1, 1, 1})                                                            \
-  KEY(double, intensity, {1})       /* times colour; an area light's radiance */          \
-  KEY(dvec3, position, {0, 0, 0})   /* an area light's centre */                          \
-  KEY(dvec3, direction, {0, -1, 0}) /* the way the light travels; normalised later */     \
-  KEY(double, inner_angle, {20})    /* spot: half angles in degrees, */                   \
-  KEY(double, outer_angle, {30})    /* 0 <= inner <= outer < 90 */                        \
-  KEY(bool, square_edge, {false})   /* spot: between them s^2, else s^2 (3 - 2 s) */      \
-  KEY(double, range, {0})           /* point, spot: fades to 0 there; 0: it does not */   \
-  KEY(dvec3, falloff, {1, 0, 0})    /* constant, linear, quadratic */                     \
-  KEY(dvec2, size, {1, 1})          /* rectangle: across and along `up` */                \
-  KEY(dvec3, up, {0, 1, 0})                                                               \
-  KEY(double, radius, {0.5})  /* disk, sphere */                                          \
-  KEY(double, angle, {0})     /* directional: degrees across that it takes up             \
-                                 in the sky, [0, 90]; 0: a delta light */                 \
-  KEY(int, samples, {1})      /* area lights: shadow rays that a surface sends */         \
-  KEY(bool, visible, {true})  /* the camera's rays see it, where others do */             \
-  KEY(bool, hidden, {false})  /* no ray meets it (scene/lamps.h places what they meet) */ \
-  KEY(std::string, group, {}) /* its AOV; empty: none */
 
 #define LIGHT_CONSTANT(constant, name, placed, aimed, extent) LIGHT_##constant,
 typedef enum LightKind SUNDOG_ENUM_OF_U32 {

@@ -42,9 +42,3 @@
 #define MATTE_LOBES(LOBE)                     \
   LOBE(HAS_LAYERS, layered, MATERIAL_LAYERED) \
   LOBE(HAS_SURFACES, diffuse, ~0u)
-
-// Keys of materials in scene files that lobes read: members of the host's MaterialDescription, with defaults,
-// and a component of Material with a value by them.
-//   KEY(type, name, default, component, value)
-// Components that are free: the w of ambient, diffuse, checker_ambient and emission.
-#define LOBE_KEYS(KEY) KEY(double, roughness, {0}, reflection.w, roughness* roughness) /* GGX alpha */

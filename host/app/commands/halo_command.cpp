@@ -13,6 +13,7 @@
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/output_files.h"
+#include "app/options/picture_options.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/standard_streams.h"
@@ -64,8 +65,15 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
 
 EnvironmentDescription halo_of(const HaloOptions& options) {
   EnvironmentDescription e = read_halo(options);
-  if (!options.altitude.empty()) e.sun_altitude = parse_real("--altitude", options.altitude, 0, 90);
-  if (!options.rays.empty()) e.halo.rays = parse_number("--rays", options.rays, 1000, 400'000'000);
+  if (!options.altitude.empty()) {
+    const Range limits = limits_of("halo_sun", "altitude");
+    e.sun_altitude = parse_real("--altitude", options.altitude, limits.low, limits.high);
+  }
+  if (!options.rays.empty()) {
+    const Range limits = limits_of("halo_environment", "rays");
+    e.halo.rays =
+        parse_number("--rays", options.rays, static_cast<int>(limits.low), static_cast<int>(limits.high));
+  }
   return e;
 }
 
@@ -187,9 +195,7 @@ void add_halo(Arguments& root, Command& chosen) {
   value(app, "--rays", "N", options->rays, "rays of sunlight that meet crystals");
   values(app, "--set", "POINTER=VALUE", options->overrides,
          "change the scene, as in /environment/cells=2048");
-  value(app, "--exposure", "STOPS", options->picture.exposure, "brighten .png and .jpg by so many stops");
-  value(app, "--tone-map", "CURVE", options->picture.tone_curve,
-        "how .png and .jpg show colours brighter than white: none, reinhard, aces, agx");
+  add_tone_options(app, options->picture);
   app->add_flag("--float", options->picture.full_floats,
                 "keep an .exr's colours as 32-bit floats (default: half)");
   values(app, "--device", "SPEC", options->devices, device_help);

@@ -1,4 +1,4 @@
-// A render by several processes under mpirun: rank 0 renders, the other ranks serve their devices to it.
+// A render by several processes under mpirun: rank 0 renders, the other ranks are its device workers.
 #pragma once
 #include <memory>
 #include <vector>
@@ -18,7 +18,7 @@ int job_rank();
 std::unique_ptr<Mailbox> join_job();
 
 /// Serves this process's devices to rank 0; ends the process at the end of the job.
-[[noreturn]] void serve_job(std::unique_ptr<Mailbox> job);
+[[noreturn]] void work_for_job(std::unique_ptr<Mailbox> job);
 
 /// For rank 0: the devices that the command selects on every rank, each device of a machine once. Without
 /// --device: each rank's fastest device and others of the same name. Warns about ranks without devices;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/options/devices.h"
-#include "app/options/output_files.h"
+#include "app/options/option_values.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "base/error.h"
@@ -117,14 +117,14 @@ class BorrowedWorker : public DeviceWorker {
 };
 
 /// Keeps alive what a worker refers to during a frame. The lock is the last member, so it is released first.
-struct ServedFrame {
+struct RemoteFrame {
   RenderOptions options;
   std::shared_ptr<const CompiledScene> scene;
   std::shared_ptr<KeptDevice> device;
   std::unique_lock<std::mutex> in_use;
 };
 
-std::shared_ptr<DeviceWorker> worker_of(ServedFrame& frame, const DeviceInfo& device) {
+std::shared_ptr<DeviceWorker> worker_of(RemoteFrame& frame, const DeviceInfo& device) {
   if (!frame.device) return std::make_shared<LocalWorker>(find_device(device), frame.scene, frame.options);
   std::shared_ptr<SceneWorker>& worker = frame.device->worker;
   if (!worker) worker = std::make_shared<LocalWorker>(find_device(device), frame.scene, frame.options);
@@ -156,7 +156,7 @@ json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
 
 OpenedWorker open_worker(const json& settings, KeptOpen* kept) {
   const auto device = settings.at("device").get<DeviceInfo>();
-  const auto frame = std::make_shared<ServedFrame>();
+  const auto frame = std::make_shared<RemoteFrame>();
   if (kept) {
     frame->device = kept_device(device, *kept);
     frame->in_use = std::unique_lock(frame->device->in_use);

@@ -1,4 +1,4 @@
-// `sundog worker DESCRIPTOR NAME`: serves one device to its parent process (--isolate). Not for users.
+// `sundog worker DESCRIPTOR NAME`: is the device worker of its parent process (--isolate). Not for users.
 #include <signal.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace sundog {
 
 namespace {
 
-int serve_device(int descriptor) {
+int work_on_device(int descriptor) {
   if (descriptor < 3) throw UsageError("worker is not a command for people: --isolate starts it");
   // Ctrl-C and a hang-up reach all processes of a terminal; the process that renders the frame decides.
   hold_back({SIGINT, SIGHUP});
@@ -38,7 +38,7 @@ int serve_device(int descriptor) {
   };
   KeptOpen kept;  // for all frames of an animation
   HangWatch watch(on_hang, beat);
-  serve_orders(
+  follow_orders(
       channel, orders,
       [&](const nlohmann::json& settings) {
         watch.look_at({});  // releases the device of the previous frame
@@ -63,7 +63,7 @@ void add_worker(Arguments& root, Command& chosen) {
   app->add_option("DESCRIPTOR", options->descriptor, "the socket to that process");
   app->add_option("NAME", options->name, "for lists of processes");
   app->callback([options, &chosen] {
-    chosen = {.run = [options] { return serve_device(options->descriptor); }, .in_first_thread = true};
+    chosen = {.run = [options] { return work_on_device(options->descriptor); }, .in_first_thread = true};
   });
 }
 

@@ -5,17 +5,23 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "app/options/picture_options.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/numbers.h"
-#include "scene/json/schema.h"
+#include "render/film/film.h"
+#include "scene/json/value.h"
+#include "scene/read/parts.h"
 
 namespace sundog {
 namespace {
+
+using nlohmann::json;
 
 template <class T>
 std::optional<T> number(std::string_view text, T low, T high) {
@@ -33,54 +39,42 @@ std::optional<std::pair<int, int>> number_pair(std::string_view text) {
   return std::pair(*width, *height);
 }
 
-/// An option that sets a number in a ToneMap.
-struct ToneOption {
-  const char *option, *key;
-  std::string PictureOptions::* typed;
-  double ToneMap::* value;
-};
-
-constexpr ToneOption tone_options[] = {
-    {"--exposure", "exposure", &PictureOptions::exposure, &ToneMap::exposure},
-    {"--white-balance", "white_balance", &PictureOptions::white_balance, &ToneMap::white_balance},
-    {"--contrast", "contrast", &PictureOptions::contrast, &ToneMap::contrast},
-    {"--vignette", "vignette", &PictureOptions::vignette, &ToneMap::vignette},
-    {"--bloom", "bloom", &PictureOptions::bloom, &ToneMap::bloom}};
-
-/// The schema's limits for a number in a section of a scene.
-Range limits_of(const char* section, const char* key, SchemaRule::Type type) {
-  return schema_rule(section)->keys.at(key).rule->as(type)->range;
+/// The options for a picture's colours that were given, as members of /image/tone_map.
+json tone_values(const PictureOptions& picture) {
+  json values = json::object();
+  for (const ToneOption& one : tone_options) {
+    const auto typed = picture.tone.find(one.key);
+    if (typed == picture.tone.end() || typed->second.empty()) continue;
+    const SchemaRule& rule = *schema_rule("tone_map")->keys.at(one.key).rule;
+    const SchemaRule *words = rule.as(SchemaRule::Type::string), *numbers = rule.as(SchemaRule::Type::number);
+    if (words && std::ranges::count(words->names, typed->second) > 0)
+      values[one.key] = typed->second;
+    else if (numbers)
+      values[one.key] = parse_real(one.option, typed->second, numbers->range.low, numbers->range.high);
+    else
+      throw UsageError(
+          fmt::format("{} {}: wanted one of {}", one.option, typed->second, fmt::join(words->names, ", ")));
+  }
+  return values;
 }
 
 }  // namespace
 
-ToneMap parse_tone_map(const PictureOptions& picture) {
-  ToneMap map;
-  const auto curve = value_named(tone_curves, picture.tone_curve);
-  if (!picture.tone_curve.empty() && !curve)
-    throw UsageError(fmt::format("--tone-map {}: wanted one of {}", picture.tone_curve,
-                                 fmt::join(tone_curve_names, ", ")));
-  map.curve = curve.value_or(map.curve);
-  map.automatic = picture.exposure == "auto";
-  for (const ToneOption& one : tone_options)
-    if (const std::string& typed = picture.*one.typed;
-        !typed.empty() && !(map.automatic && &typed == &picture.exposure)) {
-      const Range limits = limits_of("tone_map", one.key, SchemaRule::Type::number);
-      map.*one.value = parse_real(one.option, typed, limits.low, limits.high);
-    }
-  return map;
+Range limits_of(const char* kind, const char* key) {
+  return schema_rule(kind)->keys.at(key).rule->as(SchemaRule::Type::number)->range;
 }
 
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture) {
-  const ToneMap map = parse_tone_map(picture);
   std::vector<std::string> all;
-  if (!picture.tone_curve.empty())
-    all.push_back(fmt::format("/image/tone_map/curve=\"{}\"", picture.tone_curve));
-  for (const ToneOption& one : tone_options)
-    if (const std::string& typed = picture.*one.typed; !typed.empty())
-      all.push_back(fmt::format("/image/tone_map/{}={}", one.key,
-                                typed == "auto" ? typed : fmt::format("{}", map.*one.value)));
+  for (const auto& [key, value] : tone_values(picture).items())
+    all.push_back(fmt::format("/image/tone_map/{}={}", key, value.dump()));
   return all;
+}
+
+ToneMap parse_tone_map(const PictureOptions& picture) {
+  const json values = tone_values(picture);
+  const JsonContext context;
+  return read_tone_map(JsonObject::section("image", "tone_map", values, context));
 }
 
 int parse_number(const char* option, const std::string& text, int low, int high) {
@@ -91,7 +85,7 @@ int parse_number(const char* option, const std::string& text, int low, int high)
 }
 
 std::string render_setting(const char* option, const char* key, const std::string& text) {
-  const Range limits = limits_of("render", key, SchemaRule::Type::integer);
+  const Range limits = limits_of("render", key);
   return fmt::format("/render/{}={}", key,
                      parse_number(option, text, static_cast<int>(limits.low), static_cast<int>(limits.high)));
 }
@@ -177,6 +171,14 @@ std::vector<std::string> parse_image_size(const std::string& text) {
     throw UsageError(
         fmt::format("--size {}: wanted WIDTHxHEIGHT, each from 1 to {}, such as 640x480", text, most_edge));
   return {fmt::format("/image/width={}", size->first), fmt::format("/image/height={}", size->second)};
+}
+
+std::vector<std::string> made_aovs(const RenderCommand& command) {
+  std::vector<std::string> aovs = command.aovs;
+  if (command.denoise)
+    for (const char* wanted : {feature_albedo, feature_normal})
+      if (std::ranges::count(aovs, wanted) == 0) aovs.emplace_back(wanted);
+  return aovs;
 }
 
 void check_override(const std::string& setting) {

@@ -9,11 +9,15 @@
 #include "app/options/options.h"
 #include "base/tone_map.h"
 #include "render/render.h"
+#include "scene/json/schema.h"
 
 namespace sundog {
 
 /// A whole number from `low` to `high`.
 int parse_number(const char* option, const std::string& text, int low, int high);
+
+/// The schema's limits for a number under `key` in a kind of object.
+Range limits_of(const char* kind, const char* key);
 
 /// A whole number as an override of the scene's render section, within the schema's limits of that key.
 std::string render_setting(const char* option, const char* key, const std::string& text);
@@ -46,6 +50,9 @@ std::vector<std::string> parse_image_size(const std::string& text);
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture);
 /// The options for a picture's colours, for a picture without a scene.
 ToneMap parse_tone_map(const PictureOptions& picture);
+
+/// The AOVs that a frame renders: the requested ones, and those that the denoiser needs.
+std::vector<std::string> made_aovs(const RenderCommand& command);
 
 /// Throws UsageError unless the setting has the form JSON_POINTER=VALUE.
 void check_override(const std::string& setting);

@@ -1,5 +1,6 @@
 // The options of commands as values, checked as far as possible without reading files.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,11 +12,10 @@ namespace sundog {
 
 /// A picture that a command writes.
 struct PictureOptions {
-  std::string out;           // "-": the standard output
-  std::string format;        // for the standard output, one of image_formats()
-  bool full_floats = false;  // an EXR's colours as 32-bit floats
-  // As typed; empty: the scene's setting.
-  std::string tone_curve, exposure, white_balance, contrast, vignette, bloom;
+  std::string out;                          // "-": the standard output
+  std::string format;                       // for the standard output, one of image_formats()
+  bool full_floats = false;                 // an EXR's colours as 32-bit floats
+  std::map<std::string, std::string> tone;  // keys of /image/tone_map, as typed; empty: the scene's setting
   bool no_dither = false;
   int dpi = 72;                      // pixels per inch, for printers
   std::string color_space = "srgb";  // EXR: srgb or acescg

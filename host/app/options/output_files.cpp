@@ -56,14 +56,6 @@ FileOptions file_options(const PictureOptions& picture) {
           picture.icc};
 }
 
-std::vector<std::string> made_aovs(const RenderCommand& command) {
-  std::vector<std::string> aovs = command.aovs;
-  if (command.denoise)
-    for (const char* wanted : {feature_albedo, feature_normal})
-      if (std::ranges::count(aovs, wanted) == 0) aovs.emplace_back(wanted);
-  return aovs;
-}
-
 void end_depth(const PictureOptions& picture, AovImages& aovs) {
   if (picture.far.empty()) return;
   const auto depth = aovs.find("depth");

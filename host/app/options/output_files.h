@@ -21,9 +21,6 @@ FileOptions file_options(const PictureOptions& picture);
 /// Warns about colours that an EXR of half floats clips.
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file);
 
-/// The AOVs that a frame renders: the requested ones, and those that the denoiser needs.
-std::vector<std::string> made_aovs(const RenderCommand& command);
-
 /// Replaces infinite depths by --far. Throws UsageError if the AOV depth is missing.
 void end_depth(const PictureOptions& picture, AovImages& aovs);
 

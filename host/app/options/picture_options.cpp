@@ -11,9 +11,13 @@
 #include "base/error.h"
 #include "base/image_io.h"
 #include "base/names.h"
-#include "base/tone_map.h"
 
 namespace sundog {
+
+void add_tone_options(Arguments* app, PictureOptions& picture) {
+  for (const ToneOption& one : tone_options)
+    value(app, one.option, one.unit, picture.tone[one.key], one.help);
+}
 
 void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "-o,--out", "FILE", picture.out,
@@ -25,17 +29,7 @@ void add_picture(Arguments* app, PictureOptions& picture) {
   value(app, "--color-space", "NAME", picture.color_space, "of an .exr's colours: srgb (default) or acescg")
       ->one_of({"srgb", "acescg"});
   value(app, "--bits", "N", picture.bits, "of a .png's channels: 8 (default) or 16")->one_of({"8", "16"});
-  value(app, "--tone-map", "CURVE", picture.tone_curve,
-        fmt::format("how .png and .jpg show colours brighter than white: {}",
-                    fmt::join(tone_curve_names, ", ")));
-  value(app, "--exposure", "STOPS", picture.exposure,
-        "brighten .png and .jpg by so many stops; auto: as bright as a picture of its light should be");
-  value(app, "--white-balance", "KELVIN", picture.white_balance,
-        "the temperature of the light that is white in .png and .jpg");
-  value(app, "--contrast", "C", picture.contrast, "of .png and .jpg after the tone map: 1 leaves it");
-  value(app, "--vignette", "V", picture.vignette, "the share of light that corners of .png and .jpg lose");
-  value(app, "--bloom", "B", picture.bloom,
-        "the share of light that spreads over its surroundings in .png and .jpg");
+  add_tone_options(app, picture);
   value(app, "--dpi", "N", picture.dpi, "pixels an inch that .png, .jpg and .exr state (default 72)")
       ->range(1, 65535);
   app->add_flag("--icc", picture.icc, "put an ICC profile, that of sRGB, into .png and .jpg");

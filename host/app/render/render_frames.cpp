@@ -21,6 +21,7 @@
 #include "app/render/render_result.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "compile/content_key.h"
 #include "compile/placing/next_shot.h"
 #include "render/film/film.h"
 #include "render/film/hash.h"
@@ -51,18 +52,15 @@ std::string next_text(const NextShot& next) {
 
 /// A hash of all that affects the frame's file.
 std::string frame_key(const RenderCommand& command, const LoadedScene& scene) {
-  const ToneMap& tone = scene.description->image.tone_map;
-  std::string text = fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
-      static_cast<int>(tone.curve), tone.exposure, tone.white_balance, command.no_dither, command.full_floats,
-      command.denoise, command.metadata, command.noise, command.dpi, command.color_space, command.bits);
+  std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {}", SUNDOG_VERSION, hash_scene(*scene.flat),
+                                 KeyMaker().add(scene.description->image.tone_map).key().a, command.no_dither,
+                                 command.full_floats, command.denoise, command.metadata, command.noise,
+                                 command.dpi, command.color_space, command.bits);
   if (scene.times > 1)
     text += fmt::format(" {} {}", scene.times, hash_scene(*scene.at_time(scene.times - 1).flat));
   text += std::filesystem::path(command.out).extension().string();
   if (!drops_alpha(command.out))  // an EXR states both
     text += fmt::format(" {} {}", scene.description->frames_per_second, scene.description->unit);
-  if (tone != ToneMap())
-    text += fmt::format(" {} {} {} {}", tone.automatic, tone.contrast, tone.vignette, tone.bloom);
   if (command.icc) text += " icc";
   text += command.far;
   if (command.part) text += fmt::format(" {}/{}", command.part->index, command.part->count);

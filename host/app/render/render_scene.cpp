@@ -123,7 +123,7 @@ int render_scene(const RenderCommand& command) {
     return exit_done;
   };
   if (const int status = exit_status_of(join, job_rank() == 0)) return status;
-  if (job->rank() > 0) serve_job(std::move(job));
+  if (job->rank() > 0) work_for_job(std::move(job));
   const int status = exit_status_of([&] { return render_here(command, *stop, job.get()); });
   std::fflush(nullptr);
   job->leave(status);

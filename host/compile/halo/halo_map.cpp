@@ -63,13 +63,13 @@ HaloLaunch launch_of(const EnvironmentDescription& e, const HaloCrystals& crysta
   launch.weight = static_cast<float>(1 / std::hypot(basal, 2 * side));
   launch.tilt = static_cast<float>(crystals.tilt / 360);
   launch.roll = static_cast<float>(crystals.roll / 360);
-  const double fixed = e.halo.index;
+  const double fixed = e.halo.ior;
   launch.index_low = static_cast<float>(fixed > 0 ? fixed : index_of_ice(edge_of(band)));
   launch.index_high = static_cast<float>(fixed > 0 ? fixed : index_of_ice(edge_of(band + 1)));
   launch.sun_x = static_cast<float>(std::cos(height));
   launch.sun_z = static_cast<float>(std::sin(height));
   launch.sun_radius = static_cast<float>(std::tan(e.sun_size * pi / 360));
-  launch.side = static_cast<u32>(e.halo.size);
+  launch.side = static_cast<u32>(e.halo.cells);
   return launch;
 }
 
@@ -102,7 +102,7 @@ double tally(std::span<const u32> tallies, std::size_t which) {
 
 HaloPlan plan_halo(const EnvironmentDescription& e) {
   HaloPlan plan;
-  plan.side = e.halo.size;
+  plan.side = e.halo.cells;
   plan.colors = band_colors();
   double shares = 0;
   for (const HaloCrystals& crystals : e.halo.crystals) shares += crystals.share;

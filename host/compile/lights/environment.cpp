@@ -144,7 +144,7 @@ Picture picture_of_halo(const EnvironmentDescription& e, const HaloMap& map) {
       }
     return light;
   };
-  return picture_of_day(e, 2 * e.halo.size, e.halo.size, [&](double zenith, double azimuth) {
+  return picture_of_day(e, 2 * e.halo.cells, e.halo.cells, [&](double zenith, double azimuth) {
     const double turn = azimuth - e.sun_azimuth * pi / 180, side = std::sin(zenith), up = std::cos(zenith);
     const dvec3 turned = halo_radiance(map, {side * std::cos(turn), side * std::sin(turn), up});
     return glm::max(

@@ -189,16 +189,11 @@ Material make_material(const MaterialDescription& material, const std::vector<u3
   packed.ambient = pack(material.ambient);
   packed.diffuse = pack(material.diffuse);
   packed.specular = pack(material.specular, material.exponent);
-  packed.reflection = pack(material.reflection);
+  packed.reflection = pack(material.reflection, material.roughness * material.roughness);  // GGX alpha
   packed.transmission = pack(material.transmission, material.wall_ior);
   packed.checker_ambient = pack(material.checker_ambient);
   packed.checker_diffuse = pack(material.checker_diffuse, 1 / material.checker_size);
   packed.emission = pack(material.emission);
-#define SUNDOG_PACK_KEY(type, name, standard, component, value) \
-  const type name = material.name;                              \
-  packed.component = static_cast<float>(value);
-  LOBE_KEYS(SUNDOG_PACK_KEY)
-#undef SUNDOG_PACK_KEY
   packed.kind = material.type == MaterialType::dielectric ? MATERIAL_DIELECTRIC : MATERIAL_PHONG;
   packed.flags = material_flags(material);
   if (packed.flags & (MATERIAL_REFLECTS | MATERIAL_TRANSMITS) && packed.reflection.w > 0)

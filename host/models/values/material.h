@@ -7,7 +7,6 @@
 #include "models/values/openpbr.h"
 #include "models/values/refraction.h"
 #include "models/values/textures.h"
-#include "shared/lobes.h"
 
 namespace sundog {
 
@@ -34,12 +33,10 @@ struct MaterialDescription {
   bool blinn = false;
   dvec3 emission{0};                     // radiance emitted to the outside
   dvec3 reflection{0}, transmission{0};  // tints of a dielectric default to 1 (set by the loader)
-#define SUNDOG_LOBE_MEMBER(type, name, standard, ...) type name standard;
-  LOBE_KEYS(SUNDOG_LOBE_MEMBER)
-#undef SUNDOG_LOBE_MEMBER
-  bool multiple_scattering = true;  // compensate for light lost between facets of a rough surface
-  int medium = -1;                  // index into media of the inside; -1: thin, transmits without bending
-  double wall_ior = 0;              // above 0, with medium -1: dielectric thin wall of this index
+  double roughness = 0;                  // of what reflects and transmits, by the GGX distribution
+  bool multiple_scattering = true;       // compensate for light lost between facets of a rough surface
+  int medium = -1;      // index into media of the inside; -1: thin, transmits without bending
+  double wall_ior = 0;  // above 0, with medium -1: dielectric thin wall of this index
   bool shadow_opaque = false;
   bool shadow_filter = false;  // path: shadow rays pass straight through a refracting interface
   bool checker = false;

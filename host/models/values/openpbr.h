@@ -5,43 +5,37 @@
 
 namespace sundog {
 
-// Keys in scene files that no texture can replace: members of OpenPbr.
-//   KEY(type, name, default)
-#define OPENPBR_PLAIN_KEYS(KEY)                                                                           \
-  KEY(double, base_weight, 1)                                                                             \
-  KEY(double, base_diffuse_roughness, 0)                                                                  \
-  KEY(double, specular_weight, 1) /* scales normal reflectance of a dielectric, and a metal's */          \
-  KEY(glm::dvec3, specular_color, 1)                                                                      \
-  KEY(double, specular_roughness_anisotropy, 0)                                                           \
-  KEY(double, specular_ior, 1.5)                                                                          \
-  KEY(glm::dvec3, transmission_color, 1)                                                                  \
-  KEY(double, transmission_depth, 0)       /* depth at which that colour remains; 0: tints the surface */ \
-  KEY(glm::dvec3, transmission_scatter, 0) /* over that depth, albedo of the lost light */                \
-  KEY(double, transmission_scatter_anisotropy, 0) /* mean cosine */                                       \
-  KEY(double, transmission_dispersion_scale, 0)                                                           \
-  KEY(double, transmission_dispersion_abbe_number, 20)                                                    \
-  KEY(glm::dvec3, coat_color, 1)                                                                          \
-  KEY(double, coat_roughness, 0)                                                                          \
-  KEY(double, coat_roughness_anisotropy, 0)                                                               \
-  KEY(double, coat_ior, 1.6)                                                                              \
-  KEY(double, coat_darkening, 1) /* strength of darkening by inner reflections in the coat */             \
-  KEY(double, fuzz_weight, 0)                                                                             \
-  KEY(glm::dvec3, fuzz_color, 1)                                                                          \
-  KEY(double, fuzz_roughness, 0.5)                                                                        \
-  KEY(double, thin_film_weight, 0)                                                                        \
-  KEY(double, thin_film_thickness, 0.5) /* micrometres */                                                 \
-  KEY(double, thin_film_ior, 1.4)                                                                         \
-  KEY(double, emission_luminance, 0)     /* as radiance in the scene's units */                           \
-  KEY(double, geometry_tangent, 0)       /* degrees from the first texture coordinate, counterclockwise   \
-                                            from outside */                                               \
-  KEY(bool, geometry_thin_walled, false) /* transmits through a wall of specular_ior, without inside */
-
 /// From bottom to top: a base (a metal, or a dielectric over a diffuse ground or a medium), a thin film, a
 /// coat, fuzz. Weights, colours and roughnesses are in [0, 1].
 struct OpenPbr {
-#define SUNDOG_OPENPBR_MEMBER(type, name, standard) type name{standard};
-  OPENPBR_PLAIN_KEYS(SUNDOG_OPENPBR_MEMBER)
-#undef SUNDOG_OPENPBR_MEMBER
+  // No texture can replace these:
+  double base_weight = 1;
+  double base_diffuse_roughness = 0;
+  double specular_weight = 1;  // scales normal reflectance of a dielectric, and a metal's
+  glm::dvec3 specular_color{1};
+  double specular_roughness_anisotropy = 0;
+  double specular_ior = 1.5;
+  glm::dvec3 transmission_color{1};
+  double transmission_depth = 0;               // depth at which that colour remains; 0: tints the surface
+  glm::dvec3 transmission_scatter{0};          // over that depth, albedo of the lost light
+  double transmission_scatter_anisotropy = 0;  // mean cosine
+  double transmission_dispersion_scale = 0;
+  double transmission_dispersion_abbe_number = 20;
+  glm::dvec3 coat_color{1};
+  double coat_roughness = 0;
+  double coat_roughness_anisotropy = 0;
+  double coat_ior = 1.6;
+  double coat_darkening = 1;  // strength of darkening by inner reflections in the coat
+  double fuzz_weight = 0;
+  glm::dvec3 fuzz_color{1};
+  double fuzz_roughness = 0.5;
+  double thin_film_weight = 0;
+  double thin_film_thickness = 0.5;  // micrometres
+  double thin_film_ior = 1.4;
+  double emission_luminance = 0;  // as radiance in the scene's units
+  double geometry_tangent = 0;    // degrees from the first texture coordinate, counterclockwise from outside
+  bool geometry_thin_walled = false;  // transmits through a wall of specular_ior, without inside
+  // A texture can replace these, except coat_bends:
   glm::dvec3 base_color{0.8};
   double base_metalness = 0;
   double specular_roughness = 0.3;

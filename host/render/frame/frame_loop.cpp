@@ -85,7 +85,7 @@ void FrameLoop::run_thread(DeviceThread& thread) {
     if (closing || thread.leave) break;
     const std::optional<std::size_t> index = index_of(thread);
     if (current != thread.seen && index)
-      serve(lock, thread, *index);
+      work_on_current(lock, thread, *index);
     else
       run_errand(lock, thread);
   }
@@ -101,7 +101,7 @@ void FrameLoop::run_thread(DeviceThread& thread) {
   changed.notify_all();
 }
 
-void FrameLoop::serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index) {
+void FrameLoop::work_on_current(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index) {
   const std::shared_ptr<FrameTask> mine = current;
   std::shared_ptr<FrameTask> before = std::exchange(thread.seen, mine);
   thread.opening = true;

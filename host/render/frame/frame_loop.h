@@ -74,7 +74,7 @@ class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
 
  private:
   void run_thread(DeviceThread& thread);
-  void serve(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index);
+  void work_on_current(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index);
   std::optional<std::size_t> index_of(const DeviceThread& thread) const;
 };
 

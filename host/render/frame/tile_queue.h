@@ -1,4 +1,4 @@
-// The frame's tiles, shared by the threads that serve devices: plan.h decides which device gets which pixels,
+// The frame's tiles, shared by the threads of device workers: plan.h decides which device gets which pixels,
 // failed tiles go to others, and duplicates count once.
 #pragma once
 #include <atomic>

@@ -7,7 +7,7 @@
 
 namespace sundog {
 
-/// Heartbeat interval (Message::alive) of a process that serves devices.
+/// Heartbeat interval (Message::alive) of a process with device workers.
 inline constexpr double beat_seconds = 0.25;
 
 /// Counts only time in which this side listened; suspending both sides (Ctrl-Z, a sleeping machine) therefore

@@ -103,9 +103,9 @@ std::optional<Message> Orders::next() {
   return message;
 }
 
-void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
-                  const std::function<std::vector<DeviceInfo>()>& list) {
+void follow_orders(Channel& channel, Orders& orders,
+                   const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
+                   const std::function<std::vector<DeviceInfo>()>& list) {
   Current current;
   while (const std::optional<Message> order = orders.next()) {
     Message answer;

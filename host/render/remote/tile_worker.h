@@ -53,8 +53,8 @@ struct OpenedWorker {
 /// Executes orders, frame after frame, until the channel is closed. `make` creates the worker for an open
 /// order (loading its scene); its exceptions and the worker's are sent as the reply. `list` lists the
 /// devices.
-void serve_orders(Channel& channel, Orders& orders,
-                  const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
-                  const std::function<std::vector<DeviceInfo>()>& list);
+void follow_orders(Channel& channel, Orders& orders,
+                   const std::function<OpenedWorker(const nlohmann::json& settings)>& make,
+                   const std::function<std::vector<DeviceInfo>()>& list);
 
 }  // namespace sundog

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/code_names.h"
 #include "base/error.h"
 #include "base/named_values.h"
 #include "scene/json/schema.h"
@@ -87,7 +88,7 @@ class JsonValue {
   /// A nonzero [x, y, z], normalised.
   glm::dvec3 direction() const;
 
-  /// Sets `to` to the value, which must obey the rule. Enumerators are in the order of the schema's names.
+  /// Sets `to` to the value, which must obey the rule. Enumerators have the schema's names.
   void get(double& to) const { to = number(); }
   template <std::integral T>
   void get(T& to) const {
@@ -106,8 +107,7 @@ class JsonValue {
   template <class T>
     requires std::is_enum_v<T>
   void get(T& to) const {
-    to = static_cast<T>(std::ranges::find(rule_of(SchemaRule::Type::string).names, choice()) -
-                        rule_of(SchemaRule::Type::string).names.begin());
+    to = enumerator_named<T>(choice());
   }
 
   /// Items of an array; `what` completes "wanted an array of ...".

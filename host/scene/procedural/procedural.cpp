@@ -7,6 +7,7 @@
 
 #include "base/image_io.h"
 #include "base/json_text.h"
+#include "scene/json/members.h"
 #include "scene/procedural/extrusion.h"
 #include "scene/procedural/ice_block.h"
 #include "scene/procedural/lathe.h"
@@ -17,26 +18,19 @@ namespace sundog {
 
 namespace {
 
-IceSurface read_surface(JsonObject& object, IceSurface surface) {
-  object.read("size", surface.size, "chips", surface.chips, "dents", surface.dents);
-  object.read("softness", surface.softness, "tilt", surface.tilt, "roughness", surface.roughness);
-  return surface;
-}
-
 IceSurface read_cavity(JsonObject& object, const IceSurface& outer) {
   // By default, the cavity is like the outside at 0.6 of its size.
   IceSurface cavity = outer;
   cavity.size *= 0.6;
-  cavity = read_surface(object, cavity);
-  object.read("offset", cavity.offset);
+  read_members(object, cavity);
   return cavity;
 }
 
 /// Reads a recipe's block, except "level" and "wall".
 IceBlock read_block(JsonObject& object) {
   IceBlock block;
-  object.read("seed", block.seed, "subdivision", block.subdivision);
-  block.outer = read_surface(object, block.outer);
+  read_members(object, block);
+  read_members(object, block.outer);
   if (const auto cavity = object.find("cavity")) {
     block.hollow = true;
     block.cavity = cavity->object("generate_ice_cavity",
@@ -71,20 +65,20 @@ std::vector<procedural::ProfilePoint> read_profile(const JsonValue& value) {
 Lathe read_lathe(JsonObject& object) {
   Lathe lathe;
   lathe.profile = read_profile(object.at("profile"));
-  object.read("curve", lathe.curve, "segments", lathe.segments);
+  read_members(object, lathe);
   return lathe;
 }
 
 Extrusion read_extrusion(JsonObject& object) {
   Extrusion extrusion;
   extrusion.outline = read_profile(object.at("outline"));
-  object.read("curve", extrusion.curve, "height", extrusion.height, "facets", extrusion.facets);
+  read_members(object, extrusion);
   return extrusion;
 }
 
 Sweep read_sweep(JsonObject& object) {
   Sweep sweep;
-  object.read("size", sweep.size, "height", sweep.height, "radius", sweep.radius);
+  read_members(object, sweep);
   return sweep;
 }
 
@@ -111,9 +105,7 @@ LoweredPattern read_heights(JsonObject& object) {
 
 Terrain read_terrain(JsonObject& object, const ReadPicture& read_picture) {
   Terrain terrain;
-  object.read("seed", terrain.seed, "size", terrain.size, "height", terrain.height);
-  object.read("feature", terrain.feature, "ridges", terrain.ridges, "octaves", terrain.octaves);
-  object.read("cells", terrain.cells);
+  read_members(object, terrain);
   if (const auto file = object.find("file"); file && read_picture)
     terrain.picture = levels_of(*file, read_picture);
   if (object.has("formula")) terrain.formula = read_heights(object);

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "formula/sdf.h"
-#include "scene/json/value.h"
+#include "scene/json/members.h"
 #include "scene/read/field_formulas.h"
 #include "scene/read/field_judge.h"
 #include "scene/read/parts.h"
@@ -140,7 +140,7 @@ SdfNode read_node(JsonObject& object, std::string_view type, std::array<double, 
 SdfColoring read_coloring(const JsonValue& value) {
   return value.object("coloring", [](JsonObject& object) {
     SdfColoring coloring;
-    object.read("by", coloring.by, "scale", coloring.scale, "offset", coloring.offset);
+    read_members(object, coloring);
     for (const JsonValue& stop : object.at("palette").items("colours"))
       coloring.palette.push_back(stop.vec3());
     return coloring;
@@ -160,7 +160,6 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
 /// Reads the field's shading effects; `size` is half its interval's diagonal.
 void read_light(JsonObject& object, SdfDescription& field, double size) {
   field.occlusion = object.number("occlusion", 0, {.low = 0, .high = size});
-  object.read("soft_shadow", field.soft_shadow);
   if (const auto glow = object.find("glow"))
     glow->object("glow", [&](JsonObject& o) {
       o.read("color", field.glow);
@@ -193,7 +192,7 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   field.greatest = object.number("greatest_threshold", std::max(0.03 * size, field.least),
                                  {.low = field.least, .high = size});
   const bool has_limit = object.has("step_limit");
-  object.read("step_limit", field.step_limit, "detail", field.detail);
+  read_members(object, field, {"name", "occlusion", "glow"});
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
   read_light(object, field, size);
   try {

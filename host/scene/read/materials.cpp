@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/names.h"
+#include "scene/json/members.h"
 #include "scene/materials/presets.h"
 #include "scene/read/surface_terms.h"
 #include "scene/read/textures.h"
@@ -29,11 +30,12 @@ dvec3 read_absorption(const JsonValue& value) {
 
 /// Checks that a dispersion formula gives a valid index at every visible wavelength.
 void check_indices(const JsonValue& value, MediumDescription& medium) {
+  const Range range = schema_rule("ior")->as(SchemaRule::Type::number)->range;
   for (double wavelength = 380; wavelength <= 780; wavelength += 5) {
     const double index = index_at(medium.dispersion, medium.ior, wavelength);
-    if (!(index >= ior_range.low && index <= ior_range.high))
+    if (!(index >= range.low && index <= range.high))
       value.fail(fmt::format("the index of refraction at {} nm is {:.4g}, and should be from {} to {}",
-                             wavelength, index, ior_range.low, ior_range.high));
+                             wavelength, index, range.low, range.high));
   }
   medium.ior = index_at(medium.dispersion, medium.ior, line_d);
 }
@@ -275,8 +277,7 @@ MediumDescription read_medium(const JsonValue& value, std::string name) {
     MediumDescription medium{.name = std::move(name)};
     read_index(object, medium);
     if (const auto absorption = object.find("absorption")) medium.absorption = read_absorption(*absorption);
-    object.read("scattering", medium.scattering, "anisotropy", medium.anisotropy, "priority",
-                medium.priority);
+    read_members(object, medium, {"ior", "absorption"});
     return medium;
   });
 }
@@ -290,10 +291,7 @@ MaterialDescription read_material(const JsonValue& value, std::string name, cons
     material.name = std::move(name);
     std::string shading;
     object.read("type", material.type, "shading", shading);
-#define SUNDOG_READ_KEY(of, name, ...) object.read(#name, material.name);
-    LOBE_KEYS(SUNDOG_READ_KEY)
-#undef SUNDOG_READ_KEY
-    object.read("multiple_scattering", material.multiple_scattering);
+    object.read("roughness", material.roughness, "multiple_scattering", material.multiple_scattering);
     const bool dielectric = material.type == MaterialType::dielectric;
     read_local_terms(object, material, textures);
     material.blinn = shading == "blinn";

@@ -1,6 +1,7 @@
 // Reads materials of the type "openpbr" (OpenPBR 1.1).
 #include <nlohmann/json.hpp>
 
+#include "scene/json/members.h"
 #include "scene/read/surface_terms.h"
 #include "scene/read/textures.h"
 
@@ -38,9 +39,9 @@ MaterialDescription read_openpbr(const JsonValue& value, std::string name,
     MaterialDescription material;
     material.name = std::move(name);
     OpenPbr values;
-#define SUNDOG_READ_KEY(type, name, ...) object.read(#name, values.name);
-    OPENPBR_PLAIN_KEYS(SUNDOG_READ_KEY)
-#undef SUNDOG_READ_KEY
+    read_members(object, values,
+                 {"base_color", "base_metalness", "specular_roughness", "transmission_weight", "coat_weight",
+                  "emission_color", "geometry_opacity"});
     read_textured(object, values, material.textures, textures);
     MediumDescription inside;
     if (set_openpbr(values, material, inside)) {

@@ -27,10 +27,14 @@ std::filesystem::path find_file(const JsonValue& value);
 /// Reads the camera. `position` and `target` must both be given or both be missing; `placed` returns whether
 /// they are given. Focal lengths are in millimetres, so `unit` is needed: metres per scene unit.
 Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed);
+ToneMap read_tone_map(const JsonValue& value);
 ImageSettings read_image(const JsonValue& value);
 RenderSettings read_render(const JsonValue& value);
 /// `unit`: metres per scene unit, for the power of lamps.
 LightDescription read_light(const JsonValue& value, double unit);
+/// Refuses more groups of lights than a film has sums for.
+void check_light_groups(const SceneDescription& scene, const JsonValue& root);
+
 /// `read_picture` reads an image file.
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture);

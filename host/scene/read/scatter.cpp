@@ -1,13 +1,15 @@
 // Reads the keys with their defaults, and copies objects with a transform.
 #include "scene/read/scatter.h"
 
+#include "scene/json/members.h"
+
 namespace sundog {
 
 ScatterKeys read_scatter_keys(JsonObject& object) {
   ScatterKeys keys;
   Scatter& how = keys.how;
-  object.read("density", how.density, "seed", how.seed, "scale", how.scale, "turn", how.turn);
-  object.read("upright", how.upright, "steepest", how.steepest, "limit", keys.limit);
+  read_members(object, how);
+  object.read("limit", keys.limit);
   if (how.scale.x > how.scale.y) object.at("scale").wanted("the least size before the greatest");
   return keys;
 }

@@ -80,9 +80,7 @@ class SceneReader {
       scene_.camera = frame(bounds_of(scene_.objects, scene_.meshes, scene_.fields),
                             static_cast<double>(scene_.image.width) / scene_.image.height, scene_.camera);
     if (!scene_.camera.lens.focus_on.empty()) focus_on_object(scene_, in_focus_);
-    if (const auto groups = light_groups(scene_); groups.size() > most_light_groups)
-      root_.fail(fmt::format("wanted at most {} groups of lights, found {}: {}", most_light_groups,
-                             groups.size(), fmt::join(groups, ", ")));
+    check_light_groups(scene_, root_);
     add_lamps(scene_);
     warn_of_dark_world(scene_);
   }

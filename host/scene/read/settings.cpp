@@ -1,13 +1,16 @@
 // Reads the camera, the image, the render settings, the environment and the lights.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scene/integrators.h"
+#include "scene/json/members.h"
 #include "scene/kinds.h"
 #include "scene/lamps.h"
+#include "scene/light_groups.h"
 #include "scene/read/parts.h"
 #include "scene/spectra/cie.h"
 
@@ -26,8 +29,7 @@ void check_view(JsonObject& object, const Camera& camera) {
 /// `focal_length`: in scene units, if given.
 Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   Lens lens;
-  object.read("radius", lens.radius, "focus", lens.focus, "blades", lens.blades, "rotate", lens.rotate);
-  object.read("focus_on", lens.focus_on);
+  read_members(object, lens);
   if (const auto f_number = object.find("f_number")) {
     if (!focal_length) f_number->fail("wanted a camera with a \"focal_length\", or the lens's \"radius\"");
     lens.radius = *focal_length / (2 * f_number->number());
@@ -35,12 +37,11 @@ Lens read_lens(JsonObject& object, std::optional<double> focal_length) {
   return lens;
 }
 
-/// Reads the camera's field of view; returns the focal length in millimetres, if given.
-std::optional<double> read_angle(JsonObject& object, const ImageSettings& image, Camera& camera) {
+/// Sets the field of view by the focal length in millimetres and returns that, if it is given.
+std::optional<double> read_focal_length(JsonObject& object, const ImageSettings& image, Camera& camera) {
   std::optional<double> focal_length;
   double film_width = 0;
-  object.read("fov", camera.fov, "orthographic", camera.orthographic, "focal_length", focal_length,
-              "film_width", film_width);
+  object.read("focal_length", focal_length, "film_width", film_width);
   if (focal_length)
     camera.fov = glm::degrees(2 * std::atan(film_width * image.height / image.width / (2 * *focal_length)));
   return focal_length;
@@ -48,7 +49,7 @@ std::optional<double> read_angle(JsonObject& object, const ImageSettings& image,
 
 View read_view(JsonObject& object, const Camera& camera) {
   View view{camera.position, camera.target};
-  object.read("position", view.position, "target", view.target);
+  read_members(object, view);
   return view;
 }
 
@@ -94,8 +95,7 @@ void read_sun(JsonObject& object, EnvironmentDescription& e) {
   object.read("altitude", e.sun_altitude, "azimuth", e.sun_azimuth, "size", e.sun_size);
 }
 
-void read_filter(JsonObject& object, RenderSettings& render) {
-  object.read("filter", render.filter, "filter_radius", render.filter_radius);
+void check_filter(JsonObject& object, const RenderSettings& render) {
   constexpr int least = 8;  // with fewer samples, all may lie in the negative lobes
   if (render.filter == Filter::mitchell && render.samples < least)
     object.value().fail(fmt::format("wanted at least {} \"samples\" with the filter mitchell, found {}",
@@ -103,26 +103,18 @@ void read_filter(JsonObject& object, RenderSettings& render) {
 }
 
 void read_path(JsonObject& object, RenderSettings& render) {
-  object.read("roulette", render.roulette, "photons", render.photons, "photon_radius", render.photon_radius);
+  read_members(object, render);
   object.read("lights", render.light_strategy, light_strategies);
   const auto guides = object.find("guides");
   if (!guides) return;
   for (const JsonValue& ball : guides->items("balls"))
-    ball.object("guide", [&](JsonObject& inner) {
-      Guide& guide = render.guides.emplace_back();
-      inner.read("center", guide.center, "radius", guide.radius);
-    });
-}
-
-void read_adaptive(JsonObject& object, Sampling& sampling) {
-  object.read("threshold", sampling.threshold, "first_samples", sampling.first_samples);
-  object.read("surfaces", sampling.surfaces, "contrast", sampling.contrast, "budget", sampling.budget);
+    ball.object("guide", [&](JsonObject& inner) { read_members(inner, render.guides.emplace_back()); });
 }
 
 void read_sampling(JsonObject& object, RenderSettings& render) {
   Sampling& sampling = render.sampling;
   if (const auto adaptive = object.find("adaptive"))
-    adaptive->object("adaptive", [&](JsonObject& inner) { read_adaptive(inner, sampling); });
+    adaptive->object("adaptive", [&](JsonObject& inner) { read_members(inner, sampling); });
   if (const auto subsample = object.find("subsample"))
     subsample->object("subsample", [&](JsonObject& inner) {
       inner.read("on", sampling.subsample, "contrast", sampling.subsample_contrast);
@@ -151,8 +143,8 @@ Camera read_camera(const JsonValue& value, const ImageSettings& image, double un
       camera.target = object.at("target").vec3();
     }
     if (const auto up = object.find("up")) camera.up = up->direction();
-    const std::optional<double> focal_length = read_angle(object, image, camera);
-    object.read("near", camera.near, "far", camera.far, "shutter", camera.shutter);
+    read_members(object, camera, {"position", "target", "up"});
+    const std::optional<double> focal_length = read_focal_length(object, image, camera);
     if (camera.far <= camera.near)
       object.at("far").wanted(fmt::format("a number above the \"near\" of {}", camera.near));
     if (placed) check_view(object, camera);
@@ -175,19 +167,22 @@ Camera read_camera(const JsonValue& value, const ImageSettings& image, double un
   });
 }
 
+ToneMap read_tone_map(const JsonValue& value) {
+  return value.object("tone_map", [](JsonObject& object) {
+    ToneMap map;
+    read_members(object, map, {"exposure"});
+    const auto exposure = object.find("exposure");
+    map.automatic = exposure && exposure->json() == "auto";
+    if (exposure && !map.automatic) exposure->get(map.exposure);
+    return map;
+  });
+}
+
 ImageSettings read_image(const JsonValue& value) {
   return value.object("image", [](JsonObject& object) {
     ImageSettings image;
-    object.read("width", image.width, "height", image.height, "transparent", image.transparent,
-                "transparent_glass", image.transparent_glass);
-    if (const auto tone_map = object.find("tone_map"))
-      tone_map->object("tone_map", [&map = image.tone_map](JsonObject& inner) {
-        inner.read("curve", map.curve, "white_balance", map.white_balance, "contrast", map.contrast);
-        inner.read("vignette", map.vignette, "bloom", map.bloom);
-        const auto exposure = inner.find("exposure");
-        map.automatic = exposure && exposure->json() == "auto";
-        if (exposure && !map.automatic) exposure->get(map.exposure);
-      });
+    read_members(object, image);
+    if (const auto tone_map = object.find("tone_map")) image.tone_map = read_tone_map(*tone_map);
     const auto background = object.find("background");
     if (!background) return image;
     if (background->json().is_array()) {
@@ -204,17 +199,14 @@ ImageSettings read_image(const JsonValue& value) {
 RenderSettings read_render(const JsonValue& value) {
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
-    object.read("samples", render.samples, "light_samples", render.light_samples, "cutoff", render.cutoff);
-    object.read("max_component", render.max_component, "integrator", render.integrator);
+    read_members(object, render, {"max_depth", "sampler", "seed"});
     const Integrator& integrator = *find_integrator(render.integrator);
     render.max_depth = object.integer("max_depth", integrator.depth, 1, integrator.most_depth);
     if (const auto path = object.find("path"))
       path->object("path", [&](JsonObject& inner) { read_path(inner, render); });
-    object.read("caustics", render.caustics, "tracer", render.tracer);
-    object.read("texture_memory", render.texture_memory, "spatial_splits", render.spatial_splits);
     object.read("sampler", render.sampler, samplers);
     if (const auto seed = object.find("seed"); seed && seed->json() != "frame") seed->get(render.seed);
-    read_filter(object, render);
+    check_filter(object, render);
     read_sampling(object, render);
     return render;
   });
@@ -223,14 +215,14 @@ RenderSettings read_render(const JsonValue& value) {
 FogDescription read_fog(const JsonValue& value) {
   return value.object("fog", [](JsonObject& object) {
     FogDescription fog;
-    object.read("color", fog.color, "density", fog.density, "anisotropy", fog.anisotropy);
+    read_members(object, fog);
     return fog;
   });
 }
 
 void read_crystals(JsonObject& object, HaloCrystals& crystals) {
   object.read("shape", crystals.shape, halo_shapes);
-  object.read("ratio", crystals.ratio, "tilt", crystals.tilt, "roll", crystals.roll, "share", crystals.share);
+  read_members(object, crystals, {"shape"});
 }
 
 void read_halo(JsonObject& object, HaloDescription& halo) {
@@ -241,7 +233,7 @@ void read_halo(JsonObject& object, HaloDescription& halo) {
     shares += halo.crystals.back().share;
   }
   if (!(shares > 0)) kinds.fail("wanted kinds of crystals of a share above 0 in all");
-  object.read("optical_depth", halo.optical_depth, "ior", halo.index, "rays", halo.rays, "cells", halo.size);
+  read_members(object, halo);
 }
 
 EnvironmentDescription read_environment(const JsonValue& value,
@@ -249,17 +241,13 @@ EnvironmentDescription read_environment(const JsonValue& value,
   const std::string type = value.type();
   return value.object(type + "_environment", [&](JsonObject& object) {
     EnvironmentDescription e;
-    e.type = *value_named(environment_types, type);
-    object.read("color", e.color, "intensity", e.intensity, "rotate", e.rotate, "samples", e.samples);
-    object.read("visible", e.visible, "hidden", e.hidden, "group", e.group);
+    e.type = enumerator_named<EnvironmentType>(type);
+    read_members(object, e, {"type", "up"});
     if (const auto up = object.find("up")) e.up = up->direction();
     if (e.type == EnvironmentType::image) {
       e.picture = read_picture(object.at("file"));
-    } else if (e.type == EnvironmentType::gradient) {
-      object.read("bottom", e.bottom, "top", e.top);
-    } else {
+    } else if (e.type != EnvironmentType::gradient) {
       if (e.type == EnvironmentType::halo) read_halo(object, e.halo);
-      object.read("turbidity", e.turbidity, "ground", e.ground);
       if (const auto sun = object.find("sun"))
         sun->object(e.type == EnvironmentType::halo ? "halo_sun" : "sun",
                     [&](JsonObject& inner) { read_sun(inner, e); });
@@ -274,12 +262,7 @@ LightDescription read_light(const JsonValue& value, double unit) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
     object.check("name");  // used only by pointers
-    const auto read = [&](std::string_view key, auto& to) {
-      if (object.knows(key) && key != "direction" && key != "up" && key != "falloff") object.read(key, to);
-    };
-#define SUNDOG_READ_KEY(of, name, ...) read(#name, light.name);
-    LIGHT_KEYS(SUNDOG_READ_KEY)
-#undef SUNDOG_READ_KEY
+    read_members(object, light, {"type", "direction", "up", "falloff"});
     if (const auto kelvin = object.find("temperature")) light.color *= black_body_color(kelvin->number());
     if (object.knows("falloff"))
       if (const auto falloff = object.find("falloff"))
@@ -291,6 +274,12 @@ LightDescription read_light(const JsonValue& value, double unit) {
     if (object.knows("watts")) read_power(object, unit, light);
     return light;
   });
+}
+
+void check_light_groups(const SceneDescription& scene, const JsonValue& root) {
+  if (const auto groups = light_groups(scene); groups.size() > most_light_groups)
+    root.fail(fmt::format("wanted at most {} groups of lights, found {}: {}", most_light_groups,
+                          groups.size(), fmt::join(groups, ", ")));
 }
 
 }  // namespace sundog

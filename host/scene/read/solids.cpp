@@ -11,6 +11,7 @@
 
 #include "formula/list.h"
 #include "formula/lower.h"
+#include "scene/json/members.h"
 #include "scene/procedural/procedural.h"
 #include "scene/read/parts.h"
 
@@ -31,7 +32,7 @@ dmat4 read_axis(JsonObject& object, std::string_view key) {
 }
 
 PlacedShape read_shape(SphereShape sphere, JsonObject& object) {
-  object.read("radius", sphere.radius);
+  read_members(object, sphere);
   return {sphere, read_point(object, "center")};
 }
 
@@ -90,7 +91,7 @@ double read_span(JsonObject& object, dmat4& placed) {
 
 PlacedShape read_shape(CylinderShape cylinder, JsonObject& object) {
   PlacedShape result;
-  object.read("radius", cylinder.radius, "capped", cylinder.capped);
+  read_members(object, cylinder);
   cylinder.half_height = read_span(object, result.placed);
   result.shape = cylinder;
   return result;
@@ -98,7 +99,7 @@ PlacedShape read_shape(CylinderShape cylinder, JsonObject& object) {
 
 PlacedShape read_shape(ConeShape cone, JsonObject& object) {
   PlacedShape result;
-  object.read("bottom_radius", cone.bottom_radius, "top_radius", cone.top_radius, "capped", cone.capped);
+  read_members(object, cone);
   if (cone.bottom_radius == 0 && cone.top_radius == 0)
     object.value().fail("wanted a \"bottom_radius\" or a \"top_radius\" above 0, found both 0");
   cone.half_height = read_span(object, result.placed);

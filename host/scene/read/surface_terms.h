@@ -10,8 +10,6 @@ struct Pattern {
   int texture = -1;
 };
 
-inline constexpr Range ior_range{.low = 0.01, .high = 100};
-
 /// Reads a colour, or the name of a texture.
 Pattern read_plain_color(const JsonValue& value, TextureLibrary& textures);
 /// Reads a number, or the name of a texture, which sets the number to 1 times the texture.

@@ -252,8 +252,8 @@ int TextureLibrary::use(const std::string& name, TextureUse use) {
   if (texture.kind == TEXTURE_IMAGE) {
     if (use == TextureUse::number && texture.channel < 0) texture.channel = 0;
     // An encoding applies only to bytes; an EXR's use decides, because its colours always have primaries.
-    const bool by_use = entry.encoding == Entry::Encoding::by_use || !drops_alpha(entry.file);
-    const bool srgb = by_use ? use == TextureUse::color : entry.encoding == Entry::Encoding::srgb;
+    const bool by_use = entry.encoding == ImageEncoding::automatic || !drops_alpha(entry.file);
+    const bool srgb = by_use ? use == TextureUse::color : entry.encoding == ImageEncoding::srgb;
     texture.image = use_image(entry, srgb);
   }
   const auto index = static_cast<int>(scene_.textures.size());

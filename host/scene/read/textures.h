@@ -12,6 +12,7 @@ namespace sundog {
 /// The use of a texture: colours (sRGB images), a number (data images; the first channel unless the texture
 /// selects another), or several channels of data (normals).
 enum class TextureUse { color, number, data };
+enum class ImageEncoding { automatic, srgb, linear };
 
 class TextureLibrary {
  public:
@@ -39,7 +40,7 @@ class TextureLibrary {
     std::string place;
     std::string of[2];  // names of texture operands
     bool made = false;  // generated for a colour
-    enum class Encoding { by_use, srgb, linear } encoding = Encoding::by_use;
+    ImageEncoding encoding = ImageEncoding::automatic;
   };
   Entry read_image(JsonObject& object) const;
   static Entry read_vertex_color(JsonObject& object);

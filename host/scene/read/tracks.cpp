@@ -8,6 +8,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "scene/json/members.h"
+
 namespace sundog {
 namespace {
 
@@ -101,12 +103,10 @@ void read_keys(JsonObject& object, Track& track) {
     track.keys.push_back(std::move(key));
   }
   for (std::size_t i = 0; i < track.keys.size(); ++i) check_handles(items[i], track, i);
-  object.read("whole", track.whole);
 }
 
 void read_turn(JsonObject& object, Track& track) {
   if (const auto axis = object.find("axis")) track.axis = axis->direction();
-  object.read("center", track.center, "degrees", track.degrees, "first", track.first, "last", track.last);
   if (!(track.last > track.first))
     object.at("last").fail(
         fmt::format("wanted a frame after \"first\" ({}), found {}", track.first, track.last));
@@ -125,7 +125,7 @@ Track read_track(const JsonValue& value) {
     track.pointer = pointer.text();
     if (!is_pointer(track.pointer) || track.pointer.starts_with("/animate"))
       pointer.wanted("the JSON pointer of a value of the scene, as \"/camera/fov\"");
-    object.read("cycle", track.cycle);
+    read_members(object, track, {"axis"});
     if (turns)
       read_turn(object, track);
     else

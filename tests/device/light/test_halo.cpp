@@ -58,10 +58,10 @@ EnvironmentDescription sky_with(u32 shape, double altitude, double index, double
   e.type = EnvironmentType::halo;
   e.sun_altitude = altitude;
   e.sun_size = 0;
-  e.halo.index = index;
+  e.halo.ior = index;
   e.halo.crystals = {{shape, ratio, 0, 0, 1}};
   e.halo.rays = 16 * 4000;
-  e.halo.size = 64;
+  e.halo.cells = 64;
   return e;
 }
 

@@ -21,7 +21,7 @@ EnvironmentDescription sky_with(std::vector<HaloCrystals> crystals, double altit
   e.sun_altitude = altitude;
   e.halo.crystals = std::move(crystals);
   e.halo.rays = 80'000;
-  e.halo.size = 256;
+  e.halo.cells = 256;
   return e;
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("light of a thin layer of crystals grows with its depth, and is finite
 
 TEST_CASE("a scene's halo lights its sky, and a map that was traced beforehand changes no byte of it") {
   EnvironmentDescription e = sky_with({{HALO_PLATE, 0.3, 1, 1, 1}});
-  e.halo.size = 128;
+  e.halo.cells = 128;
   e.halo.rays = 20'000;
   const CompiledScene traced = compile(scene_under(e));
   e.halo_map = std::make_shared<const HaloMap>(map_of(e));

@@ -65,16 +65,17 @@ TEST_CASE("a tuning's options take the place of the rule's, and a user's take th
   nvidia.environment = std::make_shared<const HostEnvironment>(environment);
   CHECK(with("-cl-nv-maxrregcount=96") ==
         "-cl-std=CL1.2 -cl-kernel-arg-info -DDEVICE_INLINES_ALL -cl-nv-maxrregcount=64");
-  for (const std::vector<std::string>& values : options_to_try(nvidia, "entry/render_path.cl"))
+  for (const std::vector<std::string>& values : options_to_try(nvidia, "entry/render_path.cl", true))
     CHECK_THAT(values.front(), !ContainsSubstring("maxrregcount"));  // the user has decided
 }
 
 TEST_CASE("tune tries options of a device's rule by name, those that change a build") {
   using Lists = std::vector<std::vector<std::string>>;
-  const auto to_try = [](const DeviceInfo& device, const char* entry) {
-    return options_to_try(device, fmt::format("entry/{}.cl", entry));
+  const auto to_try = [](const DeviceInfo& device, const char* entry, bool compact = true) {
+    return options_to_try(device, fmt::format("entry/{}.cl", entry), compact);
   };
   CHECK(to_try(DeviceInfo(), "render_path") == Lists{{"-DNODE_LOOP=1", "-DNODE_LOOP=2"}});
+  CHECK(to_try(DeviceInfo(), "render_path", false).empty());
   CHECK(to_try(gpu("NVIDIA Corporation", "NVIDIA CUDA"), "render_path") ==
         Lists{{"!-DDEVICE_INLINES_ALL"},
               {"-DNODE_LOOP=1", "-DNODE_LOOP=2"},

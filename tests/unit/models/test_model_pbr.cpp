@@ -1,6 +1,7 @@
 // MTL's PBR statements, as Blender writes them, against the same materials as glTF.
 #include <models/model.h>
 
+#include "base/code_names.h"
 #include "base/image_io.h"
 #include "catch.h"
 #include "gltf_text.h"
@@ -35,15 +36,13 @@ std::string image_of(const Model& model, int index) {
 }
 
 void check_layers(const OpenPbr& a, const OpenPbr& b) {
-#define CHECK_MEMBER(type, name, standard) CHECK(a.name == b.name);
-  OPENPBR_PLAIN_KEYS(CHECK_MEMBER)
-#undef CHECK_MEMBER
-  CHECK(a.base_color == b.base_color);
-  CHECK(a.base_metalness == b.base_metalness);
-  CHECK(a.specular_roughness == b.specular_roughness);
-  CHECK(a.transmission_weight == b.transmission_weight);
-  CHECK(a.coat_weight == b.coat_weight);
-  CHECK(a.coat_bends == b.coat_bends);
+  boost::pfr::for_each_field(a, [&]<class M>(const M& member, std::size_t index) {
+    INFO(member_names<OpenPbr>[index]);
+    boost::pfr::for_each_field(b, [&]<class N>(const N& other, std::size_t at) {
+      if constexpr (std::is_same_v<M, N>)
+        if (at == index) CHECK(member == other);
+    });
+  });
 }
 
 /// All but textures.

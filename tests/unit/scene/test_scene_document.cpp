@@ -51,6 +51,18 @@ TEST_CASE("a model's document is the scene that is made up around it") {
   CHECK_THROWS_AS(read_scene_document(folder / "none.json"), SceneError);
 }
 
+TEST_CASE("a change of lights is refused as the whole scene is, with more groups of lights than a film has") {
+  const auto file = scenes / "spheres.json";
+  const json before = read_scene_document(file);
+  const SceneDescription scene = load_scene_document(before, file);
+  json after = before;
+  for (int i = 0; i < 17; ++i)
+    after["lights"].push_back(
+        {{"type", "point"}, {"position", {0, 9, 0}}, {"group", "g" + std::to_string(i)}});
+  CHECK_THROWS_AS(load_scene_document(after, file), SceneError);
+  CHECK_THROWS_AS(change_scene(scene, before, after), SceneError);
+}
+
 TEST_CASE("a change of the view alone gives the scene that reading everything gives") {
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);

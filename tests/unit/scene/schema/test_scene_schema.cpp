@@ -17,7 +17,10 @@
 #include "scene/json/parse.h"
 #include "scene/kinds.h"
 #include "scene/load.h"
+#include "scene/procedural/profile.h"
 #include "scene/read/scene_reader.h"
+#include "scene/read/textures.h"
+#include "scene/read/tracks.h"
 #include "scene_text.h"
 
 using namespace sundog;
@@ -169,6 +172,36 @@ TEST_CASE("the reader and the schema know the same keys") {
     INFO("$defs/" << kind << " of the schema is of no kind that the reader reads");
     CHECK(asked.count(kind) == 1);
   }
+}
+
+/// Reads every name that the schema has for a key into the enumeration.
+template <class E>
+void check_names(const char* kind, const char* key) {
+  for (const std::string_view name :
+       schema_rule(kind)->keys.at(key).rule->as(SchemaRule::Type::string)->names) {
+    INFO(kind << "/" << key << ": " << name);
+    CHECK_NOTHROW(enumerator_named<E>(name));
+  }
+}
+
+TEST_CASE("enumerators have the schema's names") {
+  CHECK(enumerator_named<Filter>("blackman_harris") == Filter::blackman_harris);
+  CHECK(enumerator_named<Tracer>("auto") == Tracer::automatic);
+  CHECK_THROWS_AS(enumerator_named<Filter>("triangle"), std::logic_error);
+  CHECK_THROWS_AS(enumerator_named<Filter>(""), std::logic_error);
+  check_names<ToneCurve>("tone_map", "curve");
+  check_names<Filter>("render", "filter");
+  check_names<Tracer>("render", "tracer");
+  check_names<EnvironmentType>("environment", "type");
+  check_names<MaterialType>("material", "type");
+  check_names<TextureFilter>("image_texture", "filter");
+  check_names<ImageEncoding>("image_texture", "encoding");
+  check_names<Mapping>("checker_texture", "projection");
+  check_names<procedural::ProfileCurve>("generate_lathe", "curve");
+  check_names<Track::Kind>("keyed_track", "type");
+  check_names<FormulaDerivative>("formula", "derivative");
+  check_names<EscapeEstimate>("formula", "estimate");
+  check_names<SdfColorBy>("coloring", "by");
 }
 
 TEST_CASE("the schema takes what the reader takes") {

@@ -56,7 +56,7 @@ void pass_on(Channel& job, Channel& worker) {
   }
 }
 
-void serve_by_worker(ReadAhead& channel) {
+void work_by_process(ReadAhead& channel) {
   const nlohmann::json& order = channel.first().values;
   const std::string name =
       order.contains("device") ? order["device"].get<DeviceInfo>().label() : "the list of devices";
@@ -67,7 +67,7 @@ void serve_by_worker(ReadAhead& channel) {
   }
 }
 
-void serve_here(Channel& channel, Service& service) {
+void work_here(Channel& channel, Service& service) {
   Orders orders(channel, [] {});
   HangWatch watch([&](const std::string& what) {
     ++service.hanging;
@@ -77,7 +77,7 @@ void serve_here(Channel& channel, Service& service) {
       // nobody is left to receive it
     }
   });
-  serve_orders(
+  follow_orders(
       channel, orders,
       [&](const nlohmann::json& settings) {
         OpenedWorker opened = open_worker(settings, &service.kept);
@@ -87,13 +87,13 @@ void serve_here(Channel& channel, Service& service) {
       list_devices);
 }
 
-void serve(Channel& opened, Service& service) {
+void work_for(Channel& opened, Service& service) {
   try {
     ReadAhead channel(opened);
     if (channel.first().values.value("isolate", false))
-      serve_by_worker(channel);
+      work_by_process(channel);
     else
-      serve_here(channel, service);
+      work_here(channel, service);
   } catch (const ChannelClosed&) {
     // rank 0 is gone, or the job is over
   }
@@ -101,12 +101,12 @@ void serve(Channel& opened, Service& service) {
 
 }  // namespace
 
-void serve_job(std::unique_ptr<Mailbox> job) {
+void work_for_job(std::unique_ptr<Mailbox> job) {
   const auto service = std::make_shared<Service>();
   while (std::shared_ptr<Channel> channel = job->accept()) {
     ++service->channels;
     std::thread([service, channel]() mutable {
-      serve(*channel, *service);
+      work_for(*channel, *service);
       channel.reset();
       --service->channels;
     }).detach();
