@@ -305,18 +305,21 @@ void add_scene_bvh(std::vector<Placed>& bounded, Instances& out, u32 mesh_stack)
 /// Removes a few large solids from the scene BVH and returns them: testing one for a whole batch of rays is
 /// faster than taking every ray to it through the tree, and a single remaining mesh needs no scene tree at
 /// all. As in SAH, the share of rays that hit a solid is its box's area relative to `scene`'s; a small solid
-/// would cost each ray more than it saves.
+/// would cost each ray more than it saves, and a lathe's test is too long for rays that pass it.
 std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds& scene) {
   constexpr float share = 0.05f;
   constexpr std::size_t few = 16;
   const auto is_mesh = [](const Placed& placed) { return placed.instance.shape == SHAPE_MESH; };
+  const auto stays = [&](const Placed& placed) {
+    return is_mesh(placed) || placed.instance.shape == SHAPE_LATHE;
+  };
   if (std::none_of(bounded.begin(), bounded.end(), is_mesh)) return {};
   const Lanes edges = scene.upper - scene.lower;
   const float scale = 1 / std::max({edges[0], edges[1], edges[2], 1e-30f});
   const float least = share * half_area(scene, scale);
   std::vector<Placed> left, large;
   for (const Placed& placed : bounded)
-    (is_mesh(placed) || half_area(placed.box, scale) < least ? left : large).push_back(placed);
+    (stays(placed) || half_area(placed.box, scale) < least ? left : large).push_back(placed);
   bounded = std::move(left);
   if (large.size() <= few) return large;
   bounded.insert(bounded.end(), large.begin(), large.end());

@@ -15,21 +15,17 @@
 #include "lib/solids/surface_points.cl"
 
 #if HAS_LATHE
-// GPUs read an arc where they need it: compilers would keep the whole in registers, but cannot know that t is
-// at most 1. The tracer by itself keeps rays and the ends of an arc in memory, too.
-#ifdef DEVICE_INLINES_ALL
-#define READ_AGAIN(pointer, t) ((pointer) + ((t) > 1.0f))
-#else
-#define READ_AGAIN(pointer, t) (pointer)
-#endif
+// The tracer by itself on a GPU has few registers. There rays and the ends of an arc stay in memory, and
+// these and arcs are read where they are needed: compilers would keep them in registers, but cannot know that
+// t is at most 1.
 #if FEW_REGISTERS
 #define KEEP_LATHE(type, name) KEEP_IN_MEMORY(type, name)
-#define KEPT_AGAIN(pointer, t) READ_AGAIN(pointer, t)
+#define READ_AGAIN(pointer, t) ((pointer) + ((t) > 1.0f))
 #else
 #define KEEP_LATHE(type, name) \
   type kept_##name;            \
   type* const name = &kept_##name
-#define KEPT_AGAIN(pointer, t) (pointer)
+#define READ_AGAIN(pointer, t) (pointer)
 #endif
 
 // Rays, with distances s from `base`, the line's point nearest to the origin, and their nearest hits so far.
@@ -167,7 +163,7 @@ static inline float off_surface(const LatheRays* rays, u32 i, float2 p, float2 n
 static inline void offer_on_arc(__global const ProfileArc* arc, int part, float side, float t,
                                 LatheRays* kept, u32 i) {
   const ProfileArc now = *READ_AGAIN(arc, t);
-  LatheRays* rays = KEPT_AGAIN(kept, t);
+  LatheRays* rays = READ_AGAIN(kept, t);
   const float2 p = arc_point(&now, t), way = arc_way(&now, t);
   const float2 normal = (float2)(way.y, -way.x) / sqrt(dot(way, way));
   const float inverse = REAL_LANE(rays->inverse, i);
@@ -223,9 +219,9 @@ static inline void meet_half(__global const ProfileArc* arc, int part, float sid
 #pragma unroll 1
   while (number < 1u << halvings) {
     const u32 all = 1u << halvings;
-    ArcPlace b = KEPT_AGAIN(ends, a.t)->last;
+    ArcPlace b = READ_AGAIN(ends, a.t)->last;
     if (number + 1u < all) {
-      const float first = KEPT_AGAIN(ends, a.t)->first.t,
+      const float first = READ_AGAIN(ends, a.t)->first.t,
                   t = fma(b.t - first, (float)(number + 1u) / (float)(all), first);
       const ProfileArc now = *READ_AGAIN(arc, t);
       b = arc_place(&ray, &now, t);

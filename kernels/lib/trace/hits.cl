@@ -7,6 +7,12 @@
 #include "lib/core/turns.cl"
 #include "lib/solids/solids.cl"
 
+// How to trace rays.
+#define TRACE_NEAREST 0u   // to the nearest hit
+#define TRACE_ANY 1u       // to any hit
+#define TRACE_COHERENT 2u  // the rays are coherent
+#define TRACE_APART 4u     // to solids that a scene with meshes does not have in its BVH: no lathes
+
 // The members of Hit; without a hit, `instance` is -1 (NO_INSTANCE) and t the ray's t_max.
 typedef struct Hits {
   REAL t, u, v;
@@ -142,29 +148,32 @@ ALWAYS_INLINE void offer_solids(u32 shape, float4 parameters, MASK index, REAL3 
 }
 
 // Tests the instances from range.x up to, but not, range.y, all solids, for the lanes of `active`;
-// world-space rays, whose hits so far are on other instances or on the first. With `any`, lanes with a hit
-// are done, and only their instance is set. The loop is in this function to keep rays and hits in registers.
+// world-space rays, whose hits so far are on other instances or on the first. `way`: TRACE_* bits; with
+// TRACE_ANY, lanes with a hit are done, and only their instance is set. The loop is in this function to keep
+// rays and hits in registers.
 NEVER_INLINE void hit_solids(__global const Instance* restrict instances, uint2 range, const REAL3* rays_o,
-                             const REAL3* rays_d, const REAL* rays_t_min, MASK active, bool any, Hits* hits) {
+                             const REAL3* rays_d, const REAL* rays_t_min, MASK active, u32 way, Hits* hits) {
   const REAL3 o = *rays_o, d = *rays_d;
   const REAL t_min = *rays_t_min;
   SolidHits solid = begin_solids(hits, (MASK)((int)range.x));
   MASK found = NO_LANES, nearest = hits->instance;
   for (u32 i = range.x; i < range.y; ++i) {
-    if (any) active &= ~found;
+    if (way & TRACE_ANY) active &= ~found;
     if (!any_lane(active)) break;
     __global const Instance* instance = instances + i;
+    const u32 shape = instance->shape;
+    if (HAS_LATHE && (way & TRACE_APART) && shape == SHAPE_LATHE) continue;  // for compilers that inline
     REAL3 origins = still_origins(hits, i, o), directions = still_directions(hits, i, d);
     into_object(instance, &origins, &directions);
     solid.found = NO_LANES;
-    closest_in_solid(instance->shape, instance->parameters, origins, directions, t_min, active, &solid);
+    closest_in_solid(shape, instance->parameters, origins, directions, t_min, active, &solid);
     nearest = select(nearest, (MASK)((int)i), solid.found);
     solid.t = select(solid.t, number_below(solid.t), solid.found);
     found |= solid.found;
   }
   if (!any_lane(found)) return;
   hits->instance = nearest;
-  if (any) return;
+  if (way & TRACE_ANY) return;
   solid.t = number_above(solid.t);
   take_solids(&solid, found, hits);
 }

@@ -16,8 +16,8 @@
 static inline void packet_in_solid(const Scene* scene, const PacketRays* rays, PacketHits* hits, u32 active,
                                    u32 index, bool any) {
   const REAL3 o = real3(rays->o[0], rays->o[1], rays->o[2]), d = real3(rays->d[0], rays->d[1], rays->d[2]);
-  hit_solids(scene->instances, (uint2)(index, index + 1u), &o, &d, &hits->t_min, lanes_of(active), false,
-             hits->found);
+  hit_solids(scene->instances, (uint2)(index, index + 1u), &o, &d, &hits->t_min, lanes_of(active),
+             TRACE_NEAREST, hits->found);
   if (any) end_lanes(hits, lanes_of(active));
 }
 

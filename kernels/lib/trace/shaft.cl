@@ -130,7 +130,7 @@ static inline MASK blocked_by(const Scene* scene, u32 solids, REAL3 o, REAL3 d, 
   const REAL t_min = (REAL)(0.0f);
   for (; HAS_SOLID && solids; solids &= solids - 1u) {
     const u32 i = lowest_bit(solids);
-    hit_solids(scene->instances, (uint2)(i, i + 1u), &o, &d, &t_min, lanes, true, &hits);
+    hit_solids(scene->instances, (uint2)(i, i + 1u), &o, &d, &t_min, lanes, TRACE_ANY, &hits);
   }
   return lanes & hit_anything(&hits);
 }

@@ -18,8 +18,8 @@ static inline void trace_solid(const Scene* scene, u32 index, float3 o, float3 d
   Hits hits = no_hits((REAL)(hit->t));
   hits.instance = (MASK)((int)hit->instance);
   prepare_hits(scene, (REAL)(time), &hits);
-  hit_solids(scene->instances, (uint2)(index, index + 1u), &origins, &directions, &starts, ALL_LANES, false,
-             &hits);
+  hit_solids(scene->instances, (uint2)(index, index + 1u), &origins, &directions, &starts, ALL_LANES,
+             TRACE_NEAREST, &hits);
   // A thin solid may be in several leaves: it may be the nearest hit already.
   const bool nearer = hit->instance != index || REAL_LANE(hits.t, 0) < hit->t;
   if ((u32)MASK_LANE(hits.instance, 0) == index && nearer) *hit = get_hit(&hits, 0);

@@ -73,7 +73,8 @@ static inline Hit next_hit(const Scene* scene, u32 index, const Stretch* stretch
   const REAL t_min = (REAL)(from);
   Hits hits = no_hits((REAL)(to));
   prepare_hits(scene, (REAL)(time_of_stretch(stretch)), &hits);
-  hit_solids(scene->instances, (uint2)(index, index + 1u), &o, &d, &t_min, lanes_of(1u), false, &hits);
+  hit_solids(scene->instances, (uint2)(index, index + 1u), &o, &d, &t_min, lanes_of(1u), TRACE_NEAREST,
+             &hits);
   return get_hit(&hits, 0);
 }
 

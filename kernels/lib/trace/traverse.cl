@@ -9,11 +9,6 @@
 #include "lib/trace/single.cl"
 #include "lib/trace/walk.cl"
 
-// How to trace rays.
-#define TRACE_NEAREST 0u   // to the nearest hit
-#define TRACE_ANY 1u       // to any hit
-#define TRACE_COHERENT 2u  // the rays are coherent
-
 // Without meshes, up to this many solids are tested in turn for all rays of a batch, which is faster than
 // taking each ray through the BVH. A packet always uses the BVH if there is one.
 #ifndef FEW_SOLIDS
@@ -118,10 +113,6 @@ static inline bool goes_in_tree(const Scene* scene, bool coherent) {
   return HAS_BVH && ((PACKETS && coherent) || scene->info->bounded_count > FEW_SOLIDS);
 }
 
-// Whether solids are tested in turn: with meshes, only planes are, which have no bounds. Scenes with lathes
-// save a second copy of their long test, and its registers, by it.
-#define SOLIDS_IN_TURN (HAS_SOLID && (!HAS_LATHE || !HAS_MESH || HAS_PLANE))
-
 // Sets the hits of the lanes of `active` in (t_min, t_max]. `time`: of the rays, if objects move. `way`:
 // TRACE_* bits.
 static inline void find_hits(const Scene* scene, const TraceRays* rays, REAL t_max, REAL time, MASK active,
@@ -133,9 +124,9 @@ static inline void find_hits(const Scene* scene, const TraceRays* rays, REAL t_m
   active &= traceable(rays->o, rays->d, *rays->t_min, t_max);
   const bool in_tree = goes_in_tree(scene, way & TRACE_COHERENT);
   const u32 first = in_tree ? scene->info->bounded_count : 0u;
-  if (SOLIDS_IN_TURN && first < scene->info->instance_count)
+  if (HAS_SOLID && first < scene->info->instance_count)
     hit_solids(scene->instances, (uint2)(first, scene->info->instance_count), rays->o, rays->d, rays->t_min,
-               active, way & TRACE_ANY, hits);
+               active, (way & TRACE_ANY) | (HAS_MESH ? TRACE_APART : 0u), hits);
   if (!HAS_BVH) return;
   if (way & TRACE_ANY) active &= ~hit_anything(hits);
   if (LISTS_HITS && rays->lists && !rays->priorities) active &= ~opaque_hits(scene->instances, hits, active);
