@@ -24,6 +24,14 @@ vec3 in_cube(std::mt19937& random) {
   return p;
 }
 
+void add_small_mesh(SceneDescription& scene, int material) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(mesh);
+  scenes::place(scene, MeshShape{0}, material);
+}
+
 /// Each solid with several parameters, turned and squeezed; more than are tried one after another, beside a
 /// small mesh.
 SceneDescription crowd_of_solids() {
@@ -36,12 +44,21 @@ SceneDescription crowd_of_solids() {
     at = glm::scale(at, 0.4 * glm::dvec3(1, i % 4 ? 1 : 0.6, 1));
     scenes::place(scene, shapes[static_cast<std::size_t>(i) % shapes.size()], white, at);
   }
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
-  mesh.triangles = {{0, 1, 2}};
-  scene.meshes.push_back(mesh);
-  scenes::place(scene, MeshShape{0}, white);
+  add_small_mesh(scene, white);
   scenes::place(scene, PlaneShape{}, white, glm::translate(glm::dmat4(1), {0, -1.7, 0}));
+  return scene;
+}
+
+/// Large solids of every shape, which are tested for many rays at once, beside a small mesh; no plane.
+SceneDescription large_solids() {
+  SceneDescription scene = scenes::line_of_sight({0, 0, 9}, {0, 0, 0});
+  const int white = scenes::add_white(scene);
+  const std::vector<Shape> shapes = every_bounded_solid();
+  for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
+    const glm::dmat4 at = glm::translate(glm::dmat4(1), 0.5 * glm::dvec3(i % 3, i / 3 % 3, i / 9) - 0.5);
+    scenes::place(scene, shapes[static_cast<std::size_t>(i)], white, glm::scale(at, glm::dvec3(0.6)));
+  }
+  add_small_mesh(scene, white);
   return scene;
 }
 
@@ -56,11 +73,9 @@ std::vector<Ray> rays_from_all_over(std::size_t count) {
   return rays;
 }
 
-}  // namespace
-
-TEST_CASE("rays meet every solid where the plain tracer does, and with its normal") {
+void check_hits(const SceneDescription& scene) {
   const std::vector<Ray> rays = rays_from_all_over(4000);
-  for_each_tracer(crowd_of_solids(), [&](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
+  for_each_tracer(scene, [&](const CompiledScene& flat, RayTracer& tracer, bool coherent) {
     const std::vector<Hit> hits = tracer.trace(rays, coherent);
     int wrong = 0, turned = 0, met = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -83,4 +98,14 @@ TEST_CASE("rays meet every solid where the plain tracer does, and with its norma
     CHECK(wrong == 0);
     CHECK(turned <= met / 500);  // at edges
   });
+}
+
+}  // namespace
+
+TEST_CASE("rays meet every solid where the plain tracer does, and with its normal") {
+  check_hits(crowd_of_solids());
+}
+
+TEST_CASE("rays meet large solids of every shape beside a mesh, without a plane") {
+  check_hits(large_solids());
 }

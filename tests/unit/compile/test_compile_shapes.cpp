@@ -209,6 +209,14 @@ TEST_CASE("solids beside a mesh that many rays meet are offered to each batch, u
   CHECK(flat.info.bounded_count == 1);  // no mesh: nothing is taken out
 }
 
+TEST_CASE("a lathe beside a mesh is in the scene's BVH, however large it is") {
+  SceneDescription scene = mesh_and_spheres(2, 0.9);
+  scene.objects[1].shape = LatheShape{};
+  const CompiledScene flat = compile(scene);
+  CHECK(flat.info.bounded_count == 2);
+  CHECK(flat.instances[2].shape == SHAPE_SPHERE);
+}
+
 TEST_CASE("sizes that make no solid are errors at the object's place") {
   dmat4 singular(1);
   singular[1][1] = 0;
