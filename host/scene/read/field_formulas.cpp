@@ -29,7 +29,8 @@ std::string read_text(JsonObject& object, std::string_view key) {
   if (!value) return "";
   if (value->json().is_string()) return value->text();
   std::string text;
-  for (const JsonValue& line : value->items("lines")) text += line.text() + "\n";
+  for (const JsonValue& line : value->items("lines"))
+    text += (line.json() == "" ? "" : line.text()) + "\n";  // an empty line sets others apart
   return text;
 }
 
