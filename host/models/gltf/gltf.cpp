@@ -316,14 +316,16 @@ class GltfReader {
 
   void add_camera(const Node& node, const dmat4& world) {
     const GltfCamera& from = cameras_[*node.camera];
-    if ((from.fov == 0 && from.height == 0) || from.fov >= std::numbers::pi || is_singular(world))
+    const bool parallel = from.height >= 1e-9 && from.height <= 1e15,  // as in scenes
+        perspective = from.fov > 0 && from.fov < std::numbers::pi;
+    if ((!parallel && !perspective) || is_singular(world))
       return leave_unread(*model_, "cameras that are neither perspective nor orthographic");
     if (model_->camera) return;
     Camera camera;
     camera.position = dvec3(world[3]);
     camera.target = camera.position - glm::normalize(dvec3(world[2]));
     camera.up = glm::normalize(dvec3(world[1]));
-    if (from.height > 0)
+    if (parallel)
       camera.orthographic = from.height;
     else
       camera.fov = glm::degrees(from.fov);
