@@ -13,7 +13,6 @@ struct Integrator {
   unsigned most_run;        // maximum pixels per work-item; idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
   int least_samples;        // per pixel, before its noise is estimated
-  bool pools_errors;        // a pixel's error is that of the pixels around it, which does not know its own luck
   // Abilities, which decide how scenes are compiled, kernels built and options refused.
   bool branches;       // child rays wait on a stack; each light gets a shadow ray
   bool scatters;       // light scatters in media and fog
@@ -34,7 +33,6 @@ inline constexpr std::array integrators{
                .depth = 8,
                .most_depth = 64,
                .least_samples = 1,
-               .pools_errors = false,
                .branches = true,
                .scatters = false,
                .own_materials = false,
@@ -48,7 +46,6 @@ inline constexpr std::array integrators{
                .depth = depth_cap,
                .most_depth = 65536,
                .least_samples = 4,  // one or two often find no light even if there is some
-               .pools_errors = true,
                .branches = false,
                .scatters = true,
                .own_materials = true,

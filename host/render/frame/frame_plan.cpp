@@ -68,7 +68,7 @@ Sampling sampling_of(const CompiledScene& scene, const RenderOptions& options) {
 
 SamplingPlan plan_of(const CompiledScene& scene, const RenderOptions& options) {
   SamplingPlan plan = plan_sampling(scene);
-  plan.settings = sampling_of(scene, options);
+  plan.settings.progressive = sampling_of(scene, options).progressive;
   plan.noise = options.noise;
   plan.surfaces = show_surfaces(options.aovs);
   plan.sums = aov_layout(options.aovs).sums() > 0;

@@ -157,12 +157,12 @@ std::vector<float> pooled_squares(const Film& film, const std::vector<u32>& pixe
   if (level == 1) return expected_squares(film, pixels, level);
   const float factor = pooled * share_of_squares(level);
   std::vector<float> expected(pixels.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once),
-                    [&](const auto& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i)
-                        expected[i] = known(
-                            factor * mean_5x5(film, film.moved_by_one, pixels[i] & 0xffffu, pixels[i] >> 16));
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, pixels.size(), pixels_at_once), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          expected[i] =
+              known(factor * mean_5x5(film, film.moved_by_one, pixels[i] & 0xffffu, pixels[i] >> 16));
+      });
   return expected;
 }
 

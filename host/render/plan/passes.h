@@ -17,7 +17,7 @@ struct SamplingPlan {
   double noise = 0;                      // the frame ends when its mean error is below this; 0: never
   bool surfaces = false;                 // AOVs are needed for every pixel
   bool sums = false;                     // those AOVs include sums over all samples
-  bool pools_errors = false;             // see Integrator
+  bool noisy = false;                    // errors are pooled_squares()
   std::vector<std::uint8_t> panes = {};  // per material; 1: partly clear, other surfaces are seen through it
 };
 
