@@ -142,7 +142,6 @@ std::string device_text(const DeviceReport& report) {
     text += ", not ready before the end";
   if (report.retired) text += ", retired";
   text += "\n";
-  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
   for (const auto& [name, kernel] : report.kernels)
     text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
                         kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));

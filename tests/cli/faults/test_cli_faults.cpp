@@ -202,3 +202,14 @@ TEST_CASE("faults that nobody understands are refused") {
   CHECK(result.status == 2);
   CHECK(contains(result.err, "SUNDOG_FAULTS: wanted KIND"));
 }
+
+TEST_CASE("variables of seconds that are no numbers above 0 are refused by name") {
+  for (const char* name : {"SUNDOG_LAUNCH_LIMIT", "SUNDOG_SILENCE_LIMIT"})
+    for (const char* value : {"x", "2s", "0", "-1", "inf", "nan"}) {
+      FaultyFolder folder;
+      folder.options.environment[name] = value;
+      const CommandResult result = folder.render("");
+      CHECK(result.status == 2);
+      CHECK(contains(result.err, std::string("sundog: ") + name + "=" + value + ": wanted seconds above 0"));
+    }
+}
