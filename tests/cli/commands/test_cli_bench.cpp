@@ -95,11 +95,14 @@ TEST_CASE(
 
 TEST_CASE("bench kernels tells limits of each kernel and tracer, and builds from source as often as asked") {
   const CliFolder folder;
+  CommandOptions patient;
+  patient.timeout = 1800;  // beside other tests, builds are disturbed and repeated
   for (const std::string tracer : {"wide", "compact"}) {
     const int builds = tracer == "wide" ? 2 : 1;
     const CommandResult result = run_sundog(
         {"bench", "kernels", folder.scene, "--device", "portable", "--set", "/render/tracer=" + tracer,
-         "--json", folder.file("k.json"), "--t4", folder.file("k.t4"), "--repeat", std::to_string(builds)});
+         "--json", folder.file("k.json"), "--t4", folder.file("k.t4"), "--repeat", std::to_string(builds)},
+        patient);
     CAPTURE(result.out, result.err);
     REQUIRE(result.status == 0);
     CHECK_THAT(result.out, ContainsSubstring(tracer + " tracer") && ContainsSubstring("occluded_rays"));
