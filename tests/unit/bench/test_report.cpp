@@ -1,6 +1,7 @@
 // Reports: the same figures as text, JSON, CSV and a page.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "bench/report/machine.h"
 #include "bench/report/report.h"
@@ -19,7 +20,7 @@ Report small_report() {
   report.facts = {{"device", "a \"fast\" one"}, {"driver", "1"}, {"driver", "2"}};
   report.notes = {"Median of 3."};
   report.measurements = {"",
-                         {{"scene", ""}, {"time", "ms"}, {"runs", ""}},
+                         {{"scene", "", true}, {"time", "ms"}, {"runs", ""}},
                          {{"ice, hollow", spread({13, 12, 12.345}), 3.0}, {"say \"x\"", Cell(), Cell()}}};
   return report;
 }
@@ -206,7 +207,7 @@ TEST_CASE("the axis of ratios holds their intervals") {
   CHECK_THAT(report_text(report), ContainsSubstring("0.467"));
 }
 
-TEST_CASE("T4 has a result a row, whose configuration is what stands before the time") {
+TEST_CASE("T4 has a result a row, whose configuration has the parameters alone") {
   const nlohmann::json t4 = report_t4(small_report());
   CHECK(t4.at("schema_version") == "1.0.0");
   const auto& results = t4.at("results");
@@ -216,6 +217,42 @@ TEST_CASE("T4 has a result a row, whose configuration is what stands before the 
   CHECK(results[0].at("invalidity") == "correct");
   CHECK(results[0].at("measurements")[0] ==
         nlohmann::json({{"name", "time"}, {"value", 12.345}, {"unit", "ms"}}));
+  // Results that a bench has beside the time are measurements, wherever they stand.
+  Report report;
+  add_result(report, {{"scene", "", "ice"}, {"chains", "", Cell()}}, {{"rate", "Gop/s", 5.0}});
+  add_result(report, {{"scene", "", "ice"}, {"chains", "", 8.0}}, {{"rate", "Gop/s", 7.0}});
+  const nlohmann::json more = report_t4(report).at("results");
+  CHECK(more[0].at("configuration") == nlohmann::json({{"scene", "ice"}}));
+  CHECK(more[1].at("configuration") == nlohmann::json({{"scene", "ice"}, {"chains", 8.0}}));
+  CHECK(more[1].at("measurements") ==
+        nlohmann::json::array({{{"name", "rate"}, {"value", 7.0}, {"unit", "Gop/s"}}}));
+}
+
+TEST_CASE("printed tables have energy where it is known, and no empty columns where it is not") {
+  MeasuredWay way;
+  way.name = "a";
+  for (const double seconds : {1.0, 3.0}) way.runs.push_back({seconds, 1, 0, 0, ""});
+  Report report;
+  Table table{"Times", {}, {}};
+  add_row(table, {{"way", "", "plain"}}, way);
+  CHECK(table.columns.size() == 1);
+  for (Run& run : way.runs) run.joules = 40 * run.seconds, run.watts = 40;
+  add_row(table, {{"way", "", "counted"}}, way);
+  report.parts = {table};
+  for (const auto& [text, head, row] :
+       {std::tuple(report_text(report), "energy [J]  power [W]", "counted          80         40"),
+        std::tuple(report_latex(report), "energy\\\\(J)} & power (W)", "counted & 80 & 40"),
+        std::tuple(report_html(report), "<th>energy <small>J</small></th><th>power <small>W</small></th>",
+                   "<td class=\"w\">counted</td><td>80</td><td>40</td>")})
+    CHECK_THAT(text, ContainsSubstring(head) && ContainsSubstring(row));
+}
+
+TEST_CASE("points whose x was measured have a horizontal interval, which the axis holds") {
+  CurvePlot plot{"", "ms", "error", {{"a", {{4, {1, 1, 1}}, {8, {0.5, 0.5, 0.5}, {6, 16}}}}}, false, true};
+  // The axis from 2 to 20: x = 64 + log(x / 2) / log(10) * 672.
+  CHECK_THAT(svg(plot), ContainsSubstring("x1=\"384.6\" x2=\"670.9\""));
+  plot.curves[0].points[1].x_interval = {};
+  CHECK(count(svg(plot), "<line class=\"l c0\"") == 2);
 }
 
 TEST_CASE("plots of nothing, of one point and of zeros are drawn without a number that is none") {
