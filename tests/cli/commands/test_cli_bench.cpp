@@ -324,7 +324,7 @@ TEST_CASE("bench textures times a frame with textures and without") {
     "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "board"}]})");
   const CommandResult result =
       run_sundog({"bench", "textures", folder.file("board.json"), "--device", "portable", "--size", "24x16",
-                  "--repeat", "2", "--json", folder.file("t.json"), "--svg", folder.file("t.svg")});
+                  "--repeat", "6", "--json", folder.file("t.json"), "--svg", folder.file("t.svg")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   const json rows = json::parse(sundog::read_file(folder.file("t.json"))).at("measurements");
