@@ -124,7 +124,8 @@ TEST_CASE("a bundle's C++ library is used only where the machine's is older, as 
   const Bundle bundle;
   REQUIRE(bundle.make({}).status == 0);
   bundle.unpack();
-  sundog::write_file(bundle.root / "bin/sundog", "#!/bin/sh\necho \"$LD_LIBRARY_PATH\"\n");
+  sundog::write_file(bundle.root / "bin/sundog", "#!/bin/sh\necho \"libraries: $LD_LIBRARY_PATH\"\n");
+  fs::permissions(bundle.root / "bin/sundog", fs::perms::owner_all);
   const fs::path folder = bundle.root / "lib/x86_64-linux-gnu/common/libstdc++.so.6";
   for (const std::string version : {"0.1", "0.9999"}) {
     fs::remove_all(folder);
@@ -132,8 +133,9 @@ TEST_CASE("a bundle's C++ library is used only where the machine's is older, as 
     sundog::write_file(folder / ("libstdc++.so.6." + version), "");
     fs::create_symlink("libstdc++.so.6." + version, folder / "libstdc++.so.6");
     CAPTURE(version);
-    CHECK(count_of("/libstdc++.so.6", bundle.run(bundle.root / "sundog", {}).out) ==
-          (version == "0.1" ? 0 : 1));
+    const std::string libraries = bundle.run(bundle.root / "sundog", {}).out;
+    CHECK_THAT(libraries, ContainsSubstring("libraries: "));
+    CHECK(count_of("/libstdc++.so.6", libraries) == (version == "0.1" ? 0 : 1));
   }
 }
 
