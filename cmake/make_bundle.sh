@@ -31,7 +31,7 @@ taken=()
 take_library() {  # NAME FILE
   local to=$lib
   [[ $1 =~ $glibc ]] && return
-  [[ $1 =~ $common ]] && to=$lib/common/${1%%.so*}
+  [[ $1 =~ $common ]] && to=$lib/common/$1
   mkdir -p "$to"
   local real
   real=$(readlink -f -- "$2")

@@ -36,6 +36,7 @@ for release in "${releases[@]}"; do
   bare=$folder/$release drivers=$folder/$release-drivers
   [[ -d $bare ]] || debootstrap --variant=minbase "$release" "$bare" "$mirror" >"$folder/$release.log" || { tail "$folder/$release.log" >&2; exit 1; }
   if chroot "$bare" sh -c 'command -v ld'; then fail "has a linker, wanted a bare system"; fi
+  rm -rf "$bare"/opt/*
   for each in "$archive" "$slim_archive"; do tar -C "$bare/opt" --zstd -xf "$each"; done
   rm -rf "$drivers"
   cp -a "$bare" "$drivers"

@@ -119,6 +119,26 @@ TEST_CASE("a bundle uses the machine's drivers, and its PoCL beside them if they
              ContainsSubstring("large GPU  [the default]"));
 }
 
+TEST_CASE("a bundle's C++ library is used only where the machine's is older, as drivers may need that") {
+  if (!can_make_bundles()) return;
+  const Bundle bundle;
+  REQUIRE(bundle.make({}).status == 0);
+  bundle.unpack();
+  sundog::write_file(bundle.root / "bin/sundog", "#!/bin/sh\necho \"libraries: $LD_LIBRARY_PATH\"\n");
+  fs::permissions(bundle.root / "bin/sundog", fs::perms::owner_all);
+  const fs::path folder = bundle.root / "lib/x86_64-linux-gnu/common/libstdc++.so.6";
+  for (const std::string version : {"0.1", "0.9999"}) {
+    fs::remove_all(folder);
+    fs::create_directory(folder);
+    sundog::write_file(folder / ("libstdc++.so.6." + version), "");
+    fs::create_symlink("libstdc++.so.6." + version, folder / "libstdc++.so.6");
+    CAPTURE(version);
+    const std::string libraries = bundle.run(bundle.root / "sundog", {}).out;
+    CHECK_THAT(libraries, ContainsSubstring("libraries: "));
+    CHECK(count_of("/libstdc++.so.6", libraries) == (version == "0.1" ? 0 : 1));
+  }
+}
+
 TEST_CASE("a bundle that is too large or needs too new a system is not made") {
   if (!can_make_bundles()) return;
   const Bundle bundle;
