@@ -10,6 +10,7 @@
 #include <map>
 
 #include "app/job/job.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/exit_status.h"
 #include "app/process/standard_streams.h"

@@ -60,7 +60,7 @@ TEST_CASE("a work-group that is too large for the device is made smaller, and th
   CAPTURE(result.err, result.out);
   CHECK(result.status == 0);
   CHECK(read_file(folder / "a.pfm") == plain);
-  CHECK(contains(result.out, note));
+  CHECK(contains(result.err, note));
   const json device = folder.stats()["devices"][0];
   CHECK(device["failures"] == 0);
   CHECK(device["retired"] == false);
@@ -99,7 +99,7 @@ TEST_CASE("where resources do not suffice, launches are made smaller until they 
   CAPTURE(result.err, result.out);
   CHECK(result.status == 0);
   CHECK(read_file(folder / "a.pfm") == plain);
-  CHECK(contains(result.out, "launches of at most"));
+  CHECK(contains(result.err, "launches of at most"));
   const json device = folder.stats()["devices"][0];
   CHECK(device["failures"] == 0);
   CHECK(device["retired"] == false);
