@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "catch.h"
 #include "cli_scene.h"
+#include "occurrences.h"
 
 namespace fs = std::filesystem;
 
@@ -57,13 +58,6 @@ struct Bundle : TemporaryFolder {
   }
 };
 
-/// How often `part` occurs.
-std::size_t count_of(const std::string& part, const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
 }  // namespace
 
 TEST_CASE("a bundle runs from another folder, from a link and without any setting") {
@@ -105,13 +99,13 @@ TEST_CASE("a bundle uses the machine's drivers, and its PoCL beside them if they
               .status == 0);
 
   const std::string alone = bundle.devices({});
-  CHECK(count_of("Portable Computing Language", alone) == 1);
-  CHECK(count_of("Fake", alone) == 0);
+  CHECK(occurrences(alone, "Portable Computing Language") == 1);
+  CHECK(occurrences(alone, "Fake") == 0);
   const std::string machines_pocl = bundle.devices({"libpocl.so.2", SUNDOG_FAKE_DRIVER});
-  CHECK(count_of("Portable Computing Language", machines_pocl) == 1);
-  CHECK(count_of("Fake old", machines_pocl) == 1);
+  CHECK(occurrences(machines_pocl, "Portable Computing Language") == 1);
+  CHECK(occurrences(machines_pocl, "Fake old") == 1);
   const std::string beside = bundle.devices({SUNDOG_FAKE_DRIVER});
-  CHECK(count_of("Fake old", beside) == 1);
+  CHECK(occurrences(beside, "Fake old") == 1);
   CHECK_THAT(beside, ContainsSubstring("pthread-") && ContainsSubstring("[the default]"));
   CHECK(beside.find("Fake old") < beside.find("Portable Computing Language"));
   CHECK(beside == bundle.devices({SUNDOG_FAKE_DRIVER}));  // the folder of both is there already
@@ -135,7 +129,7 @@ TEST_CASE("a bundle's C++ library is used only where the machine's is older, as 
     CAPTURE(version);
     const std::string libraries = bundle.run(bundle.root / "sundog", {}).out;
     CHECK_THAT(libraries, ContainsSubstring("libraries: "));
-    CHECK(count_of("/libstdc++.so.6", libraries) == (version == "0.1" ? 0 : 1));
+    CHECK(occurrences(libraries, "/libstdc++.so.6") == (version == "0.1" ? 0 : 1));
   }
 }
 
