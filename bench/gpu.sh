@@ -4,14 +4,16 @@
 # From a clone it runs build/release/sundog (or the folder SUNDOG_BUILD), from a bundle the bundle's program.
 # The parts, in order:
 #   the devices; `sundog check`; every scene in 64x64 against the bundle's pictures (a clone has none)
-#   builds of six scenes (cold, warm); registers, memory and build logs of each of their kernels
+#   builds of all kernels of six scenes (cold, warm), with their logs
 #   `bench rays` of three models, or of MODEL..., with each node loop (kernels/lib/trace/single.cl: NODE_LOOP),
 #   on NVIDIA devices also with 64 registers
-#   samples a second of the six scenes; times by work-group size; the roofline
-#   watts and joules if nvidia-smi reads them; Embree and tinybvh if they were built
+#   samples a second of the six scenes by both integrators; times by work-group size
+#   registers and memory as the driver reported them; watts and joules if nvidia-smi reads them
+#   the same rays through tinybvh and Embree if these programs are there; the roofline
 # Each part writes a table (.txt), figures (.json) and messages (.log) to OUT_DIR as soon as it is done, and
-# summary.txt lists it. A part that fails does not stop the others; parts that would begin after N seconds
-# (480) are left out. The default SPEC is `gpu`. --quick: tiny settings, to test that everything runs.
+# summary.txt lists it. A part that fails or hangs does not stop the others. Each has its share of N seconds
+# (480); what would begin later is left out. The default SPEC is `gpu`. --quick: tiny settings, to test that
+# everything runs.
 set -u
 root=$(readlink -f -- "${BASH_SOURCE[0]}")
 root=${root%/*/*}
@@ -42,11 +44,13 @@ models=("$@")
 [[ $# -gt 0 ]] || models=("$scenes"/sundog/spruce_{needles,snow}.obj "$scenes/relief/ball.obj")
 frame_scenes=(spheres hollow_ice mandelbulb cornell_path glass_path frosted_panes)
 frame_size=1024x1024
-small=64x64 bench=() rays=(--rays 1024) groups=() roof=()
+integrators=(whitted path)
+bench=() rays=(--rays 1024) groups=() roof=() peer_rays=()
 if [[ $quick ]]; then
   frame_scenes=(spheres cornell_path)
   frame_size=16x16
-  small=8x8 bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays) roof=(--rays 16 --megabytes 1)
+  bench=(--repeat 1) rays=(--rays 32) groups=(--rays 16 --kernel occluded_rays) roof=(--rays 16 --megabytes 1)
+  peer_rays=(--repeats 1 --size 32)
 fi
 here=() failed=() missing=()
 
@@ -59,14 +63,41 @@ summarize() {
   } >"$out/summary.txt"
 }
 
-# part NAME SECONDS COMMAND...: runs the command for at most SECONDS (with --quick, for all the time that is
-# left). Its table goes to NAME.txt, the rest to NAME.log.
+# share MOST END: the parts that follow take MOST seconds each at most, and end by second END; both of 480 and
+# in proportion of N. With --quick, any may take all the time that is left.
+grace=10  # seconds from SIGTERM to SIGKILL
+share() {
+  most=$(($1 * seconds / 480)) end=$(($2 * seconds / 480)) last=$((seconds - grace - 2))
+  if [[ $quick ]] || ((end > last)); then end=$last; fi
+  [[ $quick ]] && most=$seconds
+  within=$((most > 10 ? most - 5 : most))  # for programs that keep to a time themselves
+}
+
+# limit GROUP SECONDS FILE: after SECONDS makes FILE and ends a group of processes: by SIGTERM, at which sundog
+# writes what it has, and by SIGKILL. A process that a driver holds survives this; then `part` stops waiting.
+limit() {
+  local tenth
+  sleep "$2"
+  : >"$3"
+  kill -- "-$1"
+  for ((tenth = 0; tenth < 10 * grace; ++tenth)); do
+    kill -0 -- "-$1" || return
+    sleep 0.1
+  done
+  kill -KILL -- "-$1"
+  sleep 1
+  kill -0 -- "-$1" && kill -USR1 $$
+}
+trap : USR1
+
+# part NAME COMMAND...: runs the command within its share of time. Its table goes to NAME.txt, the rest to
+# NAME.log.
 part() {
-  local name=$1 most=$((seconds - SECONDS)) pid watch status
-  [[ $quick ]] || most=$(($2 < most ? $2 : most))
-  shift 2
-  if ((most <= 0)); then
-    missing+=("$name: the $seconds seconds were over")
+  local name=$1 time=$((end - SECONDS)) pid watch status
+  shift
+  ((time > most)) && time=$most
+  if ((time <= 0)); then
+    missing+=("$name: its share of the $seconds seconds was over (--seconds N gives more)")
     summarize
     return
   fi
@@ -74,19 +105,19 @@ part() {
   set -m  # a process group, so that all its processes can be killed
   "$@" >"$out/$name.txt" 2>"$out/$name.log" &
   pid=$!
-  (sleep "$most" && touch "$out/$name.late" && kill -- "-$pid") >/dev/null 2>&1 &
+  limit "$pid" "$time" "$out/$name.late" >/dev/null 2>&1 &
   watch=$!
   set +m
   wait "$pid" 2>/dev/null
   status=$?
-  kill -- "-$watch" 2>/dev/null
+  [[ -e $out/$name.late ]] || kill -- "-$watch" 2>/dev/null
   wait "$watch" 2>/dev/null
   if [[ $status == 0 ]]; then
     here+=("$name")
   else
     local why
     why=$(tail -n 1 "$out/$name.log")
-    [[ -e $out/$name.late ]] && why="took longer than $most s"
+    [[ -e $out/$name.late ]] && why="took longer than $time s"
     failed+=("$name (status $status): $why")
   fi
   rm -f "$out/$name.late"
@@ -100,17 +131,16 @@ is_there() { grep -qs "\"platform_name\": *\"$1" "$out/devices.json"; }
 devices() {
   "$sundog" devices --json >"$out/devices.json" && "$sundog" devices
 }
-pictures() {
-  local scene name wrong=0 all=("$scenes"/*.json)
+pictures() {  # the scenes of frames first
+  local scene name wrong=0 all=("${frame_scenes[@]/%/.json}")
   mkdir -p "$out/pictures"
-  [[ $quick ]] && all=("${frame_scenes[@]/%/.json}") && all=("${all[@]/#/$scenes/}")
+  [[ $quick ]] || all+=($(cd "$scenes" && printf '%s\n' *.json | grep -vxF -e scene.schema.json "${all[@]/#/-e}"))
   for scene in "${all[@]}"; do
-    name=$(basename -- "$scene" .json)
-    [[ $name == scene.schema ]] && continue
-    if ! "$sundog" render "$scene" --device "$device" --size "$small" -q -o "$out/pictures/$name.png"; then
+    name=${scene%.json}
+    if ! "$sundog" render "$scenes/$scene" --device "$device" --size 64x64 -q -o "$out/pictures/$name.png"; then
       echo "$name: not drawn"
       wrong=1
-    elif [[ -e $root/pictures/$name.png && ! $quick ]]; then
+    elif [[ -e $root/pictures/$name.png ]]; then
       echo "$name: $("$sundog" compare "$out/pictures/$name.png" "$root/pictures/$name.png" --tolerance 0.02 | grep over)"
     else
       echo "$name: drawn"
@@ -118,32 +148,26 @@ pictures() {
   done
   return $wrong
 }
-builds() {
-  local name run cache
-  cache=$(mktemp -d)
-  for name in "${frame_scenes[@]}"; do
-    for run in cold warm; do
-      CUDA_CACHE_DISABLE=1 XDG_CACHE_HOME=$cache "$sundog" render "$scenes/$name.json" --device "$device" --size 8x8 --samples 1 -q \
-        --stats "$out/builds-$name-$run.json" -o "$cache/picture.png" || { rm -rf "$cache"; return 1; }
-      echo "$name $run: $(stat_of "$out/builds-$name-$run.json" build_kernels) s for kernels, $(stat_of "$out/builds-$name-$run.json" total) s in all"
-    done
-  done
-  rm -rf "$cache"
-}
-frames() {  # times a scene with as many samples as the device renders in about 8 s, 64 at most
+frames() {  # SCENE INTEGRATOR: times as many samples as the device renders in about 2 s
   local name=$1 run samples=1 stats took
   for run in 1 2 3; do  # the first run builds the kernels
-    stats=$out/frame-$name-$run.json
-    "$sundog" render "$scenes/$name.json" --device "$device" --size "$frame_size" --samples "$samples" -q --stats "$stats" -o "$out/frame-$name.png" ||
-      return 1
+    stats=$out/frame-$name-$2-$run.json
+    "$sundog" render "$scenes/$name.json" --set "/render/integrator=$2" --device "$device" --size "$frame_size" --samples "$samples" -q \
+      --stats "$stats" -o "$out/frame-$name-$2.png" || return 1
     took=$(stat_of "$stats" render)
     if [[ $run == 1 ]]; then
-      [[ $quick ]] || samples=$(awk -v took="$took" 'BEGIN { n = int(8 / took); print n < 1 ? 1 : n > 64 ? 64 : n }')
+      [[ $quick ]] || samples=$(awk -v took="$took" 'BEGIN { n = int(2 / took); print n < 1 ? 1 : n > 1024 ? 1024 : n }')
     else
-      echo "$name: $samples samples a pixel in $took s, $(awk -v size="$frame_size" -v samples="$samples" -v took="$took" \
+      echo "$name, $2: $samples samples a pixel in $took s, $(awk -v size="$frame_size" -v samples="$samples" -v took="$took" \
         'BEGIN { split(size, side, "x"); printf "%.2f", side[1] * side[2] * samples / took / 1e6 }') Msamples/s"
     fi
   done
+}
+registers() {  # from the reports of builds; `private` is any driver's, the others are NVIDIA's
+  awk -F': ' '{ gsub(/[",]/, "", $2); gsub(/[" ]/, "", $1); value[$1] = $2 }
+    $1 == "tracer" { printf "%s %s: registers %s, stack %s B, spilled %s B, private %s B\n", value["scene"], value["kernel"],
+      value["registers"], value["stack_B"], value["spill_stores_B"], value["private_B"] }' "$out"/*-builds.json |
+    sed 's/ null\( B\)\{0,1\}/ not reported/g' | grep .
 }
 watts() {  # prints the GPU's power and energy during the frames
   awk -F, '{ sum += $2; if (NR == 1) first = $1; last = $1; if ($2 > most) most = $2 }
@@ -151,15 +175,19 @@ watts() {  # prints the GPU's power and energy during the frames
 }
 
 summarize
-part devices 60 devices
-command -v nvidia-smi >/dev/null && part nvidia-smi 20 nvidia-smi -q
-[[ $quick ]] || part check 150 "$sundog" check --timeout 120 --device "$device"
-part pictures 150 pictures
-part builds 120 builds
+share 20 20
+part devices devices
+command -v nvidia-smi >/dev/null && share 10 30 && part nvidia-smi nvidia-smi -q
+share 80 110
+[[ $quick ]] || part check "$sundog" check --timeout "$((within > 0 ? within : 1))" --device "$device"
+share 75 185
+part pictures pictures
+share 30 245
 for name in "${frame_scenes[@]}"; do
-  SUNDOG_BUILD_LOG=$out/build_logs part "$name-kernels" 40 "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
-    --set /render/tracer=compact --json "$out/$name-kernels.json"
+  SUNDOG_BUILD_LOG=$out/build_logs part "$name-builds" "$sundog" bench kernels "$scenes/$name.json" --device "$device" \
+    --json "$out/$name-builds.json"
 done
+share 25 345
 for model in "${models[@]}"; do
   name=$(basename -- "$model")
   name=${name%.gz}
@@ -170,33 +198,42 @@ for model in "${models[@]}"; do
     options="-DNODE_LOOP=$way" tracer=compact
     [[ $way == registers-64 ]] && options=-cl-nv-maxrregcount=64
     [[ $way == wide ]] && options='' tracer=wide
-    SUNDOG_BUILD_OPTIONS=$options part "$name-rays-$way" 60 "$sundog" bench rays "$model" --device "$device" --set "/render/tracer=$tracer" \
+    SUNDOG_BUILD_OPTIONS=$options part "$name-rays-$way" "$sundog" bench rays "$model" --device "$device" --set "/render/tracer=$tracer" \
       "${bench[@]}" "${rays[@]}" --json "$out/$name-rays-$way.json"
   done
 done
+share 20 425
 if command -v nvidia-smi >/dev/null; then
   nvidia-smi --query-gpu=timestamp,power.draw --format=csv,noheader,nounits -lms 100 >"$out/power.csv" 2>/dev/null &
   power=$!
 fi
-for name in "${frame_scenes[@]}"; do part "$name-frames" 40 frames "$name"; done
-[[ ${power-} ]] && kill "$power"
-part workgroup 60 "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" \
+for name in "${frame_scenes[@]}"; do
+  for integrator in "${integrators[@]}"; do part "$name-$integrator-frames" frames "$name" "$integrator"; done
+done
+[[ ${power-} ]] && kill -KILL "$power"
+share 20 445
+part workgroup "$sundog" bench workgroup "${models[0]}" --device "$device" "${bench[@]}" "${groups[@]}" --budget "$within" \
   --json "$out/workgroup.json" --html "$out/workgroup.html"
-part roofline 60 "$sundog" bench roofline "${models[0]}" --device "$device" "${bench[@]}" "${roof[@]}" --json "$out/roofline.json" --svg "$out/roofline.svg"
-if [[ -s $out/power.csv ]]; then part joules 10 watts; else missing+=("joules: nvidia-smi reads no watts here"); fi
-for model in "${models[@]}"; do
-  for peer in embree tinybvh; do
+share 10 450
+part registers registers
+if [[ -s $out/power.csv ]]; then part joules watts; else missing+=("joules: nvidia-smi reads no watts here"); fi
+share 10 468
+for peer in tinybvh embree; do
+  program=$programs/${peer}_rays
+  if [[ ! -x $program ]]; then
+    missing+=("$peer: $program was not built (docs/how-it-works/peer-programs.md)")
+    continue
+  fi
+  options=()
+  [[ $peer == embree ]] && options=(--threads "$(nproc)" --wall)
+  [[ $peer == tinybvh && -d $root/tinybvh ]] && options=(--tinybvh "$root/tinybvh")
+  for model in "${models[@]}"; do
     name=$(basename -- "${model%.gz}")
     name=${name%.*}-$peer
-    if [[ -x $programs/${peer}_rays ]]; then
-      threads=()
-      [[ $peer == embree ]] && threads=(--threads "$(nproc)" --wall)
-      part "$name" 60 "$programs/${peer}_rays" "$model" --device "$device" "${threads[@]}" ${quick:+--repeats 1 --size 32} --json "$out/$name.json"
-    else
-      missing+=("$name: $programs/${peer}_rays was not built (docs/guide/benchmarks.md)")
-    fi
+    part "$name" "$program" "$model" --device "$device" "${options[@]}" "${peer_rays[@]}" --json "$out/$name.json"
   done
 done
+part roofline "$sundog" bench roofline "${models[0]}" --device "$device" "${bench[@]}" "${roof[@]}" --json "$out/roofline.json" --svg "$out/roofline.svg"
 summarize
 cat "$out/summary.txt"
 [[ ${#failed[@]} -eq 0 ]]

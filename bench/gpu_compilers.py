@@ -13,8 +13,8 @@ of each scene: registers; bytes of stack (scratch) and of spills per work-item (
 that the registers admit (NVIDIA: warps of a multiprocessor, AMD: waves of a SIMD, Intel: lanes of the
 kernel's SIMD); bytes of code (AMD: the program's); the compilers' seconds of processor time. If a compiler's
 version is the same as in the last table, rows are compared with it: a kernel with fewer waves or more spills
-is a failure, unless --keep writes the new table. Exit status 77: a compiler is missing; with --some-tools,
-all are.
+(Intel: also with 256 registers instead of 128) is a failure, unless --keep writes the new table. Exit status
+77: a compiler is missing.
 """
 import argparse
 import concurrent.futures
@@ -62,6 +62,7 @@ class Tools:
 
     def __init__(self, folder):
         self.folder = folder
+        self.fetched = os.path.join(folder, "packages.txt")  # what fetch() unpacked
         self.libraries = os.path.join(folder, "usr/lib/x86_64-linux-gnu")
         self.clang = shutil.which("clang-19") or shutil.which("clang")
         self.libclc = next(filter(os.path.isdir, ("/usr/lib/clc", os.path.join(folder, "usr/lib/clc"))), None)
@@ -76,11 +77,20 @@ class Tools:
         if maker == "nvidia":
             return "ptxas " + first_match(r"V([\d.]+)", Ended([self.ptxas, "--version"]).stdout) + ", " + self.version("amd")
         if maker == "amd":
-            library = os.path.getsize(os.path.join(self.libclc, "amdgcn--amdhsa.bc"))
-            return f"clang {first_match(r'version ([0-9.]+)', Ended([self.clang, '--version']).stdout)}, libclc of {library} bytes"
+            return f"clang {first_match(r'version ([0-9.]+)', Ended([self.clang, '--version']).stdout)}, {self.libclc_package()}"
         with tempfile.TemporaryDirectory() as here:  # ocloc writes its answer there
             Ended([self.ocloc, "query", "OCL_DRIVER_VERSION"], env=self.environment(), cwd=here)
             return "ocloc " + open(os.path.join(here, "OCL_DRIVER_VERSION")).read().strip("\0\n ")
+
+    def libclc_package(self):
+        """The Debian package of the library and its version, as distributions pair it with other versions of clang."""
+        library = os.path.realpath(os.path.join(self.libclc, "amdgcn--amdhsa.bc"))
+        if library.startswith(os.path.realpath(self.folder)):
+            return first_match(r"^(libclc.*)$", open(self.fetched).read())
+        if not shutil.which("dpkg"):
+            return f"libclc of {os.path.getsize(library)} bytes"
+        package = Ended(["dpkg", "-S", library]).stdout.partition(":")[0]
+        return Ended(["dpkg-query", "-W", "-f", "${Package} ${Version}", package]).stdout
 
     def environment(self):
         found = os.environ.get("LD_LIBRARY_PATH", "")
@@ -98,6 +108,8 @@ class Tools:
                     print(f"gpu_compilers: {tool}: {got.stdout.strip()}", file=sys.stderr)
                 for package in packages:
                     subprocess.run(["dpkg-deb", "-x", package, self.folder], check=True)
+                    with open(self.fetched, "a") as out:
+                        subprocess.run(["dpkg-deb", "-W", "--showformat=${Package} ${Version}\n", package], check=True, stdout=out)
         if "ptxas" in wanted:
             with tempfile.TemporaryDirectory() as here:
                 got = Ended([sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--only-binary", ":all:", "-d", here, "nvidia-cuda-nvcc"])
@@ -117,7 +129,7 @@ def mends(missing):
 
 
 def first_match(pattern, text, group=1, otherwise="?"):
-    found = re.search(pattern, text)
+    found = re.search(pattern, text, re.M)
     return found.group(group) if found else otherwise
 
 
@@ -233,16 +245,30 @@ def write_table(file, versions, rows):
             table.writerow((*key, *(f"{value:g}" for value in figures[:-1]), f"{figures[-1]:.1f}"))
 
 
+def admitted(key, figures):
+    """Waves that the registers admit. Intel's are lanes of a thread; one of 256 registers leaves room for half as many threads."""
+    return figures["waves"] * (128 / figures["registers"] if TARGETS[key[0]][0] == "intel" else 1)
+
+
 def differences(old, new):
-    """Lines on rows with a change in waves, spills or stack: the losses, and the gains."""
+    """Lines on rows with a change in waves, spills or stack: the losses, and the gains.
+
+    >>> differences({("dg2", "s", "k"): (128, 0, 0, 16, 9, 1)}, {("dg2", "s", "k"): (256, 0, 0, 16, 9, 1)})
+    (['dg2 s k: registers 128 -> 256'], [])
+    >>> differences({("dg2", "s", "k"): (128, 0, 0, 8, 9, 1)}, {("dg2", "s", "k"): (256, 0, 0, 16, 9, 1)})
+    ([], [])
+    >>> differences({("sm_90", "s", "k"): (128, 8, 4, 16, 9, 1)}, {("sm_90", "s", "k"): (64, 8, 4, 32, 9, 1)})
+    ([], ['sm_90 s k: registers 128 -> 64, waves 16 -> 32'])
+    """
     losses, gains = [], []
     for key in sorted(old.keys() & new.keys()):
         was, now = dict(zip(FIGURES, old[key])), dict(zip(FIGURES, new[key]))
         changed = ", ".join(f"{name} {was[name]:g} -> {now[name]:g}" for name in FIGURES[:4] if was[name] != now[name])
         line = f"{' '.join(key)}: {changed}"
-        if now["waves"] < was["waves"] or now["spills"] > was["spills"]:
+        more = admitted(key, now) - admitted(key, was)
+        if more < 0 or now["spills"] > was["spills"]:
             losses.append(line)
-        elif now["waves"] > was["waves"] or now["spills"] < was["spills"] or now["stack"] < was["stack"]:
+        elif more > 0 or now["spills"] < was["spills"] or now["stack"] < was["stack"]:
             gains.append(line)
     return losses, gains
 
@@ -270,7 +296,6 @@ def main():
     parser.add_argument("--keep", action="store_true", help="write the table; rows that were not measured stay")
     parser.add_argument("--tools", default=os.path.join(ROOT, "build/gpu_tools"), help="where --fetch unpacks compilers")
     parser.add_argument("--fetch", action="store_true")
-    parser.add_argument("--some-tools", action="store_true", help="leave out targets whose compiler is missing")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     args = parser.parse_args()
     targets = args.targets.split(",")
@@ -279,13 +304,13 @@ def main():
     tools = Tools(args.tools)
     if args.fetch:
         tools.fetch({TARGETS[target][0] for target in targets})
-    missing = {target: tools.missing(TARGETS[target][0]) for target in targets}
-    for maker in {TARGETS[target][0] for target in targets if missing[target]}:
-        print(f"gpu_compilers: {maker} is left out: {mends(tools.missing(maker))}", file=sys.stderr)
-    there = [target for target in targets if not missing[target]]
-    if not there or (len(there) < len(targets) and not args.some_tools):
+    makers = sorted({TARGETS[target][0] for target in targets})
+    for maker in makers:
+        if missing := tools.missing(maker):
+            print(f"gpu_compilers: {maker}: {mends(missing)}", file=sys.stderr)
+    if any(map(tools.missing, makers)):
         return 77
-    versions = {target: tools.version(TARGETS[target][0]) for target in there}
+    versions = {target: tools.version(TARGETS[target][0]) for target in targets}
     scenes = args.scenes.split(",") if args.scenes else sorted(
         os.path.relpath(file, os.path.join(ROOT, "scenes"))[:-5] for folder in ("scenes", "scenes/gallery")
         for file in glob.glob(os.path.join(ROOT, folder, "*.json")) if "schema" not in file)
@@ -293,7 +318,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         jobs, uses = {}, []
         for scene in scenes:
-            for maker in sorted({TARGETS[target][0] for target in there}):
+            for maker in makers:
                 try:
                     programs = list(written_programs(args.sundog, scene, maker, os.path.join(folder, maker, scene)))
                 except subprocess.CalledProcessError:
@@ -302,7 +327,7 @@ def main():
                     print(f"gpu_compilers: {scene} is left out", file=sys.stderr)  # sundog printed the reason
                     break
                 for text, file, options in programs:
-                    for target in there:
+                    for target in targets:
                         if TARGETS[target][0] == maker:
                             if (text, target) not in jobs:
                                 jobs[text, target] = pool.submit(compiled, tools, target, options, file)
@@ -316,7 +341,7 @@ def main():
                 continue
             rows.update({(target, scene, kernel): figures for kernel, figures in result})
     last_versions, last = read_table(args.table)
-    others = sorted(target for target in there if last_versions.get(target, versions[target]) != versions[target])
+    others = sorted(target for target in targets if last_versions.get(target, versions[target]) != versions[target])
     if others:
         print(f"not compared, for the compilers are not those of the table: {', '.join(others)}")
     losses, gains = differences({key: row for key, row in last.items() if key[0] not in others}, rows)

@@ -14,10 +14,11 @@ needed=(g++ cmake ninja-build ocl-icd-opencl-dev opencl-clhpp-headers pocl-openc
 # Debian 12 has Boost 1.81 besides an older version.
 if grep -qs '^12' /etc/debian_version; then needed+=(libboost1.81-dev); else needed+=(libboost-dev); fi
 # Optional packages for tests: peers to compare with; Open MPI for `mpirun sundog`; a browser for the viewer's
-# page; pip for the Python package, pkg-config for the library, Doxygen for its headers, and git for the
-# changed files.
-peers=(oclgrind mesa-opencl-icd libembree-dev povray clang libopenmpi-dev openmpi-bin chromium chromium-driver
-  openssl python3-dev python3-venv pkg-config doxygen git)
+# page; pip for the Python package and NVIDIA's compiler, pkg-config for the library, Doxygen for its headers,
+# and git for the changed files. clang-19 compiles kernels for GPUs, with the libclc that mesa-opencl-icd brings
+# (libclc-19 would remove it). Intel's compiler would be another driver: bench/gpu_compilers.py unpacks it.
+peers=(oclgrind mesa-opencl-icd libembree-dev povray clang clang-19 libopenmpi-dev openmpi-bin chromium chromium-driver
+  openssl python3-dev python3-venv python3-pip pkg-config doxygen git)
 # A fixed version, so that tests/check_format.sh and tests/tidy.sh give equal results on every machine.
 checkers=(clang-format-19 clang-tidy-19)
 

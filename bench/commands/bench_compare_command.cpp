@@ -216,13 +216,8 @@ void add_side(Report& report, const Side& base, const Side& side, Tally& tally) 
         verdict{"verdict", "", ratio.verdict()};
     add_row(table,
             {measured, {"base", "ms", milliseconds(a)}, {"time", "ms", milliseconds(b)}, of_ratio, verdict});
-    add_row(report.measurements, {measured,
-                                  {"base", "", base.name},
-                                  {"other", "", side.name},
-                                  {"base time", "ms", milliseconds(a)},
-                                  {"time", "ms", milliseconds(b)},
-                                  of_ratio,
-                                  verdict});
+    add_result(report, {measured, {"base", "", base.name}, {"other", "", side.name}},
+               {{"base time", "ms", milliseconds(a)}, {"time", "ms", milliseconds(b)}, of_ratio, verdict});
     plot.bars.push_back({name, bounds, ratio.verdict()});
   }
   if (table.rows.empty())

@@ -123,6 +123,7 @@ class DeviceRanking {
       combinations_.push_back(made);
       Subject& subject = subjects_.emplace_back();
       subject.name = fmt::format("{}, {}", name_, names(set));
+      subject.devices = set;
       subject.prepare = [made, common, flat = scene_] { made->open(flat, *common); };
       subject.run = [made] { return made->frames->run(); };
       subject.check = [made, common] { return made->check(*common); };
@@ -146,8 +147,7 @@ class DeviceRanking {
                  {"of the best", ""},
                  {"shares", ""},
                  {"efficiency", ""},
-                 {"differing pixels", ""},
-                 {"problem", ""}},
+                 {"differing pixels", ""}},
                 {}};
     BarPlot plot{name_ + ": a frame by devices", "ms", {}};
     const double best = order.empty() ? 0 : subjects_[order.front()].seconds().median;

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "app/process/exit_status.h"
 #include "base/clock.h"
 #include "base/environment.h"
-#include "base/error.h"
 #include "bench/commands/bench_run.h"
 #include "bench/report/machine.h"
 #include "compile/compiled_scene.h"
@@ -25,53 +22,70 @@ namespace {
 struct KernelFigures {
   std::string kernel;
   KernelLimits limits;
-  std::size_t greatest_group =
-      0;                  // that sundog uses: by the kernel's limit, and by the room on a processor's stack
   PtxasFigures compiler;  // from the build log, if the driver gives it
-  std::optional<unsigned> resident_threads;  // per multiprocessor, by registers alone; NVIDIA only
-  double cold_seconds = 0;             // to build its program from source and to store it in sundog's cache
-  std::optional<double> warm_seconds;  // to load it from there; nothing without a cache
 };
 
-/// The device without SUNDOG_BUILD_LOG, which keeps it from reading sundog's cache.
-DeviceInfo with_cache(DeviceInfo info) {
-  HostEnvironment environment = value_of(info.environment);
-  environment.build_log.clear();
-  info.environment = std::make_shared<const HostEnvironment>(std::move(environment));
-  return info;
-}
+/// Builds of a program. Each is of another text, by a definition that no kernel reads, so that no cache, not
+/// even a driver's within the process, has it.
+class ProgramBuilds {
+ public:
+  ProgramBuilds(const DeviceInfo& info, SceneProgram program) : info_(info), program_(std::move(program)) {}
 
-/// Builds a program from source, then loads it from the cache on the reopened device; on NVIDIA devices with
-/// -cl-nv-verbose. Throws DeviceError, BuildError.
-std::vector<KernelFigures> kernel_figures(const DeviceInfo& info, const SceneProgram& source) {
-  Device device(info), again(with_cache(info));
-  const auto nvidia = device.nvidia();
-  const BuildWish wish{nvidia ? "-cl-nv-verbose" : "", true};
-  BuildReport report, loaded;
-  device.build_with(wish);
-  const Stopwatch building;
-  const Program program = device.build(source.entry, source.defines, &report, source.generated);
-  device.save_programs(true);
-  const double cold_seconds = building.seconds();
-  again.build_with({wish.options});
-  again.build(source.entry, source.defines, &loaded, source.generated);
-  auto compiler = read_ptxas_log(report.log);
-  std::vector<KernelFigures> result;
-  for (const std::string& name : program.kernel_names()) {
-    KernelFigures& figures = result.emplace_back();
-    figures.kernel = name;
-    figures.limits = device.limits(program.kernel<>(name));
-    figures.compiler = compiler[name];
-    if (nvidia && figures.compiler.registers)
-      figures.resident_threads = resident_threads(*figures.compiler.registers, *nvidia);
-    figures.cold_seconds = cold_seconds;
-    if (loaded.cached) figures.warm_seconds = loaded.seconds;
+  /// Builds the program from source, then loads it from the cache on the reopened device; on NVIDIA devices
+  /// with -cl-nv-verbose. Returns the seconds to build and to store it. Throws DeviceError, BuildError.
+  double run() {
+    Device device(with_cache(info_, true)), again(with_cache(info_, false));
+    const BuildWish wish{device.nvidia() ? "-cl-nv-verbose" : "", true};
+    BuildReport report, loaded;
+    KernelDefines defines = program_.defines;
+    defines["BUILD_NUMBER"] = std::to_string(warm_.size());
+    device.build_with(wish);
+    const Stopwatch building;
+    const Program program = device.build(program_.entry, defines, &report, program_.generated);
+    device.save_programs(true);
+    const double seconds = building.seconds();
+    again.build_with({wish.options});
+    again.build(program_.entry, defines, &loaded, program_.generated);
+    warm_.push_back(loaded.cached ? loaded.seconds : -1);
+    auto compiler = read_ptxas_log(report.log);
+    last_.clear();
+    for (const std::string& name : program.kernel_names())
+      last_.push_back({name, device.limits(program.kernel<>(name)), compiler[name]});
+    return seconds;
   }
-  return result;
-}
+  std::string check() {
+    if (kernels_.empty()) kernels_ = last_;
+    const auto same = [](const KernelFigures& a, const KernelFigures& b) {
+      return a.kernel == b.kernel && a.limits.private_bytes == b.limits.private_bytes &&
+             a.compiler.registers == b.compiler.registers;
+    };
+    return std::ranges::equal(last_, kernels_, same) ? "" : "its kernels are not those of its first build";
+  }
+  const std::string& entry() const { return program_.entry; }
+  bool is(const SceneProgram& program) const { return program_ == program; }
+  const std::vector<KernelFigures>& kernels() const { return kernels_; }
+  /// Milliseconds to load it from sundog's cache, in the builds that count; empty without a cache.
+  Cell warm(const MeasuredWay& way) const {
+    const Spread seconds = spread(way.counted(warm_));
+    return way.is_good() && seconds.min > 0 ? Cell(scaled(seconds, 1e3)) : Cell();
+  }
 
-/// Figures of each device's programs, because a second build would find the program in the driver's cache.
-using KnownFigures = std::map<std::pair<std::string, SceneProgram>, std::vector<KernelFigures>>;
+ private:
+  /// The device with a cache of the bench's own. `logs`: with SUNDOG_BUILD_LOG, which bypasses it.
+  static DeviceInfo with_cache(DeviceInfo info, bool logs) {
+    HostEnvironment environment = value_of(info.environment);
+    const auto folder = kept_for_next().parent_path();
+    environment.cache = folder.empty() ? folder : folder / "cache";
+    if (!logs) environment.build_log.clear();
+    info.environment = std::make_shared<const HostEnvironment>(std::move(environment));
+    return info;
+  }
+
+  DeviceInfo info_;
+  SceneProgram program_;
+  std::vector<double> warm_;                   // of each build; below 0: it was not in the cache
+  std::vector<KernelFigures> kernels_, last_;  // of the first build, and of the last
+};
 
 /// An empty cell if the value is unknown, as 0 would be a figure.
 template <class T>
@@ -84,133 +98,146 @@ Cell told(T value) {
   return value > 0 ? Cell(static_cast<double>(value)) : Cell();
 }
 
-std::vector<Cell> row(const KernelFigures& figures, const std::optional<NvidiaLimits>& nvidia) {
+/// `room`: the largest work-group by the room on a processor's stack; 0: no limit.
+std::vector<Field> fields_of(const KernelFigures& figures, const std::optional<NvidiaLimits>& nvidia,
+                             std::size_t room) {
   const KernelLimits& limits = figures.limits;
-  Cell occupancy;
-  if (nvidia && figures.resident_threads)
-    occupancy = 100.0 * static_cast<double>(*figures.resident_threads) / nvidia->threads();
-  return {figures.kernel,
-          told(figures.greatest_group),
-          told(limits.work_group),
-          told(limits.preferred_multiple),
-          static_cast<double>(limits.private_bytes),
-          static_cast<double>(limits.local_bytes),
-          told(figures.compiler.registers),
-          told(figures.compiler.stack),
-          told(figures.compiler.spill_stores),
-          told(figures.compiler.spill_loads),
-          told(figures.resident_threads),
-          occupancy,
-          told(figures.cold_seconds),
-          told(figures.warm_seconds),
-          Cell()};
-}
-
-const std::vector<Column> columns{
-    {"kernel", ""},  {"group given", ""}, {"group limit", ""}, {"multiple", ""},      {"private", "B"},
-    {"local", "B"},  {"registers", ""},   {"stack", "B"},      {"spill stores", "B"}, {"spill loads", "B"},
-    {"threads", ""}, {"occupancy", "%"},  {"build cold", "s"}, {"build warm", "s"},   {"problem", ""}};
-
-/// The row of a program, or of a device, that failed.
-std::vector<Cell> problem_row(const std::string& program, const std::string& why) {
-  std::vector<Cell> cells(columns.size());
-  cells.front() = program;
-  cells.back() = why;
-  return cells;
-}
-
-/// Runs `work` in a row of the bench. Returns the error; "" if there was none.
-std::string failure(const std::string& row, const std::function<void()>& work) {
-  std::string why = enter_row(row);
-  try {
-    if (why.empty()) work();
-  } catch (const DeviceError& error) {
-    why = error.what();
-  } catch (const BuildError& error) {
-    why = error.what();
+  const PtxasFigures& compiler = figures.compiler;
+  Cell threads, occupancy;
+  if (nvidia && compiler.registers) {
+    const double resident = resident_threads(*compiler.registers, *nvidia);
+    threads = resident;
+    occupancy = 100.0 * resident / nvidia->threads();
   }
-  enter_row("");
-  return why;
+  return {{"group given", "", told(room > 0 ? std::min(room, limits.work_group) : limits.work_group)},
+          {"group limit", "", told(limits.work_group)},
+          {"multiple", "", told(limits.preferred_multiple)},
+          {"private", "B", static_cast<double>(limits.private_bytes)},
+          {"local", "B", static_cast<double>(limits.local_bytes)},
+          {"registers", "", told(compiler.registers)},
+          {"stack", "B", told(compiler.stack)},
+          {"spill stores", "B", told(compiler.spill_stores)},
+          {"spill loads", "B", told(compiler.spill_loads)},
+          {"threads", "", threads},
+          {"occupancy", "%", occupancy}};
 }
 
-/// Adds the kernels of frames, with and without AOVs, and of `bench rays` if the scene has anything to trace.
-void add_device(Report& report, const std::string& name, const CompiledScene& scene, const DeviceInfo& info,
-                KnownFigures& known) {
-  const std::string place = fmt::format("{} on {}", name, device_title(info));
-  const char* tracer = traces_compact(scene, info) ? "compact" : "wide";
-  Table table{fmt::format("{}, {} tracer", place, tracer), columns, {}};
-  std::optional<NvidiaLimits> nvidia;
-  const std::string closed = failure(place, [&] { nvidia = Device(info).nvidia(); });
-  bool has_problem = !closed.empty();
-  if (has_problem) table.rows.push_back(problem_row("", closed));
-  const std::size_t room = greatest_work_group(make_kernel_config(scene, info), info);
-  for (const SceneProgram& program :
-       closed.empty() ? scene_programs(scene, info) : std::vector<SceneProgram>()) {
-    std::vector<KernelFigures>& all_figures = known[{info.label(), program}];
-    const std::string why = failure(fmt::format("{}, {}", place, program.entry), [&] {
-      if (all_figures.empty()) all_figures = kernel_figures(info, program);
-    });
-    has_problem |= !why.empty();
-    if (!why.empty()) table.rows.push_back(problem_row(program.entry, why));
-    for (KernelFigures figures : all_figures) {
-      figures.greatest_group =
-          room > 0 ? std::min(room, figures.limits.work_group) : figures.limits.work_group;
-      table.rows.push_back(row(figures, nvidia));
+struct BuiltScene {
+  std::string name;
+  std::shared_ptr<const CompiledScene> scene;
+};
+
+/// Builds the programs of scenes on one device: those of frames, with and without AOVs, and of `bench rays`
+/// if there is anything to trace. Scenes share equal programs.
+class KernelBuilds {
+ public:
+  KernelBuilds(const DeviceInfo& info, std::vector<BuiltScene> scenes)
+      : info_(info), scenes_(std::move(scenes)) {}
+
+  void measure(const MeasureOptions& options) {
+    subjects_.resize(1);
+    subjects_.front().name = "kernels on " + device_title(info_);
+    if (!prepared(subjects_, options, [&] { nvidia_ = Device(info_).nvidia(); })) return;
+    subjects_.clear();
+    for (const BuiltScene& scene : scenes_)
+      for (const SceneProgram& program : scene_programs(*scene.scene, info_)) add(scene, program);
+    sundog::measure(subjects_, options);
+  }
+
+  void add_to(Report& report) const {
+    const Field device{"device", "", device_title(info_)};
+    if (subjects_.empty()) return;
+    if (programs_.empty()) {
+      Table table{subjects_.front().name, {}, {}};
+      add_row(table, {device}, subjects_.front());
+      report.parts.emplace_back(std::move(table));
+      return add_measured(report, subjects_.front(), {device});
     }
+    for (const BuiltScene& scene : scenes_) add_scene(report, scene, device);
+    report.ways.insert(report.ways.end(), subjects_.begin(), subjects_.end());
+    if (const auto& limits = nvidia_)
+      report.notes.push_back(fmt::format(
+          "{}: `threads` is how many threads a multiprocessor can hold if only the kernel's registers limit "
+          "them: {} registers, a quarter for each of four schedulers, allocated to warps of {} in steps of "
+          "256; at most {} threads at compute capability {}.{}. `occupancy` is the share of that maximum.",
+          info_.label(), limits->registers, limits->warp, limits->threads(), limits->major, limits->minor));
   }
-  for (const std::vector<Cell>& cells : table.rows) {
-    std::vector<Cell> all{name, device_title(info), tracer};
-    all.insert(all.end(), cells.begin(), cells.end());
-    report.measurements.rows.push_back(std::move(all));
+
+ private:
+  void add(const BuiltScene& scene, const SceneProgram& program) {
+    const auto known = std::ranges::find_if(programs_, [&](const auto& each) { return each->is(program); });
+    uses_.emplace_back(&scene, known - programs_.begin());
+    if (known != programs_.end()) return;
+    const auto& builds = programs_.emplace_back(std::make_shared<ProgramBuilds>(info_, program));
+    Subject& subject = subjects_.emplace_back();
+    subject.name = fmt::format("{} on {}, {}", scene.name, device_title(info_), program.entry);
+    subject.cold = true;
+    subject.devices = {info_};
+    subject.run = [builds] { return builds->run(); };
+    subject.check = [builds] { return builds->check(); };
   }
-  if (!has_problem) {
-    table.columns.pop_back();
-    for (std::vector<Cell>& cells : table.rows) cells.pop_back();
+
+  void add_scene(Report& report, const BuiltScene& scene, const Field& device) const {
+    const char* tracer = traces_compact(*scene.scene, info_) ? "compact" : "wide";
+    const std::size_t room = greatest_work_group(make_kernel_config(*scene.scene, info_), info_);
+    Table table{fmt::format("{} on {}, {} tracer", scene.name, device.cell.word, tracer), {}, {}};
+    for (const auto& [user, index] : uses_) {
+      if (user != &scene) continue;
+      const ProgramBuilds& builds = *programs_[static_cast<std::size_t>(index)];
+      const Subject& way = subjects_[static_cast<std::size_t>(index)];
+      const auto add_kernel = [&](const std::string& name, const std::vector<Field>& figures) {
+        const Field kernel{"kernel", "", name}, warm{"build warm", "ms", builds.warm(way)};
+        std::vector<Field> shown{kernel}, results = measured_fields(way);
+        shown.insert(shown.end(), figures.begin(), figures.end());
+        shown.insert(shown.end(), {{"build cold", "ms", milliseconds(way)}, warm});
+        add_row(table, shown, way);
+        results.insert(results.end(), figures.begin(), figures.end());
+        results.push_back(warm);
+        add_result(report, {{"scene", "", scene.name}, device, {"tracer", "", tracer}, kernel}, results);
+      };
+      if (builds.kernels().empty()) add_kernel(builds.entry(), {});
+      for (const KernelFigures& kernel : builds.kernels())
+        add_kernel(kernel.kernel, fields_of(kernel, nvidia_, room));
+    }
+    report.parts.emplace_back(std::move(table));
   }
-  report.parts.emplace_back(std::move(table));
-  if (const auto& limits = nvidia)
-    report.notes.push_back(fmt::format(
-        "{}: `threads` is how many threads a multiprocessor can hold if only the kernel's registers limit "
-        "them: {} registers, a quarter for each of four schedulers, allocated to warps of {} in steps of "
-        "256; at most {} threads at compute capability {}.{}. `occupancy` is the share of that maximum.",
-        info.label(), limits->registers, limits->warp, limits->threads(), limits->major, limits->minor));
-}
+
+  DeviceInfo info_;
+  std::vector<BuiltScene> scenes_;
+  std::optional<NvidiaLimits> nvidia_;
+  std::vector<std::shared_ptr<ProgramBuilds>> programs_;
+  std::vector<Subject> subjects_;                                   // of each program
+  std::vector<std::pair<const BuiltScene*, std::ptrdiff_t>> uses_;  // scenes, and their programs' numbers
+};
 
 int bench_kernels(const BenchOptions& options) {
   bypass_driver_caches();
   set_variable("MESA_SHADER_CACHE_DISABLE", "true");  // Mesa then compiles at launches: none here
   set_variable("POCL_CACHE_DIR", "", true);           // PoCL's cache of earlier processes
-  KnownFigures known;
   BenchRun run("kernels", "Resources of the compiled kernels", options);
-  Report& report = run.head();
-  report.measurements.columns = {{"scene", ""}, {"device", ""}, {"tracer", ""}};
-  report.measurements.columns.insert(report.measurements.columns.end(), columns.begin(), columns.end());
   std::vector<DeviceInfo> devices = run.devices();
   std::ranges::copy(unusable_bench_devices(options), std::back_inserter(devices));
-  for (const std::string& file : options.scenes) {
-    const auto scene = run.compiled(file);
-    for (const DeviceInfo& info : devices) {
-      show_step(options, fmt::format("{} on {}", scene_name(options, file), info.label()));
-      if (!run.is_stopped()) add_device(report, scene_name(options, file), *scene, info, known);
-    }
-  }
-  report.notes.push_back(
+  std::vector<BuiltScene> scenes;
+  for (const std::string& file : options.scenes)
+    scenes.push_back({scene_name(options, file), run.compiled(file)});
+  run.head().notes.emplace_back(
       "`group given` is the largest work-group that sundog uses. `group limit`, `multiple`, `private` (for a "
       "work-item) and `local` (for a group) come from the driver. Registers, stack and spills come from the "
       "build log of NVIDIA's compiler; other drivers do not report them. `build cold` is from the source, "
-      "without the caches of sundog and of drivers, until the program is in sundog's cache; `build warm` "
-      "loads it from there. Kernels of one program are built together. An empty cell: not known.");
-  const int status = run.publish();
-  const bool any = std::ranges::any_of(known, [](const auto& program) { return !program.second.empty(); });
-  return any || report.measurements.rows.empty() ? status : exit_device;
+      "without the caches of sundog and of drivers, until the program is in a cache; `build warm` loads it "
+      "from there. Kernels of one program are built together. An empty cell: not known.");
+  for (const DeviceInfo& info : devices) run.measure(std::make_shared<KernelBuilds>(info, scenes));
+  return run.publish();
 }
 
 }  // namespace
 
 void add_bench_kernels(Arguments& bench, Command& chosen) {
+  const auto options = std::make_shared<BenchOptions>();
+  options->repeat = 1;  // a build takes long, and needs no warm-up
   add_bench_command(bench, chosen, "kernels",
-                    "Work-group limits, memory and registers of each kernel of a scene",
-                    std::make_shared<BenchOptions>(), bench_kernels);
+                    "Work-group limits, memory and registers of each kernel of a scene", options,
+                    bench_kernels);
 }
 
 }  // namespace sundog

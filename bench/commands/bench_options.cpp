@@ -54,7 +54,8 @@ void add_bench_options(Arguments* app, BenchOptions& options, bool scene_needed)
   if (scene_needed) scenes->required();
   values(app, "--device", "SPEC", options.devices, device_help);
   values(app, "--set", "POINTER=VALUE", options.overrides, "change the scenes, as in /camera/fov=30");
-  value(app, "--repeat", "N", options.repeat, "runs of each measurement, in turn with the others (default 6)")
+  value(app, "--repeat", "N", options.repeat,
+        fmt::format("runs of each measurement, in turn with the others (default {})", options.repeat))
       ->range(1, 10000);
   value(app, "--seconds", "S", options.seconds, "further runs until those of each measurement took so long")
       ->range(0, 1e6);

@@ -73,9 +73,8 @@ class QualityTimes {
           return std::make_shared<FrameRunner>(std::vector{frame_worker(plan_.device, scene)}, scene);
         };
         const auto first = [this, time](const FrameRunner& frames) { compare(*time, plan_, frames.image()); };
-        subjects_.push_back(frame_subject(fmt::format("{} on {}, {}, {} samples", plan_.scene,
-                                                      device_title(plan_.device), name_of(way), samples),
-                                          {open, first, {}}));
+        subjects_.push_back(frame_subject(fmt::format("{}, {}, {} samples", place(), name_of(way), samples),
+                                          {open, first, {}, {plan_.device}}));
       }
   }
 
@@ -84,7 +83,7 @@ class QualityTimes {
   void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
   /// Adds tables, curves and measurements.
   void add_to(Report& report) const {
-    Table table{fmt::format("{} on {}: error by time", plan_.scene, device_title(plan_.device)), {}, {}};
+    Table table{place() + ": error by time", {}, {}};
     for (std::size_t i = 0; i < times_.size(); ++i) {
       const QualityTime& time = *times_[i];
       const bool good = subjects_[i].is_good();
@@ -107,6 +106,8 @@ class QualityTimes {
   }
 
  private:
+  std::string place() const { return fmt::format("{} on {}", plan_.scene, device_title(plan_.device)); }
+
   /// The good times of each way, in their order.
   std::vector<std::vector<QualityTime>> by_way() const {
     std::vector<std::vector<QualityTime>> groups(plan_.ways.size());
@@ -121,21 +122,21 @@ class QualityTimes {
 
   CurvePlot curves(const std::string& what, const std::function<double(const QualityTime&)>& error_of) const {
     CurvePlot plot{
-        fmt::format("{}: {} by time", plan_.scene, what), "time of a frame, ms", what, {}, false, true};
+        fmt::format("{}: {} by time", place(), what), "time of a frame, ms", what, {}, false, true};
     for (const auto& group : by_way()) {
       if (group.empty()) continue;
       Curve curve{name_of(group.front().way), {}};
       for (const QualityTime& time : group)
         if (error_of(time) > 0 && time.seconds.median > 0)
-          curve.points.push_back({1e3 * time.seconds.median, Cell(error_of(time)).spread});
+          curve.points.push_back({1e3 * time.seconds.median, Cell(error_of(time)).spread,
+                                  median_interval(scaled(time.seconds, 1e3))});
       plot.curves.push_back(std::move(curve));
     }
     return plot;
   }
 
   Table goal_table() const {
-    Table table{fmt::format("{} on {}: time to an error of {:g}", plan_.scene, device_title(plan_.device),
-                            plan_.goal),
+    Table table{fmt::format("{}: time to an error of {:g}", place(), plan_.goal),
                 {{"integrator", ""}, {"sampler", ""}, {"time", "ms"}},
                 {}};
     for (const auto& group : by_way()) {

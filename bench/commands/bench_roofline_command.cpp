@@ -77,7 +77,8 @@ class Roofline {
     for (const Traced& traced : traced_) {
       Report rays;
       traced.times->add_to(rays);
-      report.ways.insert(report.ways.end(), rays.ways.begin(), rays.ways.end());
+      for (const MeasuredWay& way : rays.ways)
+        if (!way.is_good()) add_measured(report, way, place_of(traced));
       add_scene(report, traced);
     }
   }
@@ -87,6 +88,9 @@ class Roofline {
     TracedScene scene;
     std::shared_ptr<RayTimes> times;
   };
+  std::vector<Field> place_of(const Traced& traced) const {
+    return {{"scene", "", traced.scene.name}, {"device", "", device_title(info_)}};
+  }
   void add_scene(Report& report, const Traced& traced) const {
     const bool compact = traces_compact(*traced.scene.scene, info_);
     Table table{fmt::format("{} on {}: work of a ray", traced.scene.name, device_title(info_)), {}, {}};
@@ -96,7 +100,9 @@ class Roofline {
     for (const RayTimes::Timed& timed : traced.times->timed()) {
       const RayWork work = ray_work(*traced.scene.scene, *timed.set, compact);
       const Spread operations = scaled(timed.rate, 1e-3 * work.operations);
-      std::vector<Field> shown{{"kind", "", timed.set->kind},
+      std::vector<Field> key = place_of(traced);
+      key.push_back({"kind", "", timed.set->kind});
+      std::vector<Field> shown{key.back(),
                                {"nodes", "", work.nodes},
                                {"blocks", "", work.blocks},
                                {"work", "op", work.operations},
@@ -111,11 +117,9 @@ class Roofline {
                                        memory->median * work.operations / work.least_bytes});
         shown.push_back({"of the roof", "%", 100 * operations.median / bound});
       }
-      add_row(table, shown);
-      std::vector<Field> row{{"scene", "", traced.scene.name}, {"device", "", device_title(info_)}};
-      row.insert(row.end(), shown.begin(), shown.end());
-      row.push_back({"rays", "Mrays/s", timed.rate});
-      add_row(report.measurements, row);
+      add_row(table, shown, *timed.way);
+      shown.front() = {"rays", "Mrays/s", timed.rate};
+      add_measured(report, *timed.way, key, shown);
       points.push_back({timed.set->kind, {{work.intensity(), operations}}});
     }
     if (table.rows.empty()) return;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -132,12 +133,11 @@ void BenchRun::take_known(const std::string& file) {
 void BenchRun::add_devices(const std::vector<DeviceInfo>& devices) {
   for (const DeviceInfo& device : devices) {
     head_.facts.emplace_back("device", device_fact(device));
+    head_.facts.emplace_back(
+        "energy", fmt::format("{}: {}", device_place(device), EnergyMeter(std::array{device}).source()));
     add_device_row(head_.devices, device);
     check_known(known_devices_, head_.devices, {"label"}, options_.continue_from);
   }
-  const auto energy = std::make_shared<EnergyMeter>(devices);
-  head_.facts.emplace_back("energy", energy->source());
-  load_->count(energy);
   if (std::ranges::any_of(devices, is_pocl))
     head_.facts.emplace_back("PoCL", pocl_fact(*program_environment()));
 }

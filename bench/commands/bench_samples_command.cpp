@@ -77,9 +77,8 @@ class SampleTimes {
       const auto first = [=, reference = reference_](const FrameRunner& frames) {
         *figures = figures_of(frames, *reference, *samples);
       };
-      subjects_.push_back(frame_subject(
-          fmt::format("{} on {}, {}, {}", plan_.scene, device_title(plan_.device), way.family, way.setting),
-          {open, first, {}}));
+      subjects_.push_back(frame_subject(fmt::format("{}, {}, {}", place(), way.family, way.setting),
+                                        {open, first, {}, {plan_.device}}));
     }
   }
 
@@ -106,31 +105,31 @@ class SampleTimes {
                                           [&](std::size_t i) { return exactly(figures_[i]->error.rms); }));
     report.parts.emplace_back(even_curves("time of a frame", "ms", milliseconds));
     report.parts.emplace_back(way_table());
-    report.parts.emplace_back(
-        error_curves("rays", "millions of rays", [&](std::size_t i) { return figures_[i]->rays / 1e6; }));
-    report.parts.emplace_back(
-        error_curves("time", "ms a frame", [&](std::size_t i) { return milliseconds(i).median; }));
+    report.parts.emplace_back(error_curves("rays", "millions of rays",
+                                           [&](std::size_t i) { return exactly(figures_[i]->rays / 1e6); }));
+    report.parts.emplace_back(error_curves("time", "ms a frame", milliseconds));
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       const SampleWay& way = plan_.ways[i];
       const bool good = subjects_[i].is_good();
       std::vector<Field> more;
       if (good) {
-        more = figures(i);
+        more = {{"samples", "", figures_[i]->samples}};
+        for (const Field& field : figures(i)) more.push_back(field);
         more.push_back({"rays", "millions", figures_[i]->rays / 1e6});
         more.push_back({"of even rays", "%", of_even(i)});
       }
       add_measured(report, subjects_[i],
                    {{"scene", "", plan_.scene},
                     {"device", "", device_title(plan_.device)},
-                    {"way", "",
-                     way.family == even_family ? way.family : fmt::format("{}, {}", way.family, way.setting)},
-                    {"samples", "", good ? Cell(figures_[i]->samples) : Cell()},
+                    {"way", "", fmt::format("{}, {}", way.family, way.setting)},
                     {"reference samples", "", static_cast<double>(plan_.reference)}},
                    more);
     }
   }
 
  private:
+  std::string place() const { return fmt::format("{} on {}", plan_.scene, device_title(plan_.device)); }
+
   /// The way's rays in per cent of the rays that even samples need for the same error; empty if unknown.
   Cell of_even(std::size_t way) const {
     if (plan_.ways[way].family == even_family) return 100.0;
@@ -143,10 +142,7 @@ class SampleTimes {
   }
 
   Table even_table() const {
-    Table table{
-        fmt::format("{} on {}: time and error by samples a pixel", plan_.scene, device_title(plan_.device)),
-        {{"samples", ""}, {"time", "ms"}},
-        {}};
+    Table table{place() + ": time and error by samples a pixel", {{"samples", ""}, {"time", "ms"}}, {}};
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       if (plan_.ways[i].family != even_family) continue;
       std::vector<Field> row{{"samples", "", plan_.ways[i].setting}};
@@ -162,9 +158,7 @@ class SampleTimes {
 
   Table way_table() const {
     Table table{
-        fmt::format("{} on {}: samples where they are needed", plan_.scene, device_title(plan_.device)),
-        {{"samples", ""}, {"a pixel", ""}, {"time", "ms"}},
-        {}};
+        place() + ": samples where they are needed", {{"samples", ""}, {"a pixel", ""}, {"time", "ms"}}, {}};
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       const SampleWay& way = plan_.ways[i];
       if (way.family == even_family) continue;
@@ -187,28 +181,23 @@ class SampleTimes {
     for (std::size_t i = 0; i < subjects_.size(); ++i)
       if (plan_.ways[i].family == even_family && subjects_[i].is_good())
         curve.points.push_back({figures_[i]->samples, value(i)});
-    return {
-        fmt::format("{}: {} by samples a pixel", plan_.scene, what), "samples a pixel", unit, {curve}, false};
+    return {fmt::format("{}: {} by samples a pixel", place(), what), "samples a pixel", unit, {curve}, false};
   }
 
   /// Error over cost: a curve for each family of ways.
   CurvePlot error_curves(const std::string& what, const std::string& unit,
-                         const std::function<double(std::size_t way)>& cost) const {
+                         const std::function<Spread(std::size_t way)>& cost) const {
     std::vector<Curve> curves;
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
       const std::string& family = plan_.ways[i].family;
       if (curves.empty() || curves.back().name != family) curves.push_back({family, {}});
       const double error = figures_[i]->error.rms;
-      if (subjects_[i].is_good() && error > 0 && cost(i) > 0)
-        curves.back().points.push_back({cost(i), exactly(error)});
+      if (const Spread of = cost(i); subjects_[i].is_good() && error > 0 && of.median > 0)
+        curves.back().points.push_back({of.median, exactly(error), median_interval(of)});
     }
     for (Curve& curve : curves) std::ranges::sort(curve.points, {}, &CurvePoint::x);
-    return {fmt::format("{}: error by {}", plan_.scene, what),
-            unit,
-            "rms error (linear color)",
-            curves,
-            false,
-            true};
+    return {
+        fmt::format("{}: error by {}", place(), what), unit, "rms error (linear color)", curves, false, true};
   }
 
   std::vector<Field> figures(std::size_t way) const {

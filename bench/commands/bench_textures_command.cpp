@@ -10,6 +10,7 @@
 #include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/runs/measure.h"
+#include "bench/runs/ratio.h"
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 #include "scene/description.h"
@@ -42,8 +43,10 @@ class TextureCost {
         return std::make_shared<FrameRunner>(std::vector{frame_worker(device, flat)}, flat);
       };
       subjects_.push_back(frame_subject(fmt::format("{} on {}, {}", scene_, device_, what),
-                                        {open, [rays](const FrameRunner& frames) { *rays = frames.rays(); },
-                                         [](const FrameRunner& frames) { return frames.kernel_seconds(); }}));
+                                        {open,
+                                         [rays](const FrameRunner& frames) { *rays = frames.rays(); },
+                                         [](const FrameRunner& frames) { return frames.kernel_seconds(); },
+                                         {device}}));
     };
     add("without", without_textures(scene));
     add("textured", scene);
@@ -51,18 +54,24 @@ class TextureCost {
 
   void measure(const MeasureOptions& options) { sundog::measure(subjects_, options); }
   void add_to(Report& report) const {
-    std::vector<Field> row{{"scene", "", scene_}, {"device", "", device_}};
-    const char* names[] = {"without", "textured"};
+    const Ratio ratio = paired_ratio(subjects_[0].runs, subjects_[1].runs);
+    Table table{fmt::format("{} on {}", scene_, device_), {}, {}};
+    BarPlot bars{table.title + ": kernels of a frame", "ms", {}};
     for (std::size_t i = 0; i < 2; ++i) {
-      row.push_back({names[i], "ms", milliseconds(subjects_[i])});
-      row.push_back({fmt::format("rays {}", names[i]), "", *rays_[i]});
-      report.ways.push_back(subjects_[i]);
+      const Subject& subject = subjects_[i];
+      const Field textures{"textures", "", i ? "with" : "without"};
+      std::vector<Field> more{{"rays", "", subject.is_good() ? Cell(*rays_[i]) : Cell()}};
+      if (i && ratio.is_known() && subjects_[0].is_good() && subject.is_good())
+        more.push_back({"ratio", "", Spread{ratio.value, ratio.low, ratio.high}});
+      std::vector<Field> shown{textures, {"time", "ms", milliseconds(subject)}};
+      shown.insert(shown.end(), more.begin(), more.end());
+      add_row(table, shown, subject);
+      add_measured(report, subject, {{"scene", "", scene_}, {"device", "", device_}, textures}, more);
+      if (subject.is_good())
+        bars.bars.push_back({textures.cell.word + " textures", scaled(subject.seconds(), 1e3), ""});
     }
-    if (subjects_[0].is_good() && subjects_[1].is_good())
-      row.push_back({"ratio", "", subjects_[1].seconds().median / subjects_[0].seconds().median});
-    for (const Subject& subject : subjects_)
-      if (!subject.problem.empty()) row.push_back({"problem", "", subject.problem});
-    add_row(report.measurements, row);
+    report.parts.emplace_back(std::move(table));
+    report.parts.emplace_back(std::move(bars));
   }
 
  private:
@@ -75,9 +84,10 @@ int bench_textures(const BenchOptions& options) {
   BenchRun run("textures", "What textures cost", options);
   run.head().times_frames = true;
   run.head().notes.emplace_back(
-      "Medians of frames of each after one to warm up, in turn; times are those of the kernels, and the "
-      "ratio is of the medians. Without textures the materials keep their colors and numbers. Every result "
-      "was compared before its time counted.");
+      "Medians of frames of each after one to warm up, in turn; times are those of the kernels. `ratio` is "
+      "the median of the ratios of runs that followed each other, with textures over without. Without "
+      "textures the materials keep their colors and numbers. Every result was compared before its time "
+      "counted.");
   const std::vector<DeviceInfo> devices = run.devices();
   for (const std::string& file : options.scenes) {
     const SceneDescription scene = bench_description(file, options);

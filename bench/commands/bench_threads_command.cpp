@@ -122,6 +122,7 @@ class ThreadTimes {
       const auto size = std::make_shared<OneSize>(OneSize{plan_.compile_for(side), {}, 0});
       const auto add = [&](unsigned threads, Subject subject) {
         subject.name = fmt::format("{}, {}x{}, {}", plan_.scene, side, side, threads_text(threads));
+        if (threads > 0 || plan_.device.type == "cpu") subject.devices = {plan_.device};
         ways_.emplace_back(side, threads);
         subjects_.push_back(std::move(subject));
       };
@@ -152,6 +153,11 @@ class ThreadTimes {
     report.parts.push_back(pivot("efficiency (speed-up by threads)", "", [&](int size, unsigned count) {
       return count ? gain_cell(1.0 / count, size, count) : Cell();
     }));
+    if (std::ranges::any_of(subjects_, [](const Subject& subject) { return subject.joules() >= 0; }))
+      report.parts.push_back(pivot("energy of a frame", "J", [&](int size, unsigned count) {
+        const Subject* time = find(size, count);
+        return time && time->joules() >= 0 ? Cell(time->joules()) : Cell();
+      }));
     CurvePlot plot{fmt::format("{}: speed-up by threads of {}", plan_.scene, device_title(plan_.device)),
                    "threads",
                    "times as fast",

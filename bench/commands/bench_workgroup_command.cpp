@@ -134,7 +134,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
           "tracer alone. Each result was compared with the default's to the bit before its time counted.",
           options.rays, options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
-      "the interval of its median lies below that of the default's.",
+      "the interval of the median of its ratios to the default, run by run, lies below 1.",
       "`compiled at first launch`: how much longer the first launch took from the host's clock than the "
       "kernel ran by the device's events, less the same of a later launch. An empty cell: the driver gives "
       "no times."};
@@ -147,6 +147,7 @@ int bench_workgroup(const WorkgroupOptions& options) {
       for (const std::string& name : kernels) {
         head.scene = scene_name(options, file);
         head.device = device_title(device);
+        head.devices = {device};
         head.name = is_frame(name) ? integrator_kernel(*scene) : name;
         const auto open = [=, rays = options.rays] {
           TimedKernel kernel = head;

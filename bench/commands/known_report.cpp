@@ -38,7 +38,8 @@ MeasuredWay way_of(const json& value) {
   for (const json& run : value.at("runs"))
     way.runs.push_back({run.at("seconds").get<double>(), run.at("cores").get<double>(),
                         number(run, "others", -1), run.at("at").get<double>(), text_of(run.at("left_out")),
-                        number(run, "clock_MHz", 0), number(run, "joules", -1)});
+                        number(run, "clock_MHz", 0), number(run, "joules", -1), number(run, "watts", -1),
+                        run.contains("disturbed") ? text_of(run["disturbed"]) : ""});
   return way;
 }
 

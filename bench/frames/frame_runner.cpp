@@ -108,6 +108,7 @@ Subject frame_subject(const std::string& name, FrameSubject of) {
   const auto state = std::make_shared<State>();
   Subject subject;
   subject.name = name;
+  subject.devices = std::move(of.devices);
   subject.prepare = [state, open = std::move(of.open)] { state->frames = open(); };
   subject.run = [state, seconds = std::move(of.seconds)] {
     const double frame = state->frames->run();

@@ -69,6 +69,7 @@ struct FrameSubject {
   std::function<std::shared_ptr<FrameRunner>()> open;
   std::function<void(FrameRunner&)> first;
   std::function<double(const FrameRunner&)> seconds;  // of the last run; empty: the frame's
+  std::vector<DeviceInfo> devices;                    // Subject::devices
 };
 Subject frame_subject(const std::string& name, FrameSubject of);
 

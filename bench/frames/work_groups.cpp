@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/runs/ratio.h"
 #include "render/device/tuning.h"
 
 namespace sundog {
@@ -62,6 +63,7 @@ void WorkGroupTimes::add_way(const WorkGroup& group, const std::string& text) {
   ways_.push_back(way);
   Subject& subject = subjects_.emplace_back();
   subject.name = fmt::format("{}, {}", name_, text);
+  subject.devices = kernel_.devices;
   subject.run = [this, way] {
     const double seconds = kernel_.run(way->group);
     const auto more = kernel_.beyond_events ? kernel_.beyond_events() : std::nullopt;
@@ -123,8 +125,9 @@ const std::string& WorkGroupTimes::text_of(const Subject& subject) const {
 
 bool WorkGroupTimes::is_clear() const {
   if (duel_.empty() || !duel_[0].is_good() || !duel_[1].is_good()) return false;
-  const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
-  return best.runs.size() >= 3 && median_interval(best).high < median_interval(usual).low;
+  // The two took turns, so the machine's state is divided out of the pairs' ratios. Of fewer than six pairs
+  // the range holds the median in less than 95 of 100 cases (of three, in 75), so they have no verdict.
+  return paired_ratio(duel_[0].runs, duel_[1].runs).verdict() == std::string("faster");
 }
 
 std::string WorkGroupTimes::verdict() const {
@@ -133,8 +136,10 @@ std::string WorkGroupTimes::verdict() const {
     if (!subject.problem.empty())
       return fmt::format("no clear winner: {} failed: {}", subject.name, subject.problem);
   const Spread usual = duel_[0].seconds(), best = duel_[1].seconds();
-  if (best.runs.size() < 3)
-    return "no clear winner: too few runs to name one (--repeat 3 or more, and a --budget for them)";
+  if (!paired_ratio(duel_[0].runs, duel_[1].runs).is_enough)
+    return fmt::format(
+        "no clear winner: too few runs to name one (--repeat {} or more, and a --budget for them)",
+        fewest_for_interval);
   const Subject* winner = least();
   const std::string name = winner ? text_of(*winner) : "";
   if (!is_clear())

@@ -20,6 +20,7 @@ std::vector<WorkGroup> work_group_candidates(std::size_t limit, bool two_dimensi
 /// A kernel that can be run with any work-group size, and a hash of its result.
 struct TimedKernel {
   std::string scene, device, name;
+  std::vector<DeviceInfo> devices;  // the device, whose joules count
   bool two_dimensions = false;
   std::size_t limit = 0;                        // most work-items of a group
   std::vector<WorkGroup> sizes;                 // to try besides the default; empty: work_group_candidates()

@@ -50,6 +50,7 @@ void RayTimes::measure(const MeasureOptions& options) {
   if (options.on_step) options.on_step("making rays", 0);
   Subject all;
   all.name = fmt::format("{} on {}", name_, device_title(info_));
+  all.devices = {info_};
   subjects_ = {all};
   std::vector<RaySet> sets;
   const auto open = [&] {
@@ -62,8 +63,8 @@ void RayTimes::measure(const MeasureOptions& options) {
   for (RaySet& set : sets) {
     const auto kind = std::make_shared<Kind>(Kind{std::move(set), {}, 0, {}});
     kinds_.push_back(kind);
-    Subject& subject = subjects_.emplace_back();
-    subject.name = fmt::format("{}, {} rays", all.name, kind->set.kind);
+    Subject& subject = subjects_.emplace_back(all);
+    subject.name += fmt::format(", {} rays", kind->set.kind);
     subject.run = [this, kind] {
       RayTracer& tracer = tracing_->tracer;
       tracer.upload(kind->set.rays);
@@ -91,7 +92,8 @@ std::optional<Spread> RayTimes::kernel_rate(std::size_t kind) const {
 std::vector<RayTimes::Timed> RayTimes::timed() const {
   std::vector<Timed> all;
   for (std::size_t i = 0; i < kinds_.size(); ++i)
-    if (const auto by_wall = rate(i)) all.push_back({&kinds_[i]->set, kernel_rate(i).value_or(*by_wall)});
+    if (const auto by_wall = rate(i))
+      all.push_back({&kinds_[i]->set, kernel_rate(i).value_or(*by_wall), &subjects_[i]});
   return all;
 }
 
@@ -100,8 +102,8 @@ void RayTimes::add_to(Report& report) const {
   Table table{fmt::format("{} on {}, {} tracer", name_, device_title(info_), tracer), {}, {}};
   BarPlot bars{table.title, "Mrays/s", {}};
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    std::vector<Field> row{{"scene", "", name_}, {"device", "", device_title(info_)}, {"tracer", "", tracer}};
-    std::vector<Field> shown;
+    std::vector<Field> key{{"scene", "", name_}, {"device", "", device_title(info_)}, {"tracer", "", tracer}};
+    std::vector<Field> shown, results;
     if (i < kinds_.size()) {
       const Kind& kind = *kinds_[i];
       const auto per_second = rate(i), kernel = kernel_rate(i);
@@ -112,18 +114,18 @@ void RayTimes::add_to(Report& report) const {
                {"rate", "Mrays/s", per_second},
                {"kernel", "Mrays/s", kernel},
                {"checked", "", fmt::format("{}, {} by rounding", kind.check.checked, kind.check.rounded)}};
-      row.insert(row.end(), {shown[0],
-                             shown[1],
-                             {"hits", "", number(kind.check.hits)},
-                             shown[3],
-                             shown[4],
-                             {"checked", "", number(kind.check.checked)},
-                             {"rounded", "", number(kind.check.rounded)},
-                             {"differ", "", number(kind.check.differ)}});
+      key.push_back(shown[0]);
+      results = {shown[1],
+                 {"hits", "", number(kind.check.hits)},
+                 shown[3],
+                 shown[4],
+                 {"checked", "", number(kind.check.checked)},
+                 {"rounded", "", number(kind.check.rounded)},
+                 {"differ", "", number(kind.check.differ)}};
       if (per_second) bars.bars.push_back({kind.set.kind, *per_second, fmt::format("{} rays", rays)});
     }
     add_row(table, shown, subjects_[i]);
-    add_measured(report, subjects_[i], row);
+    add_measured(report, subjects_[i], key, results);
   }
   report.parts.emplace_back(std::move(table));
   if (!bars.bars.empty()) report.parts.emplace_back(std::move(bars));

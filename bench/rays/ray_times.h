@@ -26,6 +26,7 @@ class RayTimes {
   struct Timed {
     const RaySet* set;
     Spread rate;
+    const MeasuredWay* way;
   };
   std::vector<Timed> timed() const;
 

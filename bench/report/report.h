@@ -32,6 +32,7 @@ struct Cell {
 /// `unit` may be empty. A Spread takes four columns of a CSV: name, name_min, name_max, name_runs.
 struct Column {
   std::string name, unit;
+  bool is_parameter = false;  // of measurements: chosen before a run, not measured
 };
 
 /// Every row has a cell for each column.
@@ -59,6 +60,7 @@ void add_row(Table& table, const std::vector<Field>& fields);
 struct CurvePoint {
   double x = 0;
   Spread y;
+  Interval x_interval = {};  // drawn if its bounds differ
 };
 struct Curve {
   std::string name;
@@ -113,12 +115,17 @@ struct Report {
 /// The way's time; nothing if it has none.
 Cell milliseconds(const MeasuredWay& way);
 
-/// Appends a row for people, with the way's problem if it has one.
+/// Appends a row for people, with the way's energy and its problem as far as it has them.
 void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way);
 
-/// Adds a way and its row of measurements: `key`, then the columns of every bench (time, runs, cores, load,
-/// energy, problem), then `more`.
-void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
+/// The columns of every bench: time, runs, cores, load, energy, problem.
+std::vector<Field> measured_fields(const MeasuredWay& way);
+
+/// Appends a row of measurements; the columns of `key` are parameters.
+void add_result(Report& report, const std::vector<Field>& key, std::vector<Field> results);
+
+/// Adds a way and its row of measurements: the parameters `key`, then measured_fields(), then `more`.
+void add_measured(Report& report, const MeasuredWay& way, const std::vector<Field>& key,
                   const std::vector<Field>& more = {});
 
 /// Facts, the tables among the parts (the measurements if there are none), notes.
@@ -141,8 +148,8 @@ std::string report_latex(const Report& report);
 /// Each plot as an SVG file for a column of 88 mm, with letters of 8 points.
 std::vector<std::string> report_svgs(const Report& report);
 
-/// The measurements in the T4 format of Kernel Tuner and others (results-schema.json, 1.0.0): the columns
-/// before the time are the configuration.
+/// The measurements in the T4 format of Kernel Tuner and others (results-schema.json, 1.0.0): the parameters
+/// are the configuration.
 nlohmann::json report_t4(const Report& report);
 
 /// A number with about three significant digits: "0.0123", "4.57", "12.3", "1234".

@@ -148,13 +148,12 @@ json report_t4(const Report& report) {
   for (const auto& row : table.rows) {
     json configuration = json::object(), measured = json::array(), runs = json::array();
     std::string problem;
-    for (std::size_t i = 0, tells_apart = 1; i < row.size(); ++i) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
       const Column& column = table.columns[i];
-      tells_apart = tells_apart && column.name != "time";
       if (column.name == "problem") problem = row[i].word;
       if (column.name == "time") runs = row[i].spread.runs;
       if (row[i].kind == Cell::Kind::none) continue;
-      if (tells_apart)
+      if (column.is_parameter)
         configuration[plain_name(column)] = value_of(row[i]);
       else if (row[i].kind != Cell::Kind::word)
         measured.push_back({{"name", column.name}, {"value", row[i].spread.median}, {"unit", column.unit}});

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <string_view>
 
 #include "bench/report/report.h"
@@ -110,7 +109,9 @@ json way_json(const MeasuredWay& way) {
                     {"at", run.at},
                     {"clock_MHz", run.clock > 0 ? json(run.clock) : json()},
                     {"joules", run.joules < 0 ? json() : json(run.joules)},
-                    {"left_out", run.left_out.empty() ? json() : json(run.left_out)}});
+                    {"watts", run.watts < 0 ? json() : json(run.watts)},
+                    {"left_out", run.left_out.empty() ? json() : json(run.left_out)},
+                    {"disturbed", run.disturbed.empty() ? json() : json(run.disturbed)}});
   return {{"name", way.name},
           {"problem", way.problem.empty() ? json() : json(way.problem)},
           {"noisy", way.noisy},
@@ -159,6 +160,10 @@ std::string ratios_text(const BarPlot& plot) {
                             number_text(std::exp(reach)), width / 2);
 }
 
+bool shown_if_known(const std::string& column) {
+  return column == "energy" || column == "power" || column == "problem";
+}
+
 }  // namespace
 
 bool is_word_column(const Table& table, std::size_t column) {
@@ -190,27 +195,37 @@ Cell milliseconds(const MeasuredWay& way) {
 }
 
 void add_row(Table& table, std::vector<Field> row, const MeasuredWay& way) {
-  if (!way.problem.empty()) row.push_back({"problem", "", way.problem});
+  for (const Field& field : measured_fields(way))
+    if (shown_if_known(field.name) && field.cell.kind != Cell::Kind::none) row.push_back(field);
   add_row(table, row);
 }
 
-void add_measured(Report& report, const MeasuredWay& way, std::vector<Field> key,
-                  const std::vector<Field>& more) {
+std::vector<Field> measured_fields(const MeasuredWay& way) {
   const bool good = way.is_good();
-  const Spread seconds = way.seconds(), others = way.others();
-  const double joules = way.joules(),
-               mean = std::accumulate(seconds.runs.begin(), seconds.runs.end(), 0.0) /
-                      static_cast<double>(std::max<std::size_t>(1, seconds.runs.size()));
-  key.insert(key.end(), {{"time", "ms", milliseconds(way)},
-                         {"runs", "", good ? Cell(static_cast<double>(seconds.runs.size())) : Cell()},
-                         {"cores used", "", good ? Cell(way.cores()) : Cell()},
-                         {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
-                         {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
-                         {"energy", "J", good && joules >= 0 ? Cell(joules) : Cell()},
-                         {"power", "W", good && joules >= 0 ? Cell(joules / mean) : Cell()},
-                         {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}});
-  key.insert(key.end(), more.begin(), more.end());
-  add_row(report.measurements, key);
+  const Spread others = way.others();
+  const auto known = [&](double mean) { return good && mean >= 0 ? Cell(mean) : Cell(); };
+  return {{"time", "ms", milliseconds(way)},
+          {"runs", "", good ? Cell(static_cast<double>(way.seconds().runs.size())) : Cell()},
+          {"cores used", "", good ? Cell(way.cores()) : Cell()},
+          {"cores of others", "", good && others.min >= 0 ? Cell(others) : Cell()},
+          {"load", "", good ? Cell(way.noisy ? "disturbed" : "quiet") : Cell()},
+          {"energy", "J", known(way.joules())},
+          {"power", "W", known(way.watts())},
+          {"problem", "", way.problem.empty() ? Cell() : Cell(way.problem)}};
+}
+
+void add_result(Report& report, const std::vector<Field>& key, std::vector<Field> results) {
+  results.insert(results.begin(), key.begin(), key.end());
+  add_row(report.measurements, results);
+  for (Column& column : report.measurements.columns)
+    column.is_parameter |= std::ranges::count(key, column.name, &Field::name) > 0;
+}
+
+void add_measured(Report& report, const MeasuredWay& way, const std::vector<Field>& key,
+                  const std::vector<Field>& more) {
+  std::vector<Field> results = measured_fields(way);
+  results.insert(results.end(), more.begin(), more.end());
+  add_result(report, key, std::move(results));
   report.ways.push_back(way);
 }
 

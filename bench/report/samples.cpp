@@ -17,6 +17,12 @@ Spread spread_of(const std::vector<Run>& runs, double Run::* figure) {
   return spread(values);
 }
 
+double mean_of(const std::vector<Run>& runs, double Run::* figure) {
+  const Spread all = spread_of(runs, figure);
+  if (all.runs.empty() || all.min < 0) return -1;
+  return std::accumulate(all.runs.begin(), all.runs.end(), 0.0) / static_cast<double>(all.runs.size());
+}
+
 }  // namespace
 
 Spread spread(const std::vector<double>& runs) {
@@ -80,11 +86,7 @@ double processor_seconds() {
 Spread MeasuredWay::seconds() const { return spread_of(runs, &Run::seconds); }
 Spread MeasuredWay::cores() const { return spread_of(runs, &Run::cores); }
 Spread MeasuredWay::others() const { return spread_of(runs, &Run::others); }
-
-double MeasuredWay::joules() const {
-  const Spread all = spread_of(runs, &Run::joules);
-  if (all.runs.empty() || all.min < 0) return -1;
-  return std::accumulate(all.runs.begin(), all.runs.end(), 0.0) / static_cast<double>(all.runs.size());
-}
+double MeasuredWay::joules() const { return mean_of(runs, &Run::joules); }
+double MeasuredWay::watts() const { return mean_of(runs, &Run::watts); }
 
 }  // namespace sundog

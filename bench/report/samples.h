@@ -48,12 +48,14 @@ double processor_seconds();
 /// One timed run.
 struct Run {
   double seconds = 0;
-  double cores = 0;      // used by this process: processor seconds per wall-clock second
-  double others = -1;    // cores used by other processes meanwhile; below 0: unknown
-  double at = 0;         // seconds since the bench began
-  std::string left_out;  // why it does not count: "busy", "slow clock" or "wrong result"; empty: it counts
-  double clock = 0;      // MHz at its end, of the fastest core or of the GPU; 0: unknown
-  double joules = -1;    // that the devices used; below 0: unknown
+  double cores = 0;         // used by this process: processor seconds per wall-clock second
+  double others = -1;       // cores used by other processes meanwhile; below 0: unknown
+  double at = 0;            // seconds since the bench began
+  std::string left_out;     // why it does not count: "busy", "slow clock" or "wrong result"; empty: it counts
+  double clock = 0;         // MHz at its end, of the fastest core or of the GPU; 0: unknown
+  double joules = -1;       // that the row's devices used; below 0: unknown
+  double watts = -1;        // the same by the wall-clock seconds in which they were counted
+  std::string disturbed{};  // why it was left out before it counted for lack of quiet runs; empty: it was not
 };
 
 /// One way of doing the work that a bench times: a row of its table.
@@ -64,23 +66,28 @@ struct MeasuredWay {
   std::string problem;           // why no time counts; empty: none
   std::exception_ptr failure{};  // the exception behind the problem; null: a wrong result
   bool once = false;             // its first run counts and is the only one
+  bool cold = false;             // has no warm-up: its first run counts
   bool noisy = false;            // too few runs were quiet: the least disturbed of the others count too
 
   bool is_good() const { return problem.empty() && !seconds().runs.empty(); }
   /// Seconds of the runs that count.
   Spread seconds() const;
-  /// The entries of `figures` whose runs count. `figures` has one for the warm-up, then one for each run.
+  /// The entries of `figures` whose runs count. `figures` has one for the warm-up, if there is one, then one
+  /// for each run.
   template <class T>
   std::vector<T> counted(const std::vector<T>& figures) const {
     std::vector<T> all;
+    const std::size_t first = cold ? 0 : 1;
     for (std::size_t i = known; i < runs.size(); ++i)
-      if (runs[i].left_out.empty() && i - known + 1 < figures.size()) all.push_back(figures[i - known + 1]);
+      if (runs[i].left_out.empty() && i - known + first < figures.size())
+        all.push_back(figures[i - known + first]);
     return all;
   }
   Spread cores() const;
   Spread others() const;
-  /// Mean joules per run, as counters are too coarse for a short run. Below 0: unknown.
+  /// Means of the runs, as counters are too coarse for a short run. Below 0: unknown.
   double joules() const;
+  double watts() const;
 };
 
 }  // namespace sundog

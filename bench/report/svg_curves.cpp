@@ -54,7 +54,11 @@ std::string marker(std::size_t index, double x, double y) {
 std::set<double> all_x(const CurvePlot& plot) {
   std::set<double> values;
   for (const Curve& curve : plot.curves)
-    for (const CurvePoint& point : curve.points) values.insert(point.x);
+    for (const CurvePoint& point : curve.points) {
+      values.insert(point.x);
+      if (point.x_interval.low < point.x_interval.high)
+        values.insert({point.x_interval.low, point.x_interval.high});
+    }
   return values;
 }
 
@@ -139,6 +143,11 @@ std::string draw(const Curve& curve, std::size_t index, const Axes& axes) {
     marks += fmt::format(
         "<line class=\"l c{0}\" x1=\"{1:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{3:.1f}\"/>",
         index % styles, x, axes.y(median_interval(point.y).low), axes.y(median_interval(point.y).high));
+    if (point.x_interval.low < point.x_interval.high)
+      marks +=
+          fmt::format("<line class=\"l c{0}\" x1=\"{1:.1f}\" x2=\"{2:.1f}\" y1=\"{3:.1f}\" y2=\"{3:.1f}\"/>",
+                      index % styles, axes.x(point.x_interval.low), axes.x(point.x_interval.high),
+                      axes.y(point.y.median));
     marks += fmt::format("<g><title>{}, {}: {}</title>{}</g>", escape_html(curve.name), number_text(point.x),
                          cell_text(point.y), marker(index, x, axes.y(point.y.median)));
   }

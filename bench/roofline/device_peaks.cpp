@@ -119,6 +119,7 @@ DevicePeaks::DevicePeaks(DeviceInfo device, unsigned megabytes)
 void DevicePeaks::add(Peak peak, double amount, const std::function<Work()>& make) {
   const std::string chains = peak.chains > 0 ? fmt::format(", {} chains", peak.chains) : "";
   Subject& subject = subjects_.emplace_back();
+  subject.devices = {info_};
   subject.name = fmt::format("{} on {}, width {}{}", peak.what, device_title(info_), peak.width, chains);
   const auto& shared = peaks_.emplace_back(std::make_shared<Peak>(std::move(peak)));
   const auto work = std::make_shared<Work>();
@@ -270,21 +271,21 @@ Table DevicePeaks::table() const {
 
 void DevicePeaks::add_to(Report& report) const {
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
-    std::vector<Field> row{{"device", "", device_title(info_)}};
+    std::vector<Field> key{{"device", "", device_title(info_)}}, results;
     if (i < peaks_.size()) {
       const Peak& peak = *peaks_[i];
       const auto measured = figure(i);
       const auto of = [&](const char* unit) {
         return measured && peak.unit == unit ? Cell(*measured) : Cell();
       };
-      row.insert(row.end(), {{"measured", "", peak.what},
+      key.insert(key.end(), {{"measured", "", peak.what},
                              {"width", "", double{0} + peak.width},
-                             {"chains", "", peak.chains ? Cell(double{0} + peak.chains) : Cell()},
-                             {"bandwidth", "GB/s", of("GB/s")},
-                             {"operations", "Gop/s", of("Gop/s")},
-                             {"launch", "us", of("us")}});
+                             {"chains", "", peak.chains ? Cell(double{0} + peak.chains) : Cell()}});
+      results = {{"bandwidth", "GB/s", of("GB/s")},
+                 {"operations", "Gop/s", of("Gop/s")},
+                 {"launch", "us", of("us")}};
     }
-    add_measured(report, subjects_[i], row);
+    add_measured(report, subjects_[i], key, results);
   }
   report.parts.emplace_back(table());
 }

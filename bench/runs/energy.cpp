@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 namespace sundog {
 namespace {
@@ -173,6 +174,11 @@ double EnergyMeter::joules() {
     sum += counter.sum;
   }
   return counters_.empty() ? -1 : sum;
+}
+
+nlohmann::json energy_json(double joules, double seconds, const std::string& source) {
+  const auto known = [&](double value) { return joules >= 0 ? nlohmann::json(value) : nlohmann::json(); };
+  return {{"joules", known(joules)}, {"watts", known(joules / seconds)}, {"counted_by", source}};
 }
 
 }  // namespace sundog

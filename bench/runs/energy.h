@@ -1,6 +1,7 @@
 // Measures the joules that devices use, if the machine has counters for them.
 #pragma once
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,5 +39,8 @@ class EnergyMeter {
   std::function<double()> clock_;
   std::string source_;
 };
+
+/// "energy" of `render --stats`: `joules` (below 0: unknown), `watts`, and what they are `counted_by`.
+nlohmann::json energy_json(double joules, double seconds, const std::string& source);
 
 }  // namespace sundog

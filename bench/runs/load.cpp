@@ -50,7 +50,8 @@ LoadMeter::LoadMeter(unsigned cores, std::function<ProcessorTimes()> clock)
   before_.push_back(first_);
 }
 
-void LoadMeter::begin() {
+void LoadMeter::begin(EnergyMeter* energy) {
+  energy_ = energy;
   begun_ = clock_();
   before_.push_back(begun_);
   if (energy_) joules_ = energy_->joules();
@@ -61,12 +62,13 @@ Run LoadMeter::end() {
   Run run;
   run.at = begun_.wall - first_.wall;
   run.clock = now.clock;
+  const double wall = std::max(1e-9, now.wall - begun_.wall);
   if (energy_) {
     const double joules = energy_->joules();
-    run.joules = joules < 0 || joules_ < 0 ? -1 : joules - joules_;
+    if (joules >= 0 && joules_ >= 0) run.joules = joules - joules_, run.watts = run.joules / wall;
     if (energy_->clock() > 0) run.clock = energy_->clock();
   }
-  run.cores = (now.own - begun_.own) / std::max(1e-9, now.wall - begun_.wall);
+  run.cores = (now.own - begun_.own) / wall;
   const double from = std::min(begun_.wall, now.wall - least_window);
   while (before_.size() > 1 && before_[1].wall <= from) before_.pop_front();
   const ProcessorTimes& start = before_.front();

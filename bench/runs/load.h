@@ -2,7 +2,6 @@
 #pragma once
 #include <deque>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "base/clock.h"
@@ -31,12 +30,12 @@ class LoadMeter {
   /// `clock`: processor_times(), or a test's made-up times.
   explicit LoadMeter(unsigned cores, std::function<ProcessorTimes()> clock = processor_times);
 
-  void begin();
+  /// `energy`: gives the run its joules and the GPU's clock; it must live until end(). Null: they are
+  /// unknown.
+  void begin(EnergyMeter* energy = nullptr);
   /// The run since begin(), with the cores that it and other processes used. Others' cores are taken over at
   /// least the last half second, because the system's clock is coarse.
   Run end();
-  /// From now on, runs have joules and the GPU's clock.
-  void count(std::shared_ptr<EnergyMeter> energy) { energy_ = std::move(energy); }
   /// A run is disturbed if other processes use more cores than this.
   double limit() const;
 
@@ -45,7 +44,7 @@ class LoadMeter {
   std::function<ProcessorTimes()> clock_;
   std::deque<ProcessorTimes> before_;
   ProcessorTimes begun_, first_;
-  std::shared_ptr<EnergyMeter> energy_;
+  EnergyMeter* energy_ = nullptr;
   double joules_ = -1;
 };
 

@@ -8,8 +8,10 @@
 #include <numeric>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
+#include "bench/runs/energy.h"
 
 namespace sundog {
 namespace {
@@ -38,9 +40,11 @@ class Measurement {
  public:
   Measurement(std::vector<Subject>& subjects, const MeasureOptions& options)
       : subjects_(subjects), options_(options) {
-    for (Subject& subject : subjects_)
+    for (Subject& subject : subjects_) {
+      meters_.push_back(std::make_unique<EnergyMeter>(subject.devices));
       if (const auto found = options_.known.find(subject.name); found != options_.known.end())
         subject.runs = found->second.runs, subject.known = subject.runs.size();
+    }
   }
 
   void warm_up() {
@@ -52,7 +56,7 @@ class Measurement {
         continue;
       }
       tell(subject, "the first run");
-      run(subject, subject.once, true);
+      run(subject, subject.once || subject.cold, true);
       ++done_;
     }
     judge();
@@ -89,7 +93,7 @@ class Measurement {
       for (Run* run : left_out) {
         if (wanted == 0) break;
         --wanted;
-        run->left_out.clear();
+        run->disturbed = std::exchange(run->left_out, "");
         subject.noisy = true;
       }
     }
@@ -127,7 +131,7 @@ class Measurement {
     try {
       enter(options_, subject.name);
       if (first && subject.prepare) subject.prepare();
-      options_.load->begin();
+      options_.load->begin(meters_[static_cast<std::size_t>(&subject - subjects_.data())].get());
       const double seconds = subject.run();
       Run run = options_.load->end();
       run.seconds = seconds;
@@ -152,14 +156,16 @@ class Measurement {
   void judge() {
     for (Subject& subject : subjects_) {
       for (Run& run : subject.runs) {
-        if (run.left_out.empty() || is_noise(run.left_out))
-          run.left_out = disturbance(subject, run, options_.load->limit());
+        if (!run.left_out.empty() && !is_noise(run.left_out)) continue;
+        run.left_out = disturbance(subject, run, options_.load->limit());
+        run.disturbed.clear();  // by settle(), in the report that is continued
       }
     }
   }
 
   std::vector<Subject>& subjects_;
   const MeasureOptions& options_;
+  std::vector<std::unique_ptr<EnergyMeter>> meters_;  // of each subject's devices
   std::size_t done_ = 0;
   std::mt19937 random_;
   Stopwatch clock_;

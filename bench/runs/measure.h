@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "bench/runs/load.h"
+#include "device/devices.h"
 
 namespace sundog {
 
@@ -18,6 +19,7 @@ struct Subject : MeasuredWay {
   std::function<void()> prepare;       // before its first run; may be empty
   std::function<double()> run;         // does the work and returns its seconds
   std::function<std::string()> check;  // why the last run's result does not count; "": it does
+  std::vector<DeviceInfo> devices;     // that it runs on, whose joules its runs have
 };
 
 struct MeasureOptions {

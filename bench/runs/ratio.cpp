@@ -7,7 +7,6 @@
 namespace sundog {
 namespace {
 
-constexpr std::size_t fewest = 6;        // for an interval of 95 %
 constexpr std::size_t resamples = 2000;  // of a bootstrap
 
 std::vector<double> medians(const Calls& calls) {
@@ -51,18 +50,18 @@ Ratio paired_ratio(const std::vector<Run>& base, const std::vector<Run>& other) 
   if (ratios.empty()) return {};
   const Spread found = spread(ratios);
   const Interval interval = median_interval(found);
-  return {found.median, interval.low, interval.high, ratios.size() >= fewest};
+  return {found.median, interval.low, interval.high, ratios.size() >= fewest_for_interval};
 }
 
 Ratio ratio_of_calls(const Calls& base, const Calls& other) {
   const std::vector<double> a = medians(base), b = medians(other);
   if (a.empty() || b.empty()) return {};
   const double value = spread(b).median / spread(a).median;
-  if (std::min(a.size(), b.size()) < fewest) {
+  if (std::min(a.size(), b.size()) < fewest_for_interval) {
     const std::vector<double> of_base = all_runs(base), of_other = all_runs(other);
     const Interval range = wide_range(of_base), other_range = wide_range(of_other);
     return {value, other_range.low / range.high, other_range.high / range.low,
-            std::min(of_base.size(), of_other.size()) >= fewest};
+            std::min(of_base.size(), of_other.size()) >= fewest_for_interval};
   }
   std::mt19937 random;  // fixed seed: equal runs give equal intervals
   std::vector<double> ratios;

@@ -53,7 +53,7 @@ Command text_command(const std::string& text, int status = exit_done) {
     if (status == exit_done || job_rank() <= 0) fmt::print(status == exit_done ? stdout : stderr, "{}", text);
     return status;
   };
-  return {.run = show, .in_first_thread = true};
+  return {.run = show, .in_first_thread = true, .only_prints = status == exit_done};
 }
 
 /// Shows the facts that a bug report should state. Flushes the first lines in case a driver crashes.
@@ -86,7 +86,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::CallForHelp&) {
     return text_command(root.help());
   } catch (const CLI::CallForVersion&) {
-    return {.run = show_version};
+    return {.run = show_version, .only_prints = true};
   } catch (const CLI::ExtrasError&) {
     throw UsageError(
         fmt::format("unknown argument: {} {}", fmt::join(root.remaining(true), " "), see_help(named)));

@@ -30,6 +30,7 @@ int run_command_line(int argc, char** argv) {
   };
   // mpirun ends a job at the first rank that fails, and may lose what others print, so only rank 0 fails.
   if (const int status = exit_status_of(parse, job_rank() <= 0)) return job_rank() > 0 ? exit_done : status;
+  if (command.only_prints) require_standard_output();
   if (command.stops_on_signal) hold_back({SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGCONT});
   const int status =
       command.in_first_thread ? command.run() : std::async(std::launch::async, command.run).get();

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -12,7 +13,9 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "base/faults.h"
+#include "base/numbers.h"
 
 namespace sundog {
 namespace {
@@ -23,8 +26,12 @@ std::string variable(const char* name) {
 }
 
 double seconds_of(const char* name, double otherwise) {
-  const double seconds = std::strtod(variable(name).c_str(), nullptr);
-  return seconds > 0 ? seconds : otherwise;
+  const std::string text = variable(name);
+  if (text.empty()) return otherwise;
+  const double seconds = whole_number<double>(text).value_or(0);
+  if (!(seconds > 0 && std::isfinite(seconds)))
+    throw UsageError(name + ("=" + text) + ": wanted seconds above 0; set another limit, or unset it");
+  return seconds;
 }
 
 std::filesystem::path cache_directory() {

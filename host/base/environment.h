@@ -71,7 +71,7 @@ using EnvironmentPtr = std::shared_ptr<const HostEnvironment>;
 const HostEnvironment& value_of(const EnvironmentPtr& environment);
 
 /// Reads XDG_CACHE_HOME, HOME, SUNDOG_* and the drivers' variables. Called once by a program. `end_process`
-/// is passed to Faults. Throws UsageError for a malformed SUNDOG_FAULTS.
+/// is passed to Faults. Throws UsageError for malformed faults and seconds.
 HostEnvironment read_environment(const std::function<void(const std::string& kind)>& end_process = {});
 
 /// Sets an environment variable, for drivers. Keeps a value that is not empty, unless `replaces`. Other

@@ -7,13 +7,26 @@
 
 namespace sundog {
 
-/// The command line is wrong (exit 2).
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// How to avoid the error; programs add it to the message in the words of their options.
+enum class Remedy {
+  none,
+  outside_files,
+  native_code,
+  part,
+  // For checkpoints; each can also be removed.
+  start_anew,
+  same_version,
+  same_settings,
+  in_passes,
+  not_in_passes
 };
 
-/// An option that avoids the error; programs add its name to the message.
-enum class Remedy { none, outside_files, native_code, part };
+/// The command line is wrong (exit 2).
+struct UsageError : std::runtime_error {
+  explicit UsageError(const std::string& what, Remedy remedy_ = Remedy::none)
+      : std::runtime_error(what), remedy(remedy_) {}
+  Remedy remedy;
+};
 
 /// The scene or a file it names is bad (exit 3). `place` is a JSON pointer, "line 12", or "byte 80".
 struct SceneError : std::runtime_error {

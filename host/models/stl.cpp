@@ -45,7 +45,16 @@ void add_triangle(Mesh& mesh) {
   mesh.triangles.emplace_back(n, n + 1, n + 2);
 }
 
-void read_binary(const Source& source, Mesh& mesh, std::vector<std::string>& warnings) {
+/// Facets may have a colour in their last two bytes, marked by bit 15 or by a colour of the whole in the
+/// header.
+bool is_colored(const Source& source, std::size_t facets) {
+  if (source.bytes.substr(0, 80).find("COLOR=") != std::string::npos) return true;
+  for (std::size_t i = 1; i <= facets; ++i)
+    if (static_cast<unsigned char>(source.bytes[header_bytes + facet_bytes * i - 1]) & 0x80u) return true;
+  return false;
+}
+
+void read_binary(const Source& source, Mesh& mesh, Model& model) {
   const std::size_t size = source.bytes.size(), facets = binary_facets(source);
   if (size < header_bytes)
     fail_at_byte(source, size, "neither 'solid' nor a binary STL's header of 84 bytes");
@@ -53,8 +62,9 @@ void read_binary(const Source& source, Mesh& mesh, std::vector<std::string>& war
   if (facets > room)
     fail_at_byte(source, 80, fmt::format("{} facets promised, but the file has room for {}", facets, room));
   if (facets < room)
-    warnings.push_back(
+    model.warnings.push_back(
         fmt::format("{} facets promised, but the file has room for {}: the rest is not read", facets, room));
+  if (is_colored(source, facets)) leave_unread(model, "colours of facets");
   mesh.positions.reserve(facets * 3);
   mesh.triangles.reserve(facets);
   for (std::size_t i = 0; i < facets; ++i) {
@@ -108,13 +118,14 @@ dvec3 read_ascii(const Source& source, Mesh& mesh) {
 
 }  // namespace
 
+// All readers have this signature: NOLINTNEXTLINE(performance-unnecessary-value-param)
 Model load_stl(Source source, const ModelOptions& options) {
   Model model;
   Mesh mesh;
   mesh.name = source.path.stem().string();
   dvec3 origin(0);
   if (is_binary(source))
-    read_binary(source, mesh, model.warnings);
+    read_binary(source, mesh, model);
   else
     origin = read_ascii(source, mesh);
   mesh.source_vertex_count = mesh.positions.size();

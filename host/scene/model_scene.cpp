@@ -21,8 +21,9 @@ json to_json(const Camera& camera) {
   json result = {{"position", to_json(camera.position)},
                  {"target", to_json(camera.target)},
                  {"up", to_json(camera.up)},
-                 {"fov", camera.fov},
                  {"near", camera.near}};
+  const bool parallel = camera.orthographic > 0;
+  result[parallel ? "orthographic" : "fov"] = parallel ? camera.orthographic : camera.fov;
   if (std::isfinite(camera.far)) result["far"] = camera.far;
   return result;
 }

@@ -5,6 +5,7 @@
 //   "Fake old"       a device that speaks OpenCL C 1.1, and one that is big-endian
 //   "Fake empty"     no device
 //   "Fake crashing"  a device that looks usable, and crashes in the first call that uses it
+// With the variable FAKE_DRIVER_GPU it has also "Fake GPU", a large GPU that looks usable.
 // With the variable FAKE_DRIVER_ABORTS it ends the process when it is asked for its platforms, with
 // FAKE_DRIVER_NEVER_ENDS its exit handler never comes back, with FAKE_DRIVER_TAKES_SIGNALS
 // it answers Ctrl-C itself. Its version ends in the value of CL_CONFIG_USE_VECTORIZER as it was when the
@@ -44,12 +45,14 @@ _cl_device_id no_compiler{&dispatch, "uncompiling", "OpenCL C 1.2", CL_FALSE, CL
 _cl_device_id old{&dispatch, "old", "OpenCL C 1.1", CL_TRUE, CL_TRUE};
 _cl_device_id big_endian{&dispatch, "backwards", "OpenCL C 1.2", CL_TRUE, CL_FALSE};
 _cl_device_id crashing{&dispatch, "crashing", "OpenCL C 1.2", CL_TRUE, CL_TRUE, CL_DEVICE_TYPE_CPU};
+_cl_device_id gpu{&dispatch, "large GPU", "OpenCL C 1.2", CL_TRUE, CL_TRUE};
 _cl_platform_id platforms[] = {
     {&dispatch, "Fake failing", CL_OUT_OF_HOST_MEMORY, {nullptr, nullptr}},
     {&dispatch, "Fake mute", CL_SUCCESS, {&nameless, &no_compiler}},
     {&dispatch, "Fake old", CL_SUCCESS, {&old, &big_endian}},
     {&dispatch, "Fake empty", CL_DEVICE_NOT_FOUND, {nullptr, nullptr}},
     {&dispatch, "Fake crashing", CL_SUCCESS, {&crashing, nullptr}},
+    {&dispatch, "Fake GPU", CL_SUCCESS, {&gpu, nullptr}},
 };
 
 /// Intel's driver reads it when it is loaded.
@@ -72,8 +75,9 @@ cl_int answer_text(const char* text, size_t room, void* to, size_t* needed) {
 
 cl_int CL_API_CALL get_platforms(cl_uint room, cl_platform_id* list, cl_uint* count) {
   if (std::getenv("FAKE_DRIVER_ABORTS")) std::abort();
-  if (count) *count = std::size(platforms);
-  for (cl_uint i = 0; list && i < std::min<cl_uint>(room, std::size(platforms)); ++i) list[i] = &platforms[i];
+  const cl_uint all = std::size(platforms) - (std::getenv("FAKE_DRIVER_GPU") ? 0 : 1);
+  if (count) *count = all;
+  for (cl_uint i = 0; list && i < std::min(room, all); ++i) list[i] = &platforms[i];
   return CL_SUCCESS;
 }
 
@@ -97,7 +101,7 @@ cl_int CL_API_CALL get_devices(cl_platform_id platform, cl_device_type, cl_uint 
 cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, size_t room, void* to,
                                size_t* needed) {
   const cl_ulong bytes = 1 << 20;
-  const cl_uint one = 1;
+  const cl_uint units = device == &gpu ? 1000 : 1;
   const size_t group = 64;
   const cl_bool yes = CL_TRUE;
   switch (what) {
@@ -116,7 +120,7 @@ cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, size_t 
     case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
       return answer(&bytes, sizeof bytes, room, to, needed);
     case CL_DEVICE_MAX_COMPUTE_UNITS:
-      return answer(&one, sizeof one, room, to, needed);
+      return answer(&units, sizeof units, room, to, needed);
     case CL_DEVICE_MAX_WORK_GROUP_SIZE:
       return answer(&group, sizeof group, room, to, needed);
     case CL_DEVICE_AVAILABLE:

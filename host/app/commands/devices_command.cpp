@@ -156,7 +156,7 @@ void add_devices(Arguments& root, Command& chosen) {
   Arguments* app = root.add_subcommand("devices", "List every OpenCL platform and device");
   app->add_flag("--json", *as_json, "as JSON");
   app->callback([as_json, &chosen] {
-    chosen = {.run = [as_json] { return list(*as_json); }, .in_first_thread = true};
+    chosen = {.run = [as_json] { return list(*as_json); }, .in_first_thread = true, .only_prints = true};
   });
 }
 

@@ -70,10 +70,11 @@ void add_formulas(Arguments& root, Command& chosen) {
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "as JSON");
   app->callback([json, &chosen] {
-    chosen = Command{[json] {
+    const auto print = [json] {
       fmt::print("{}", *json ? formulas_json() : formula_list_text());
       return static_cast<int>(exit_done);
-    }};
+    };
+    chosen = {.run = print, .only_prints = true};
   });
 }
 

@@ -115,7 +115,8 @@ void add_info(Arguments& root, Command& chosen) {
   outside_files(app, command->outside_files);
   app->add_flag("--json", command->json, "as JSON");
   app->callback([command, &chosen] {
-    chosen = {.run = [command] { return print_figures(*command); }, .in_first_thread = true};
+    chosen = {
+        .run = [command] { return print_figures(*command); }, .in_first_thread = true, .only_prints = true};
   });
 }
 

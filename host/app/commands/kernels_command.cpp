@@ -101,12 +101,13 @@ void add_kernels(Arguments& root, Command& chosen) {
       throw UsageError("kernels: --scene, --gpu and --out go together");
     if (c->lanes != 0 && c->lanes != 1 && c->lanes != 4 && c->lanes != 8 && c->lanes != 16)
       throw UsageError(fmt::format("--lanes: wanted 1, 4, 8 or 16, found {}", c->lanes));
-    chosen = Command{[c] {
+    const auto print = [c] {
       fmt::print("{}", !c->scene.empty() ? write_programs(*c)
                        : c->file.empty() ? list_text()
                                          : made_text(*c));
       return static_cast<int>(exit_done);
-    }};
+    };
+    chosen = {.run = print, .only_prints = true};
   });
 }
 

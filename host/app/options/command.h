@@ -16,6 +16,7 @@ struct Command {
   /// thread need more stack than the first thread has.
   bool in_first_thread = false;
   bool stops_on_signal = false;  // it creates a StopOnSignal: all threads block the signals
+  bool only_prints = false;      // it is refused if the standard output is closed
 };
 
 /// Declares a command below `root`; stores it in `chosen` if the command line names it.

@@ -66,7 +66,8 @@ Range limits_of(const char* kind, const char* key) {
 
 std::vector<std::string> tone_map_overrides(const PictureOptions& picture) {
   std::vector<std::string> all;
-  for (const auto& [key, value] : tone_values(picture).items())
+  const json values = tone_values(picture);
+  for (const auto& [key, value] : values.items())
     all.push_back(fmt::format("/image/tone_map/{}={}", key, value.dump()));
   return all;
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <utility>
 
@@ -35,6 +36,7 @@ bool read_lines(int stream, double seconds, const std::function<void(const std::
     if (::poll(&waited, 1, 200) <= 0) continue;
     std::array<char, 4096> part;
     const ssize_t size = ::read(stream, part.data(), part.size());
+    if (size < 0 && errno == EINTR) continue;
     if (size <= 0) return true;
     text.append(part.data(), static_cast<std::size_t>(size));
     take_lines(text, on_line);

@@ -1,4 +1,4 @@
-// Maps each exception type to its exit status, and names the option that avoids the error.
+// Maps each exception type to its exit status, and says how to avoid the error.
 #include "app/process/exit_status.h"
 
 #include <fmt/format.h>
@@ -28,8 +28,8 @@ void write_message(std::string message) {
   tell(fmt::format("sundog: {}\n", message));
 }
 
-/// The end of a message: the option that avoids the error.
-std::string option_for(Remedy remedy) {
+/// The end of a message: how to avoid the error.
+std::string mend_of(Remedy remedy) {
   switch (remedy) {
     case Remedy::none:
       break;
@@ -39,6 +39,19 @@ std::string option_for(Remedy remedy) {
       return " (--allow-native-code)";
     case Remedy::part:
       return " (--tiles)";
+    case Remedy::start_anew:
+      return "; remove it to start anew";
+    case Remedy::same_version:
+      return "; finish the frame with that version, or remove the file to start anew";
+    case Remedy::same_settings:
+      return ": give the settings that it was made with, or remove it to start anew";
+    case Remedy::in_passes:
+      return ": give the --time-limit, --noise-threshold, --adaptive or --subsample that it was made with, "
+             "or "
+             "remove it to start anew";
+    case Remedy::not_in_passes:
+      return ": leave out --time-limit, --noise-threshold, --adaptive and --subsample, or remove it to start "
+             "anew";
   }
   return "";
 }
@@ -68,11 +81,11 @@ int exit_status_of(const std::function<int()>& command, bool speaks) {
   try {
     return command();
   } catch (const UsageError& error) {
-    return fail(exit_usage, error.what());
+    return fail(exit_usage, error.what() + mend_of(error.remedy));
   } catch (const SettingError& error) {
-    return fail(exit_usage, error.what() + option_for(error.remedy));
+    return fail(exit_usage, error.what() + mend_of(error.remedy));
   } catch (const SceneError& error) {
-    return fail(exit_scene, error.what() + option_for(error.remedy));
+    return fail(exit_scene, error.what() + mend_of(error.remedy));
   } catch (const DeviceError& error) {
     return fail(exit_device, error.what());
   } catch (const BuildError& error) {

@@ -64,6 +64,10 @@ void open_standard_streams() {
   }
 }
 
+void require_standard_output() {
+  if (output_is_closed) throw UsageError("the standard output is closed: send it to a file or a pipe");
+}
+
 void flush_standard_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw IoError("the standard output cannot be written");
 }
@@ -82,7 +86,7 @@ void set_standard_input(std::string text) {
 }
 
 void claim_standard_output() {
-  if (output_is_closed) throw UsageError("-: the standard output is closed: send it to a file or a pipe");
+  require_standard_output();
   std::fflush(stdout);
   const int kept = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (kept < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)

@@ -13,6 +13,9 @@ class Faults;
 /// receives what is printed.
 void open_standard_streams();
 
+/// Throws UsageError if the standard output is closed.
+void require_standard_output();
+
 /// Throws IoError if anything printed so far could not be written.
 void flush_standard_output();
 

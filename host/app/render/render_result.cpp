@@ -10,6 +10,7 @@
 #include <map>
 
 #include "app/job/job.h"
+#include "app/options/option_values.h"
 #include "app/options/output_files.h"
 #include "app/process/exit_status.h"
 #include "app/process/standard_streams.h"
@@ -196,7 +197,7 @@ std::vector<std::string> warnings_of(const SceneDescription& scene, const Render
       if (std::ranges::count(all, note) == 0) all.push_back(note);
   }
   if (const std::string& left = result.checkpoint_left; !left.empty())
-    all.push_back(left.substr(0, left.find("; remove")) + "; the frame began anew");
+    all.push_back(left + "; the frame began anew");
   return all;
 }
 

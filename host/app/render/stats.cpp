@@ -10,6 +10,7 @@
 
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
+#include "bench/runs/energy.h"
 #include "render/film/sampling_report.h"
 #include "scene/integrators.h"
 
@@ -121,13 +122,6 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-json energy_json(const TimeLedger& times) {
-  const bool known = times.joules >= 0;
-  return {{"joules", known ? json(times.joules) : json()},
-          {"watts", known && times.frame > 0 ? json(times.joules / times.frame) : json()},
-          {"counted_by", times.joules_by}};
-}
-
 std::string work_group_text(const KernelTimes& times) {
   return times.local_x > 0 ? fmt::format("{}x{}", times.local_x, times.local_y) : "chosen by the driver";
 }
@@ -142,7 +136,6 @@ std::string device_text(const DeviceReport& report) {
     text += ", not ready before the end";
   if (report.retired) text += ", retired";
   text += "\n";
-  for (const std::string& note : report.notes) text += fmt::format("    {}\n", note);
   for (const auto& [name, kernel] : report.kernels)
     text += fmt::format("    {:<20} {:6} launches {:10.1f} ms  work-group {}\n", name, kernel.launches,
                         kernel.device_ms > 0 ? kernel.device_ms : kernel.host_ms, work_group_text(kernel));
@@ -173,7 +166,7 @@ json stats_json(const RenderCommand& command, const SceneDescription& scene, con
           {"rays", rays_json(result.counts)},
           {"counters", counters_json(result.counts)},
           {"kernels_cached", times.render.cached},
-          {"energy", energy_json(times)},
+          {"energy", energy_json(times.joules, times.frame, times.joules_by)},
           {"draft_pictures", times.draft_pictures},
           {"peak_memory", peak_memory()}};
 }

@@ -180,7 +180,11 @@ void Studio::dispatch(ClientId client, const json& message) {
   if (what == "stop") return session_.cancel();
   if (what == "draw") return begin_drawing();
   if (what == "open") {
-    document_.open(file_below(setup_.folder, text_of(message, "file")));
+    try {
+      document_.open(file_below(setup_.folder, text_of(message, "file")));
+    } catch (const SceneError& error) {
+      throw UsageError(error.what());  // its place is not one of the scene on the page
+    }
     begin_drawing();
     return tell_scene();
   }

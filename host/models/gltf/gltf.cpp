@@ -9,7 +9,6 @@
 #include <numbers>
 #include <set>
 
-#include "base/json_memory.h"
 #include "models/gltf/gltf_animations.h"
 #include "models/gltf/gltf_layers.h"
 #include "models/gltf/gltf_meshes.h"
@@ -24,6 +23,7 @@ struct Node {
   std::string name, pointer;
   NodePose rest;
   dmat4 local{1};
+  std::vector<double> weights;  // as in NodePose
   std::vector<std::size_t> children;
   std::optional<std::size_t> mesh, camera, light, parent, skin;
   std::vector<dmat4> instances;  // EXT_mesh_gpu_instancing
@@ -104,18 +104,21 @@ class GltfReader {
 
   /// Moves the model from read() to a time of the animations.
   void pose(const Playing& playing, Model& model) {
-    if (!animations_) animations_.emplace(root_, accessors_, nodes_.size());
+    if (!animations_) animations_.emplace(root_, accessors_, targets_by_node());
     if (playing.animation.empty() && animations_->compete())
       model.warnings.emplace_back(
           "several animations move the same nodes: the first of the file counts; \"animation\" names one");
     std::vector<NodePose> poses;
     for (const Node& node : nodes_) poses.push_back(node.rest);
     animations_->move(playing, poses);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].local = matrix_of(poses[i]);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      nodes_[i].local = matrix_of(poses[i]);
+      nodes_[i].weights = std::move(poses[i].weights);
+    }
     model.duration = animations_->last();
     model_ = &model;
     worlds_.clear();
-    meshes_.skin_anew();
+    meshes_.deform_anew();
     model.objects.clear(), model.lights.clear(), model.camera.reset();
     walk(scene_roots());
   }
@@ -126,6 +129,13 @@ class GltfReader {
     skins_ = root_.list("skins");
     nodes_.resize(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) read_node(all[i], nodes_[i]);
+    const std::set<std::size_t> moved = nodes_with_moving_weights(root_.json());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      Node& node = nodes_[i];
+      if (moved.contains(i) && node.mesh && node.rest.weights.empty())
+        node.rest.weights = meshes_.weights(*node.mesh);
+      node.weights = node.rest.weights;
+    }
     for (std::size_t i = 0; i < all.size(); ++i)
       for (const JsonAt& at : all[i].list("children")) {
         const std::size_t child = at.index(nodes_.size(), "node");
@@ -141,6 +151,8 @@ class GltfReader {
     node.rest = read_pose(at);
     node.local = matrix_of(node.rest);
     if (const auto mesh = at.find("mesh")) node.mesh = mesh->index(meshes_.count(), "mesh");
+    if (const auto weights = at.find("weights"); weights && node.mesh)
+      node.rest.weights = weights->numbers(meshes_.weights(*node.mesh).size());
     if (const auto skin = at.find("skin")) node.skin = skin->index(skins_.size(), "skin");
     if (const auto camera = at.find("camera")) node.camera = camera->index(cameras_.size(), "camera");
     if (const auto light = at.extension("KHR_lights_punctual"))
@@ -222,26 +234,33 @@ class GltfReader {
       open.pop_back();
       const Node& node = nodes_[visit.node];
       const dmat4 world = visit.parent * node.local;
-      add_node(node, world);
+      add_node(visit.node, world);
       for (std::size_t i = node.children.size(); i-- > 0;) open.push_back({node.children[i], world});
     }
   }
 
-  void add_node(const Node& node, const dmat4& world) {
+  void add_node(std::size_t index, const dmat4& world) {
+    const Node& node = nodes_[index];
     if (node.camera) add_camera(node, world);
     if (node.light) add_light(node, world);
     if (!node.mesh) return;
-    if (node.skin && !node.instanced && meshes_.has_joints(*node.mesh)) return add_skinned(node);
-    const int mesh = meshes_.use(*node.mesh, *model_);
+    const bool skinned = node.skin && !node.instanced && meshes_.has_joints(*node.mesh);
+    Deformed which{.mesh = *node.mesh};
+    if (skinned) which.skin = node.skin;
+    if (!node.weights.empty()) which.node = index;
+    const Deformation deformation{node.weights, skinned ? joints_of(*node.skin) : std::vector<dmat4>()};
+    const int mesh = which.skin || which.node ? meshes_.use_deformed(which, deformation, *model_)
+                                              : meshes_.use(*node.mesh, *model_);
     if (mesh < 0) return;
-    if (!node.instanced) return add_object(node, mesh, world);
+    // The joints place a mesh with a skin; its node's transform is ignored.
+    if (!node.instanced) return add_object(node, mesh, skinned ? dmat4(1) : world);
     for (const dmat4& instance : node.instances) add_object(node, mesh, world * instance);
   }
 
-  // A mesh with a skin is placed by the joints; its node's transform is ignored.
-  void add_skinned(const Node& node) {
-    const int mesh = meshes_.use_skinned(*node.mesh, *node.skin, joints_of(*node.skin), *model_);
-    if (mesh >= 0) add_object(node, mesh, dmat4(1));
+  std::vector<std::size_t> targets_by_node() const {
+    std::vector<std::size_t> targets;
+    for (const Node& node : nodes_) targets.push_back(node.mesh ? meshes_.weights(*node.mesh).size() : 0);
+    return targets;
   }
 
   // Matrices from the bind pose to the world, for the file's node transforms.
@@ -297,14 +316,19 @@ class GltfReader {
 
   void add_camera(const Node& node, const dmat4& world) {
     const GltfCamera& from = cameras_[*node.camera];
-    if (!from.perspective || from.fov >= std::numbers::pi || is_singular(world))
-      return leave_unread(*model_, "cameras that are not perspective");
+    const bool parallel = from.height >= 1e-9 && from.height <= 1e15,  // as in scenes
+        perspective = from.fov > 0 && from.fov < std::numbers::pi;
+    if ((!parallel && !perspective) || is_singular(world))
+      return leave_unread(*model_, "cameras that are neither perspective nor orthographic");
     if (model_->camera) return;
     Camera camera;
     camera.position = dvec3(world[3]);
     camera.target = camera.position - glm::normalize(dvec3(world[2]));
     camera.up = glm::normalize(dvec3(world[1]));
-    camera.fov = glm::degrees(from.fov);
+    if (parallel)
+      camera.orthographic = from.height;
+    else
+      camera.fov = glm::degrees(from.fov);
     camera.near = from.near;
     camera.far = from.far;
     model_->camera = camera;
@@ -333,24 +357,6 @@ class GltfReader {
   Model* model_ = nullptr;
 };
 
-nlohmann::json parse(const Source& source, std::string_view text) {
-  check_json_memory(text, source.path);
-  try {
-    return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& error) {
-    const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
-    std::string what = error.what();
-    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may cut a character
-      const std::size_t rest = what.rfind("; expected ");
-      what.erase(read, rest == what.npos || rest < read ? what.npos : rest - read);
-    }
-    const std::size_t name_end = what.find("] ");  // "[json.exception.parse_error.101] ..."
-    const auto offset = static_cast<std::size_t>(text.data() - source.bytes.data());
-    fail(source, syntax ? fmt::format("byte {}", offset + syntax->byte) : "",
-         fmt::format("not valid JSON: {}", what.substr(name_end == what.npos ? 0 : name_end + 2)));
-  }
-}
-
 }  // namespace
 
 Model load_gltf(Source from, const ModelOptions& options) {
@@ -364,7 +370,7 @@ Model load_gltf(Source from, const ModelOptions& options) {
   file->source = std::move(from);
   const Source& source = file->source;
   file->container = open_container(source);
-  file->json = parse(source, file->container.json);
+  file->json = parse_json(source, file->container.json);
   const JsonAt root(source, file->json, "");
   note_files(source, root);
   const std::string version = root.member("asset").member("version").text();

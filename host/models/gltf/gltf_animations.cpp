@@ -8,14 +8,13 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 namespace sundog::models {
 namespace {
 
-glm::dquat quaternion(const glm::dvec4& v) {
-  return unit_quaternion(v.x, v.y, v.z, v.w).value_or(glm::dquat(1, 0, 0, 0));
+glm::dquat quaternion(const std::vector<double>& v) {
+  return unit_quaternion(v[0], v[1], v[2], v[3]).value_or(glm::dquat(1, 0, 0, 0));
 }
 
 /// The index of an accessor of this type, with floats or, if `normalized`, normalised integers.
@@ -49,31 +48,50 @@ std::vector<std::string> animation_names(const nlohmann::json& document) {
   return names;
 }
 
-GltfAnimations::GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std::size_t nodes) {
+std::set<std::size_t> nodes_with_moving_weights(const nlohmann::json& document) {
+  const nlohmann::json none;
+  const auto member = [&](const nlohmann::json& value, const char* key) -> const nlohmann::json& {
+    const auto found = value.find(key);
+    return found == value.end() ? none : *found;
+  };
+  std::set<std::size_t> nodes;
+  for (const nlohmann::json& animation : member(document, "animations"))
+    for (const nlohmann::json& channel : member(animation, "channels"))
+      if (const auto& target = member(channel, "target"); member(target, "path") == "weights")
+        if (const auto& node = member(target, "node"); node.is_number_unsigned())
+          nodes.insert(node.get<std::size_t>());
+  return nodes;
+}
+
+GltfAnimations::GltfAnimations(const JsonAt& root, GltfAccessors& accessors,
+                               const std::vector<std::size_t>& targets) {
   for (const JsonAt& at : root.list("animations")) {
     Animation& animation = animations_.emplace_back();
     const std::string name = at.text("name");
     animation.name = name.empty() ? std::to_string(animations_.size() - 1) : name;
     const std::vector<JsonAt> samplers = at.list("samplers");
     for (const JsonAt& channel : at.list("channels"))
-      if (const auto read = read_channel(channel, samplers, accessors, nodes))
+      if (const auto read = read_channel(channel, samplers, accessors, targets))
         animation.channels.push_back(*read);
   }
 }
 
-/// Nothing for a target without a node, which an extension may have, and for morph weights.
+/// Nothing for a target without a node, which an extension may have, and for weights of no morph targets.
 std::optional<GltfAnimations::Channel> GltfAnimations::read_channel(const JsonAt& at,
                                                                     const std::vector<JsonAt>& samplers,
                                                                     GltfAccessors& accessors,
-                                                                    std::size_t nodes) {
+                                                                    const std::vector<std::size_t>& targets) {
   const JsonAt target = at.member("target");
   const auto node = target.find("node");
   const std::string path = target.member("path").text();
-  if (!node || path == "weights") return std::nullopt;
+  if (!node) return std::nullopt;
   Channel channel;
-  channel.node = node->index(nodes, "node");
+  channel.node = node->index(targets.size(), "node");
+  if (path == "weights" && targets[channel.node] == 0) return std::nullopt;
   if (path == "rotation")
-    channel.path = Path::rotation;
+    channel.path = Path::rotation, channel.components = 4;
+  else if (path == "weights")
+    channel.path = Path::weights, channel.components = targets[channel.node];
   else if (path == "scale")
     channel.path = Path::scale;
   else if (path != "translation")
@@ -91,41 +109,44 @@ void GltfAnimations::read_sampler(const JsonAt& at, GltfAccessors& accessors, Ch
   else if (!between.empty() && between != "LINEAR")
     at.member("interpolation").fail("LINEAR, STEP or CUBICSPLINE wanted");
   const JsonAt input = at.member("input"), output = at.member("output");
-  const bool turns = channel.path == Path::rotation;
+  const bool turns = channel.path == Path::rotation, morphs = channel.path == Path::weights;
+  const char* type = turns ? "VEC4" : morphs ? "SCALAR" : "VEC3";
   channel.times = &accessors.numbers(accessor_of(input, accessors, "SCALAR", false));
-  channel.values = &accessors.numbers(accessor_of(output, accessors, turns ? "VEC4" : "VEC3", turns));
+  channel.values = &accessors.numbers(accessor_of(output, accessors, type, turns || morphs));
   const std::vector<float>& times = *channel.times;
   if (times.empty()) input.fail("one key or more wanted");
   if (!std::ranges::is_sorted(times)) input.fail("times that rise wanted");
-  const std::size_t wanted = times.size() * (channel.between == Between::cubic ? 3 : 1);
-  if (const std::size_t found = channel.values->size() / channel.components(); found != wanted)
+  const std::size_t each = morphs ? channel.components : 1;
+  const std::size_t wanted = each * times.size() * (channel.between == Between::cubic ? 3 : 1);
+  if (const std::size_t found = each * channel.values->size() / channel.components; found != wanted)
     output.fail(fmt::format("{} values for {} keys: {} wanted", found, times.size(), wanted));
 }
 
 /// `part`: of a cubic key 0 is the slope before it, 1 its value, 2 the slope after it.
-glm::dvec4 GltfAnimations::Channel::value(std::size_t key, std::size_t part) const {
-  glm::dvec4 result(0);
-  const std::size_t n = components(), first = n * (between == Between::cubic ? 3 * key + part : key);
-  for (std::size_t c = 0; c < n; ++c) result[static_cast<int>(c)] = static_cast<double>((*values)[first + c]);
-  return result;
+double GltfAnimations::Channel::value(std::size_t key, std::size_t part, std::size_t component) const {
+  const std::size_t element = between == Between::cubic ? 3 * key + part : key;
+  return static_cast<double>((*values)[components * element + component]);
 }
 
-glm::dvec4 GltfAnimations::Channel::at(double seconds) const {
+std::vector<double> GltfAnimations::Channel::at(double seconds) const {
   const auto after = std::ranges::upper_bound(*times, seconds, {}, [](float t) -> double { return t; });
-  if (after == times->begin()) return value(0, 1);
-  const auto key = static_cast<std::size_t>(after - times->begin()) - 1;
-  const glm::dvec4 from = value(key, 1);
-  if (after == times->end() || between == Between::step) return from;
+  const auto key = static_cast<std::size_t>(std::max(after - times->begin(), std::ptrdiff_t{1})) - 1;
+  std::vector<double> from(components), to(components);
+  for (std::size_t c = 0; c < components; ++c) from[c] = value(key, 1, c);
+  if (after == times->begin() || after == times->end() || between == Between::step) return from;
   const double start = (*times)[key], length = *after - start, s = (seconds - start) / length;
-  const glm::dvec4 to = value(key + 1, 1);
-  if (between == Between::cubic) {
-    const double s2 = s * s, s3 = s2 * s;
-    return (2 * s3 - 3 * s2 + 1) * from + length * (s3 - 2 * s2 + s) * value(key, 2) +
-           (3 * s2 - 2 * s3) * to + length * (s3 - s2) * value(key + 1, 0);
+  for (std::size_t c = 0; c < components; ++c) to[c] = value(key + 1, 1, c);
+  if (path == Path::rotation && between == Between::linear) {
+    const glm::dquat turned = glm::slerp(quaternion(from), quaternion(to), s);  // the shorter way
+    return {turned.x, turned.y, turned.z, turned.w};
   }
-  if (path != Path::rotation) return from + s * (to - from);
-  const glm::dquat turned = glm::slerp(quaternion(from), quaternion(to), s);  // the shorter way
-  return {turned.x, turned.y, turned.z, turned.w};
+  const double s2 = s * s, s3 = s2 * s;
+  for (std::size_t c = 0; c < components; ++c)
+    from[c] = between == Between::linear
+                  ? from[c] + s * (to[c] - from[c])
+                  : (2 * s3 - 3 * s2 + 1) * from[c] + length * (s3 - 2 * s2 + s) * value(key, 2, c) +
+                        (3 * s2 - 2 * s3) * to[c] + length * (s3 - s2) * value(key + 1, 0, c);
+  return from;
 }
 
 double GltfAnimations::time_of(const Playing& playing) const {
@@ -147,12 +168,16 @@ void GltfAnimations::move(const Playing& playing, std::vector<NodePose>& nodes) 
     if (!playing.animation.empty() && animations_[i].name != playing.animation) continue;
     for (const Channel& channel : animations_[i].channels) {
       NodePose& node = nodes[channel.node];
-      const glm::dvec4 value = channel.at(seconds);
+      const std::vector<double> value = channel.at(seconds);
+      if (channel.path == Path::weights) {
+        node.weights = value;
+        continue;
+      }
       node.matrix.reset();
       if (channel.path == Path::rotation)
         node.rotation = quaternion(value);
       else
-        (channel.path == Path::scale ? node.scale : node.translation) = dvec3(value);
+        (channel.path == Path::scale ? node.scale : node.translation) = {value[0], value[1], value[2]};
     }
   }
 }

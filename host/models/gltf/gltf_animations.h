@@ -2,6 +2,7 @@
 #pragma once
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct NodePose {
   dvec3 translation{0};
   glm::dquat rotation{1, 0, 0, 0};
   dvec3 scale{1};
+  std::vector<double> weights;  // of its mesh's morph targets; empty: the mesh's own
 };
 
 /// The normalised quaternion; nothing for 0.
@@ -24,10 +26,13 @@ std::optional<glm::dquat> unit_quaternion(double x, double y, double z, double w
 /// The names of the document's animations; an unnamed animation gets its index. Reads nothing else.
 std::vector<std::string> animation_names(const nlohmann::json& document);
 
+/// The nodes whose morph weights an animation moves. Passes by what is malformed.
+std::set<std::size_t> nodes_with_moving_weights(const nlohmann::json& document);
+
 class GltfAnimations {
  public:
-  /// Reads and checks all animations; ignores those of morph weights. Throws SceneError.
-  GltfAnimations(const JsonAt& root, GltfAccessors& accessors, std::size_t nodes);
+  /// Reads and checks all animations; `targets` has the number of morph targets by node. Throws SceneError.
+  GltfAnimations(const JsonAt& root, GltfAccessors& accessors, const std::vector<std::size_t>& targets);
 
   /// Sets the nodes' poses at a time. If several animations move the same value of a node, the first one
   /// wins.
@@ -38,23 +43,24 @@ class GltfAnimations {
   bool compete() const;
 
  private:
-  enum class Path { translation, rotation, scale };
+  enum class Path { translation, rotation, scale, weights };
   enum class Between { linear, step, cubic };
   struct Channel {
     std::size_t node = 0;
     Path path = Path::translation;
     Between between = Between::linear;
     const std::vector<float>*times = nullptr, *values = nullptr;  // of the accessors
-    std::size_t components() const { return path == Path::rotation ? 4 : 3; }
-    glm::dvec4 value(std::size_t key, std::size_t part) const;
-    glm::dvec4 at(double seconds) const;
+    std::size_t components = 3;
+    double value(std::size_t key, std::size_t part, std::size_t component) const;
+    std::vector<double> at(double seconds) const;
   };
   struct Animation {
     std::string name;
     std::vector<Channel> channels;
   };
   static std::optional<Channel> read_channel(const JsonAt& at, const std::vector<JsonAt>& samplers,
-                                             GltfAccessors& accessors, std::size_t nodes);
+                                             GltfAccessors& accessors,
+                                             const std::vector<std::size_t>& targets);
   static void read_sampler(const JsonAt& at, GltfAccessors& accessors, Channel& channel);
   double time_of(const Playing& playing) const;
 

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_memory.h"
+#include "models/readers.h"
+
 namespace sundog::models {
 namespace {
 
@@ -127,6 +130,24 @@ glm::dvec3 JsonAt::vector(const char* key, glm::dvec3 otherwise, Range range) co
   if (!found) return otherwise;
   const std::vector<double> values = found->numbers(3, range);
   return {values[0], values[1], values[2]};
+}
+
+nlohmann::json parse_json(const Source& source, std::string_view text) {
+  check_json_memory(text, source.path);
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& error) {
+    const auto* syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error);
+    std::string what = error.what();
+    if (const std::size_t read = what.find("; last read: "); read != what.npos) {  // may cut a character
+      const std::size_t rest = what.rfind("; expected ");
+      what.erase(read, rest == what.npos || rest < read ? what.npos : rest - read);
+    }
+    const std::size_t name_end = what.find("] ");  // "[json.exception.parse_error.101] ..."
+    const auto offset = static_cast<std::size_t>(text.data() - source.bytes.data());
+    fail(source, syntax ? fmt::format("byte {}", offset + syntax->byte) : "",
+         fmt::format("not valid JSON: {}", what.substr(name_end == what.npos ? 0 : name_end + 2)));
+  }
 }
 
 }  // namespace sundog::models

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -21,6 +22,9 @@ struct Range {
 inline constexpr Range unit_range{0, 1, false};
 inline constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range not_negative{0, std::numeric_limits<double>::infinity(), false};
+
+/// The JSON of a file, of which `text` is a part. Throws SceneError.
+nlohmann::json parse_json(const Source& source, std::string_view text);
 
 /// Accessors throw SceneError if the value has another type. Value and source must outlive it.
 class JsonAt {
@@ -46,6 +50,7 @@ class JsonAt {
   std::vector<double> numbers(std::size_t count, Range range = {}) const;
   glm::dvec3 vector(const char* key, glm::dvec3 otherwise, Range range = {}) const;
 
+  const nlohmann::json& json() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
   [[noreturn]] void fail(const std::string& what, Remedy remedy = Remedy::none) const;
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "models/gltf/gltf_skins.h"
+#include "models/gltf/gltf_deform.h"
 #include "models/normals.h"
 
 namespace sundog::models {
@@ -22,17 +22,22 @@ struct AttributeRule {
   std::string_view name, type, other_type;
   bool normalized_integers;
 };
-constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},  {"NORMAL", "VEC3", "VEC3", false},
-                                   {"TANGENT", "VEC4", "VEC4", false},   {"TEXCOORD_0", "VEC2", "VEC2", true},
-                                   {"TEXCOORD_1", "VEC2", "VEC2", true}, {"TEXCOORD_2", "VEC2", "VEC2", true},
-                                   {"TEXCOORD_3", "VEC2", "VEC2", true}, {"COLOR_0", "VEC3", "VEC4", true}};
+constexpr AttributeRule rules[] = {{"POSITION", "VEC3", "VEC3", false},
+                                   {"NORMAL", "VEC3", "VEC3", false},
+                                   {"TANGENT", "VEC4", "VEC4", false},
+                                   {"TEXCOORD_0", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_1", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_2", "VEC2", "VEC2", true},
+                                   {"TEXCOORD_3", "VEC2", "VEC2", true},
+                                   {"COLOR_0", "VEC3", "VEC4", true},
+                                   {"TANGENT of a target", "VEC3", "VEC3", false}};
 
 // KHR_mesh_quantization also allows 8- and 16-bit integers; for normals, signed normalised ones.
 bool fits_quantized(std::string_view name, const Accessor& accessor) {
   const std::uint64_t component = accessor.dense.component;
   const bool is_signed = component == component_byte || component == component_short;
   const bool is_unsigned = component == component_unsigned_byte || component == component_unsigned_short;
-  if (name == "NORMAL" || name == "TANGENT") return is_signed && accessor.normalized;
+  if (name == "NORMAL" || name.starts_with("TANGENT")) return is_signed && accessor.normalized;
   return (name == "POSITION" || name.starts_with("TEXCOORD_")) && (is_signed || is_unsigned);
 }
 
@@ -83,17 +88,44 @@ GltfMeshes::GltfMeshes(const JsonAt& root, GltfAccessors& accessors, GltfMateria
     entry.name = at.text("name");
     for (const JsonAt& primitive : at.member("primitives").elements())
       entry.primitives.push_back(read_primitive(primitive));
+    entry.weights = read_weights(at, entry);
     meshes_.push_back(std::move(entry));
   }
 }
 
-std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, const char* name) const {
+std::vector<double> GltfMeshes::read_weights(const JsonAt& at, const Entry& entry) {
+  const std::size_t targets = entry.primitives.empty() ? 0 : entry.primitives[0].targets.size();
+  for (const Primitive& primitive : entry.primitives)
+    if (primitive.targets.size() != targets)
+      at.fail(fmt::format("primitives of {} and of {} morph targets", targets, primitive.targets.size()));
+  const auto weights = at.find("weights");
+  return weights ? weights->numbers(targets) : std::vector<double>(targets, 0);
+}
+
+std::vector<GltfMeshes::Target> GltfMeshes::read_targets(const JsonAt& at, const Primitive& primitive) const {
+  std::vector<Target> targets;
+  for (const JsonAt& target : at.list("targets")) {
+    targets.push_back({read_attribute(target, "POSITION"), read_attribute(target, "NORMAL"),
+                       read_attribute(target, "TANGENT", "TANGENT of a target")});
+    for (const auto& changes : {targets.back().position, targets.back().normal, targets.back().tangent})
+      if (changes && primitive.position)
+        if (const std::size_t count = accessors_.all()[*changes].dense.count,
+            wanted = accessors_.all()[*primitive.position].dense.count;
+            count != wanted)
+          target.fail(fmt::format("a morph target of {} elements for {} positions", count, wanted));
+  }
+  return targets;
+}
+
+/// `name_of_rule`: where it is not the attribute's name.
+std::optional<std::size_t> GltfMeshes::read_attribute(const JsonAt& attributes, const char* name,
+                                                      std::string_view name_of_rule) const {
   const auto found = attributes.find(name);
   if (!found) return std::nullopt;
   const std::size_t index = found->index(accessors_.all().size(), "accessor");
   const Accessor& accessor = accessors_.all()[index];
   for (const AttributeRule& rule : rules)
-    if (rule.name == name && !fits(rule, accessor, quantized_))
+    if (rule.name == (name_of_rule.empty() ? name : name_of_rule) && !fits(rule, accessor, quantized_))
       found->fail(fmt::format("accessor {} is a {} of type {}: {} of floats{} wanted", index, accessor.type,
                               accessor.dense.component, rule.type,
                               rule.normalized_integers ? " or normalised unsigned integers" : ""));
@@ -150,12 +182,13 @@ GltfMeshes::Primitive GltfMeshes::read_primitive(const JsonAt& at) const {
   const auto material = at.find("material");
   p.material = material ? material->index(materials_.count() - 1, "material") : materials_.count() - 1;
   if (const auto mode = at.find("mode")) p.mode = mode->integer(0, 6);
+  p.targets = read_targets(at, p);
   return p;
 }
 
-int GltfMeshes::add(std::size_t index, const std::vector<dmat4>& joints, Model& model) {
+int GltfMeshes::add(std::size_t index, const Deformation& deformation, Model& model) {
   of_no_number_ = 0;
-  Mesh mesh = build(meshes_.at(index), joints, model);
+  Mesh mesh = build(meshes_.at(index), deformation, model);
   if (of_no_number_ > 0)
     model.warnings.push_back(
         fmt::format("/meshes/{}: {} attributes of vertices are no numbers: normals are made up, other "
@@ -177,33 +210,34 @@ bool GltfMeshes::has_joints(std::size_t index) const {
                              [](const Primitive& p) { return p.joints && p.weights; });
 }
 
-int GltfMeshes::use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints,
-                            Model& model) {
-  Skinned& skinned = skinned_[{index, skin}];
-  if (!skinned.done && skinned.mesh < 0) skinned.mesh = add(index, joints, model);
-  if (const auto at = static_cast<std::size_t>(skinned.mesh); !skinned.done && skinned.mesh >= 0) {
-    model.meshes[at] = build(meshes_.at(index), joints, model);
+int GltfMeshes::use_deformed(const Deformed& which, const Deformation& deformation, Model& model) {
+  Added& added = deformed_[which];
+  if (!added.done && added.mesh < 0) added.mesh = add(which.mesh, deformation, model);
+  if (const auto at = static_cast<std::size_t>(added.mesh); !added.done && added.mesh >= 0) {
+    model.meshes[at] = build(meshes_.at(which.mesh), deformation, model);
     if (at < model.origins.size()) model.origins[at] = dvec3(0);
   }
-  skinned.done = true;
-  return skinned.mesh;
+  added.done = true;
+  return added.mesh;
 }
 
-void GltfMeshes::skin_anew() {
+void GltfMeshes::deform_anew() {
   accessors_.forget_spent();
-  for (auto& [key, skinned] : skinned_) skinned.done = false;
+  for (auto& [which, added] : deformed_) added.done = false;
 }
 
-Mesh GltfMeshes::build(const Entry& entry, const std::vector<dmat4>& joints, Model& model) {
+Mesh GltfMeshes::build(const Entry& entry, const Deformation& deformation, Model& model) {
   Mesh mesh;
   mesh.name = entry.name;
+  Deformation shape = deformation;
+  if (shape.weights.empty()) shape.weights = entry.weights;
   bool any_color = false, any_tangent = false;
   std::vector<bool> any_uv(most_uv_sets, false);
   mesh.further_uvs.resize(most_uv_sets - 1);
   std::vector<bool> has_normal;
   for (const Primitive& primitive : entry.primitives) {
     if (!primitive.position || primitive.mode < 4) continue;
-    append(primitive, joints, model, mesh, has_normal);
+    append(primitive, shape, model, mesh, has_normal);
     for (std::size_t set = 0; set < most_uv_sets; ++set) any_uv[set] = any_uv[set] || primitive.uvs[set];
     any_color = any_color || primitive.color;
     any_tangent = any_tangent || (primitive.normal && primitive.tangent);
@@ -277,9 +311,34 @@ void GltfMeshes::append_uvs(const Primitive& primitive, const std::vector<std::u
   }
 }
 
+// Targets first, joints after them.
+void GltfMeshes::deform(const Primitive& primitive, const Deformation& deformation,
+                        const std::vector<std::uint32_t>& used, std::size_t first, Mesh& mesh) {
+  const auto floats = [&](const std::optional<std::size_t>& accessor) {
+    return accessor ? &accessors_.floats(*accessor) : nullptr;
+  };
+  for (std::size_t i = 0; i < primitive.targets.size(); ++i) {
+    const auto weight = static_cast<float>(deformation.weights[i]);
+    if (weight == 0) continue;
+    const Target& target = primitive.targets[i];
+    TargetChanges changes{.positions = floats(target.position)};
+    if (primitive.normal) changes.normals = floats(target.normal);
+    if (primitive.normal && primitive.tangent) changes.tangents = floats(target.tangent);
+    move_by_target(weight, changes, used, first, mesh);
+  }
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!is_finite(mesh.positions[first + i]))
+      accessors_.fail_at(accessors_.all()[*primitive.position],
+                         fmt::format("vertex {} is not finite", used[i]));
+  if (!deformation.joints.empty() && primitive.joints && primitive.weights)
+    move_by_joints(deformation.joints,
+                   {accessors_.floats(*primitive.joints), accessors_.floats(*primitive.weights)}, used, first,
+                   mesh);
+}
+
 // Copies only the attribute elements that the triangles use: primitives often share accessors.
-void GltfMeshes::append(const Primitive& primitive, const std::vector<dmat4>& joints, Model& model,
-                        Mesh& mesh, std::vector<bool>& has_normal) {
+void GltfMeshes::append(const Primitive& primitive, const Deformation& deformation, Model& model, Mesh& mesh,
+                        std::vector<bool>& has_normal) {
   const std::vector<float>& positions = accessors_.floats(*primitive.position);
   std::vector<glm::uvec3> triangles = triangles_of(primitive.mode, vertex_numbers(primitive));
   if (triangles.empty()) return;
@@ -296,8 +355,6 @@ void GltfMeshes::append(const Primitive& primitive, const std::vector<dmat4>& jo
   bool fades = false;
   for (const std::uint32_t v : used) {
     mesh.positions.push_back(element<glm::vec3>(positions, 3, v));
-    if (!is_finite(mesh.positions.back()))
-      accessors_.fail_at(accessors_.all()[*primitive.position], fmt::format("vertex {} is not finite", v));
     mesh.normals.push_back(primitive.normal ? number_or(normals, 3, v, glm::vec3(0)) : glm::vec3(0));
     mesh.colors.push_back(primitive.color ? number_or(colors, channels, v, glm::vec3(1)) : glm::vec3(1));
     mesh.alphas.push_back(channels == 4 && std::isfinite(colors[4 * v + 3]) ? colors[4 * v + 3] : 1.0f);
@@ -306,9 +363,7 @@ void GltfMeshes::append(const Primitive& primitive, const std::vector<dmat4>& jo
   }
   append_tangents(primitive, used, mesh);
   append_uvs(primitive, used, mesh);
-  if (!joints.empty() && primitive.joints && primitive.weights)
-    move_by_joints(joints, {accessors_.floats(*primitive.joints), accessors_.floats(*primitive.weights)},
-                   used, first, mesh);
+  deform(primitive, deformation, used, first, mesh);
   const auto place = [&](std::uint32_t v) {
     return first + static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
   };

@@ -3,7 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "models/gltf/gltf_accessors.h"
@@ -11,6 +11,19 @@
 #include "models/model.h"
 
 namespace sundog::models {
+
+/// How a node shapes its mesh.
+struct Deformation {
+  std::vector<double> weights;  // of the morph targets; empty: the mesh's own
+  std::vector<dmat4> joints;    // from the bind pose to the world; empty: no skin
+};
+
+/// Whose deformation of a mesh it is: all nodes of a skin share one, unless they have weights of their own.
+struct Deformed {
+  std::size_t mesh = 0;
+  std::optional<std::size_t> skin{}, node{};
+  auto operator<=>(const Deformed&) const = default;
+};
 
 class GltfMeshes {
  public:
@@ -23,30 +36,40 @@ class GltfMeshes {
   int use(std::size_t index, Model& model);
   /// Whether the mesh's vertices have joints, which then replace its node's transform.
   bool has_joints(std::size_t index) const;
-  /// use() for the mesh as `skin` deforms it, in world space; `joints` are world matrices.
-  int use_skinned(std::size_t index, std::size_t skin, const std::vector<dmat4>& joints, Model& model);
-  /// Makes later calls of use_skinned() replace the meshes that it has added.
-  void skin_anew();
+  /// The weights of the mesh's morph targets where a node has none; as many as it has targets.
+  const std::vector<double>& weights(std::size_t index) const { return meshes_.at(index).weights; }
+  /// use() for the mesh as deformed, with joints in world space.
+  int use_deformed(const Deformed& which, const Deformation& deformation, Model& model);
+  /// Makes later calls of use_deformed() replace the meshes that it has added.
+  void deform_anew();
 
  private:
+  struct Target {
+    std::optional<std::size_t> position, normal, tangent;
+  };
   struct Primitive {
     std::string pointer;
     std::optional<std::size_t> position, normal, tangent, color, indices, joints, weights;
     std::vector<std::optional<std::size_t>> uvs;  // by set
+    std::vector<Target> targets;
     std::size_t material = 0;
     std::uint64_t mode = 4;
   };
   struct Entry {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<double> weights;  // one for each morph target
     std::optional<int> used;
   };
   Primitive read_primitive(const JsonAt& at) const;
-  std::optional<std::size_t> read_attribute(const JsonAt& attributes, const char* name) const;
+  static std::vector<double> read_weights(const JsonAt& at, const Entry& entry);
+  std::vector<Target> read_targets(const JsonAt& at, const Primitive& primitive) const;
+  std::optional<std::size_t> read_attribute(const JsonAt& attributes, const char* name,
+                                            std::string_view rule = {}) const;
   std::optional<std::size_t> read_four(const JsonAt& attributes, const char* name, std::size_t count) const;
   void check_indices(const JsonAt& at, const Accessor& accessor) const;
-  int add(std::size_t index, const std::vector<dmat4>& joints, Model& model);
-  Mesh build(const Entry& entry, const std::vector<dmat4>& joints, Model& model);
+  int add(std::size_t index, const Deformation& deformation, Model& model);
+  Mesh build(const Entry& entry, const Deformation& deformation, Model& model);
   std::vector<std::uint32_t> vertex_numbers(const Primitive& primitive);
   /// An element of an accessor; `otherwise` if it is NaN, which is counted.
   template <class Vector>
@@ -54,7 +77,9 @@ class GltfMeshes {
                    const Vector& otherwise);
   void append_tangents(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
   void append_uvs(const Primitive& primitive, const std::vector<std::uint32_t>& used, Mesh& mesh);
-  void append(const Primitive& primitive, const std::vector<dmat4>& joints, Model& model, Mesh& mesh,
+  void deform(const Primitive& primitive, const Deformation& deformation,
+              const std::vector<std::uint32_t>& used, std::size_t first, Mesh& mesh);
+  void append(const Primitive& primitive, const Deformation& deformation, Model& model, Mesh& mesh,
               std::vector<bool>& has_normal);
 
   GltfAccessors& accessors_;
@@ -62,12 +87,12 @@ class GltfMeshes {
   double crease_degrees_;
   bool quantized_;  // KHR_mesh_quantization
   std::vector<Entry> meshes_;
-  struct Skinned {
+  struct Added {
     int mesh = -1;
     bool done = false;
   };
-  std::map<std::pair<std::size_t, std::size_t>, Skinned> skinned_;  // keyed by mesh and skin
-  std::size_t of_no_number_ = 0;                                    // NaN attributes in the current mesh
+  std::map<Deformed, Added> deformed_;
+  std::size_t of_no_number_ = 0;  // NaN attributes in the current mesh
 };
 
 }  // namespace sundog::models

@@ -117,7 +117,11 @@ void find_in_mesh(const json& mesh, Model& model) {
     if (attributes.contains("JOINTS_1")) leave_unread(model, "joints of vertices beyond four");
     if (attributes.contains("COLOR_1")) leave_unread(model, "second colours of vertices");
     if (attributes.contains("TEXCOORD_4")) leave_unread(model, "texture coordinates beyond four sets");
-    if (!items(primitive, "targets").empty()) leave_unread(model, "morph targets");
+    for (const json& target : items(primitive, "targets"))
+      if (target.is_object())
+        for (const auto& [name, accessor] : target.items())
+          if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+            leave_unread(model, "morph targets' colours and texture coordinates");
     if (member(member(primitive, "extensions"), "KHR_materials_variants").is_object())
       leave_unread(model, "material variants");
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -17,7 +18,6 @@ GltfCamera read_gltf_camera(const JsonAt& at) {
   const double infinity = std::numeric_limits<double>::infinity();
   if (type == "perspective") {
     const JsonAt p = at.member("perspective");
-    camera.perspective = true;
     camera.fov = p.member("yfov").number(positive);
     camera.near = p.member("znear").number(positive);
     camera.far = p.number("zfar", infinity, positive);
@@ -27,6 +27,7 @@ GltfCamera read_gltf_camera(const JsonAt& at) {
     const JsonAt o = at.member("orthographic");
     for (const char* key : {"xmag", "ymag"})
       if (o.member(key).number() == 0) o.fail(fmt::format("{} must not be 0", key));
+    camera.height = 2 * std::abs(o.member("ymag").number());
     camera.near = o.member("znear").number(not_negative);
     camera.far = o.member("zfar").number(positive);
     if (camera.far <= camera.near) o.fail("zfar must be beyond znear");

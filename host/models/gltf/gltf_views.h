@@ -7,8 +7,8 @@
 namespace sundog::models {
 
 struct GltfCamera {
-  bool perspective = false;
-  double fov = 0, near = 0, far = 0;  // radians; along the view
+  double fov = 0, height = 0;  // one of them is above 0: radians; of an orthographic camera's picture
+  double near = 0, far = 0;    // along the view
 };
 
 GltfCamera read_gltf_camera(const JsonAt& at);

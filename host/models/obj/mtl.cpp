@@ -19,11 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::string_view unread_forms[] = {"spectral", "xyz"};
+
 // "Kd r g b", or "Kd r" for grey. Spectral files and CIE XYZ keep the default.
 std::optional<dvec3> read_color(TextReader& text) {
   TextReader peek = text;
   const std::string_view form = peek.word();
-  if (form == "spectral" || form == "xyz") return std::nullopt;
+  if (std::ranges::count(unread_forms, form) > 0) return std::nullopt;
   const double red = text.number("red");
   if (text.at_line_end()) return glm::max(dvec3(red), dvec3(0));
   const double green = text.number("green"), blue = text.number("blue");
@@ -47,6 +49,9 @@ void note_unread(TextReader text, std::string_view key, MtlStatements& m) {
         return false;
     return true;
   };
+  if (key == "kd" || key == "ks" || key == "ka" || key == "ke" || key == "tf")
+    if (TextReader peek = text; std::ranges::count(unread_forms, peek.word()) > 0)
+      m.unread.emplace(key, "spectral and CIE XYZ colours");
   for (const auto& [word, feature] : unread_properties)
     if (key == word && !all_zero()) m.unread.emplace(key, feature);
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/numbers.h"
+#include "models/colors.h"
 #include "models/far_mesh.h"
 #include "models/normals.h"
 #include "models/obj/mtl.h"
@@ -63,6 +64,7 @@ class ObjReader {
     mesh_.source_vertex_count = positions_.size();
     if (!any_uv_) mesh_.uvs.clear();
     if (!any_color_) mesh_.colors.clear();
+    share_byte_colors(mesh_.colors.values());
     settle_materials();
     const bool by_groups = any_group_ && !crease_degrees;
     const bool flat = by_groups && std::ranges::count(groups_, 0u) == std::ssize(groups_);

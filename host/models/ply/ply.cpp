@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "models/colors.h"
 #include "models/normals.h"
 #include "models/ply/ply_vertices.h"
 #include "models/polygon.h"
@@ -306,6 +307,8 @@ Model load_ply(Source source, const ModelOptions& options) {
   Mesh& mesh = content.mesh;
   if (mesh.positions.empty()) fail(source, "", "the file has no vertices");
   mesh.name = source.path.stem().string();
+  share_byte_colors(mesh.colors.values());
+  share_byte_colors(content.face_colors);
   const std::vector<std::uint32_t> points = split_by_corners(content, mesh);
   complete_normals(mesh, {}, options.crease_angle.value_or(45), points);
   Model model;

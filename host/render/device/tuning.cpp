@@ -53,7 +53,7 @@ std::string tuning_text(const Tuning& tuning) {
   if (tuning.work_group.kind != automatic)
     parts.push_back("work-group " + work_group_text(tuning.work_group));
   if (tuning.surfaces_group.kind != automatic)
-    parts.push_back("work-group " + work_group_text(tuning.surfaces_group));
+    parts.push_back(fmt::format("work-group {} for first surfaces", work_group_text(tuning.surfaces_group)));
   if (tuning.tile_w) parts.push_back(fmt::format("{}x{} pixels a work-item", tuning.tile_w, tuning.tile_h));
   if (tuning.packet_least) parts.push_back(fmt::format("packets of more than {}", tuning.packet_least));
   if (tuning.launch_ms > 0) parts.push_back(fmt::format("launches of {} ms", tuning.launch_ms));

@@ -34,8 +34,10 @@ struct Header {
   std::uint64_t surfaces_seen;
 };
 
+constexpr std::uint32_t grows_code = 2;
+
 std::uint32_t code_of(const FilmNeeds& needs) {
-  return u32(needs.counts_rays) | u32(needs.grows) << 1 | u32(needs.keeps_earlier) << 2;
+  return u32(needs.counts_rays) | (needs.grows ? grows_code : 0) | u32(needs.keeps_earlier) << 2;
 }
 
 std::uint32_t aovs_of(const FilmNeeds& needs) { return needs.shows_surfaces ? needs.layout.code() : 0; }
@@ -58,10 +60,10 @@ void check_memory(const std::filesystem::path& path, const Film& film, const Pas
   const auto pixels = static_cast<std::uintmax_t>(pass.width) * static_cast<std::uintmax_t>(pass.height);
   const std::size_t a_pixel = sample_bytes + (pass.surfaces ? sizeof(float4) * film.layout.vectors() : 0);
   if (pixels * a_pixel > file_bytes)
-    throw SceneError(
-        path.string(), "",
-        fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes; remove it to start anew",
-                    pass.width, pass.height, file_bytes));
+    throw SceneError(path.string(), "",
+                     fmt::format("is a damaged checkpoint: it says {}x{} pixels in {} bytes", pass.width,
+                                 pass.height, file_bytes),
+                     Remedy::start_anew);
 }
 
 /// An upper bound for a checkpoint of this frame: a list of pixels is padded to rows of whole blocks.
@@ -78,10 +80,27 @@ bool starts_with_magic(const std::string& bytes, std::size_t length) {
 }
 
 UsageError other_checkpoint(const std::filesystem::path& path) {
-  return UsageError(
-      path.string() +
-      ": is a checkpoint of another scene or of other settings: give the settings that it was made "
-      "with, or remove it to start anew");
+  return UsageError(path.string() + ": is a checkpoint of another scene or of other settings",
+                    Remedy::same_settings);
+}
+
+/// Throws UsageError, which names a setting that differs if the header has it, unless the checkpoint belongs
+/// to the frame.
+void check_is_of(const std::filesystem::path& path, const Header& header, const Film& film,
+                 std::uint64_t key) {
+  const auto refuse = [&](const std::string& why, Remedy remedy) {
+    throw UsageError(path.string() + ": is a checkpoint of " + why, remedy);
+  };
+  if (header.width != film.width || header.height != film.height)
+    refuse(fmt::format("{}x{} pixels, and the frame has {}x{}", header.width, header.height, film.width,
+                       film.height),
+           Remedy::same_settings);
+  const bool grows = header.needs & grows_code;
+  if (grows && !film.grows) refuse("a frame in passes", Remedy::in_passes);
+  if (!grows && film.grows) refuse("a frame that is not in passes", Remedy::not_in_passes);
+  if (header.needs != code_of(film) || header.aovs != aovs_of(film))
+    refuse("a frame with other AOVs", Remedy::same_settings);
+  if (header.key != key) throw other_checkpoint(path);
 }
 
 /// Returns the file's bytes without their checksum, after verifying it. Refuses a file longer than `most`
@@ -92,9 +111,8 @@ std::string checked_bytes(const std::filesystem::path& path, std::uintmax_t most
     std::string start(sizeof magic, ' ');
     std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
     if (starts_with_magic(start, magic_name) && !starts_with_magic(start, sizeof magic))
-      throw UsageError(path.string() +
-                       ": is a checkpoint of another version of sundog; finish the frame with that version, "
-                       "or remove the file to start anew");
+      throw UsageError(path.string() + ": is a checkpoint of another version of sundog",
+                       Remedy::same_version);
     const std::uintmax_t size = std::filesystem::file_size(path, failed);
     if (!failed && size > most) throw other_checkpoint(path);
   }
@@ -148,7 +166,7 @@ bool take_header(const Header& header, Film& film, Pass& pass) {
 }  // namespace
 
 SceneError damaged_checkpoint(const std::filesystem::path& path) {
-  return {path.string(), "", "is no sundog checkpoint, or is damaged; remove it to start anew"};
+  return {path.string(), "", "is no sundog checkpoint, or is damaged", Remedy::start_anew};
 }
 
 void write_checkpoint(const std::filesystem::path& path, const Film& film, const Pass& pass, const Film& made,
@@ -186,9 +204,7 @@ void read_checkpoint(const std::filesystem::path& path, Film& film, Pass& pass, 
   const SceneError damaged = damaged_checkpoint(path);
   Header header{};
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.key != key || header.width != film.width || header.height != film.height ||
-      header.needs != code_of(film) || header.aovs != aovs_of(film))
-    throw other_checkpoint(path);
+  check_is_of(path, header, film, key);
   if (!take_header(header, film, pass)) throw damaged;
   check_memory(path, film, pass, bytes.size());
   if (film.stage > 0) film.allocate();

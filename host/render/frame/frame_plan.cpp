@@ -67,9 +67,12 @@ Sampling sampling_of(const CompiledScene& scene, const RenderOptions& options) {
 }
 
 SamplingPlan plan_of(const CompiledScene& scene, const RenderOptions& options) {
-  return {
-      sampling_of(scene, options),         scene.info.samples,    options.noise, show_surfaces(options.aovs),
-      aov_layout(options.aovs).sums() > 0, clear_materials(scene)};
+  SamplingPlan plan = plan_sampling(scene);
+  plan.settings.progressive = sampling_of(scene, options).progressive;
+  plan.noise = options.noise;
+  plan.surfaces = show_surfaces(options.aovs);
+  plan.sums = aov_layout(options.aovs).sums() > 0;
+  return plan;
 }
 
 FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {

@@ -12,6 +12,11 @@ namespace sundog {
 /// miss an edge.
 std::vector<float> expected_squares(const Film& film, const std::vector<u32>& pixels, u32 level);
 
+/// expected_squares() of noisy pixels, from the mean change in the 5x5 pixels around. A pixel whose samples
+/// all miss a rare bright light changes little and is too dark. If its own change decided, it would stay so,
+/// and the picture would be too dark.
+std::vector<float> pooled_squares(const Film& film, const std::vector<u32>& pixels, u32 level);
+
 /// Expected squared errors of all pixels, row by row, at one sample each.
 std::vector<float> expected_squares_of_one(const Film& film);
 

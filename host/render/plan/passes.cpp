@@ -8,6 +8,7 @@
 #include "render/plan/convergence.h"
 #include "render/plan/pixel_rules.h"
 #include "render/plan/subsample.h"
+#include "scene/integrators.h"
 
 namespace sundog {
 namespace {
@@ -71,7 +72,8 @@ std::vector<u32> unconverged(const Film& film, const SamplingPlan& plan, const P
   if (level == 1 && last.pixels.empty() && !by_surfaces && plan.settings.budget == 0)
     return pixels_above(limits, expected_squares_of_one(film), film.width, film.height);
   std::vector<u32> pixels = pixels_of(last);
-  std::vector<float> squares = expected_squares(film, pixels, level);
+  std::vector<float> squares =
+      plan.noisy ? pooled_squares(film, pixels, level) : expected_squares(film, pixels, level);
   const float contrast = static_cast<float>(plan.settings.contrast) * threshold;
   const u32 columns = cost_blocks_along(film.width);
   std::vector<std::size_t> kept;
@@ -117,8 +119,7 @@ bool is_zero(const float4& color) { return color.x == 0 && color.y == 0 && color
 
 bool has_texture(const MaterialMaps& maps, MapSlot slot) { return maps.slot[slot] != NO_TEXTURE; }
 
-}  // namespace
-
+/// Marks materials through which the camera sees other surfaces straight on.
 std::vector<std::uint8_t> clear_materials(const CompiledScene& scene) {
   constexpr u32 straight = MATERIAL_TRANSMITS | MATERIAL_THIN;
   std::vector<std::uint8_t> clear;
@@ -132,6 +133,20 @@ std::vector<std::uint8_t> clear_materials(const CompiledScene& scene) {
     clear.push_back((material.flags & straight) == straight && lets_through);
   }
   return clear;
+}
+
+}  // namespace
+
+SamplingPlan plan_sampling(const CompiledScene& scene) {
+  constexpr int least_through_lens = 4;  // one or two often miss the blur of a small light
+  const int least =
+      std::max(integrator_of(scene.integrator).least_samples, scene.features.lens ? least_through_lens : 1);
+  SamplingPlan plan{.settings = scene.sampling,
+                    .samples = scene.info.samples,
+                    .noisy = least > 1,
+                    .panes = clear_materials(scene)};
+  plan.settings.first_samples = std::max(plan.settings.first_samples, least);
+  return plan;
 }
 
 bool in_passes(const Sampling& settings) {

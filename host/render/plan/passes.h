@@ -17,11 +17,12 @@ struct SamplingPlan {
   double noise = 0;                      // the frame ends when its mean error is below this; 0: never
   bool surfaces = false;                 // AOVs are needed for every pixel
   bool sums = false;                     // those AOVs include sums over all samples
-  std::vector<std::uint8_t> panes = {};  // per material; 1: partly clear, see clear_materials()
+  bool noisy = false;                    // errors are pooled_squares()
+  std::vector<std::uint8_t> panes = {};  // per material; 1: partly clear, other surfaces are seen through it
 };
 
-/// Marks materials through which the camera sees other surfaces straight on.
-std::vector<std::uint8_t> clear_materials(const CompiledScene& scene);
+/// The scene's plan for a frame without AOVs.
+SamplingPlan plan_sampling(const CompiledScene& scene);
 
 /// Whether a frame is rendered in several passes; a plain frame has one with all samples.
 bool in_passes(const Sampling& settings);

@@ -23,9 +23,8 @@ RenderOptions options_of(const SessionSettings& settings) {
 /// If the scene is not rendered in passes, its samples double from pass to pass. The sums are added in the
 /// same order as in one pass, so the final bits are equal.
 SamplingPlan sampling_of(const CompiledScene& scene, const std::vector<std::string>& aovs) {
-  SamplingPlan plan{scene.sampling, scene.info.samples};
+  SamplingPlan plan = plan_sampling(scene);
   plan.surfaces = plan.sums = !aovs.empty();
-  plan.panes = clear_materials(scene);
   if (!in_passes(scene.sampling)) plan.settings.progressive = true;
   return plan;
 }

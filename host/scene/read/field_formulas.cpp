@@ -29,7 +29,10 @@ std::string read_text(JsonObject& object, std::string_view key) {
   if (!value) return "";
   if (value->json().is_string()) return value->text();
   std::string text;
-  for (const JsonValue& line : value->items("lines")) text += line.text() + "\n";
+  for (const JsonValue& line : value->items("lines")) {
+    const auto* written = line.json().get_ptr<const std::string*>();
+    text += (written && written->empty() ? "" : line.text()) + "\n";
+  }
   return text;
 }
 

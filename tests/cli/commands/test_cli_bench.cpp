@@ -93,12 +93,16 @@ TEST_CASE(
   CHECK_THAT(sundog::read_file(folder.file("w.html")), ContainsSubstring("class=\"cell"));
 }
 
-TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing where nobody tells") {
+TEST_CASE("bench kernels tells limits of each kernel and tracer, and builds from source as often as asked") {
   const CliFolder folder;
+  CommandOptions patient;
+  patient.timeout = 1800;  // beside other tests, builds are disturbed and repeated
   for (const std::string tracer : {"wide", "compact"}) {
-    const CommandResult result =
-        run_sundog({"bench", "kernels", folder.scene, "--device", "portable", "--set",
-                    "/render/tracer=" + tracer, "--json", folder.file("k.json")});
+    const int builds = tracer == "wide" ? 2 : 1;
+    const CommandResult result = run_sundog(
+        {"bench", "kernels", folder.scene, "--device", "portable", "--set", "/render/tracer=" + tracer,
+         "--json", folder.file("k.json"), "--t4", folder.file("k.t4"), "--repeat", std::to_string(builds)},
+        patient);
     CAPTURE(result.out, result.err);
     REQUIRE(result.status == 0);
     CHECK_THAT(result.out, ContainsSubstring(tracer + " tracer") && ContainsSubstring("occluded_rays"));
@@ -114,9 +118,18 @@ TEST_CASE("bench kernels tells limits of each kernel and tracer, and nothing whe
       CHECK(row.at("registers").is_null());
       CHECK(row.at("spill_stores_B").is_null());
       CHECK(row.at("threads").is_null());
-      CHECK(row.at("build_cold_s") > row.at("build_warm_s"));
-      CHECK(row.at("build_warm_s") > 0);
+      CHECK(row.at("runs") == builds);
+      CHECK(row.at("time_ms").at("min") > row.at("build_warm_ms").at("max"));
+      CHECK(row.at("build_warm_ms").at("min") > 0);
     }
+    CHECK(report.at("ways").size() == 3);  // frames, AOVs and rays: each program once
+    for (const json& result : json::parse(sundog::read_file(folder.file("k.t4"))).at("results")) {
+      CHECK(result.at("configuration").size() == 4);  // scene, device, tracer, kernel
+      CHECK(result.at("times").at("runtimes").size() == static_cast<std::size_t>(builds));
+    }
+    const CommandResult compared =
+        run_sundog({"bench", "compare", folder.file("k.json"), folder.file("k.json")});
+    CHECK_THAT(compared.out, ContainsSubstring("faster in 0 of 3 rows"));
     CHECK(kernels ==
           std::set<std::string>{"render_whitted", "first_surfaces", "trace_rays", "occluded_rays"});
   }
@@ -210,7 +223,9 @@ TEST_CASE("bench samples tells time and error by samples, and the error falls") 
     CHECK(row.at("rays_millions") > 0);
   }
   for (std::size_t i = 0; i < 3; ++i)
-    CHECK((rows[i].at("way") == "even" && rows[i].at("of_even_rays_%") == 100));
+    CHECK(
+        (rows[i].at("way").get<std::string>().starts_with("even, ") && rows[i].at("of_even_rays_%") == 100));
+  CHECK(rows[2].at("way") == "even, 8");
   CHECK(rows[3].at("way") == "adaptive, 0.02");
   CHECK(rows[3].at("samples") >= 2);
   CHECK(rows[6].at("way") == "subsampled, 8");
@@ -272,6 +287,35 @@ TEST_CASE("bench quality tells the error of each way by time, against a picture 
   CHECK(sundog::read_file(folder.file("r.exr")) == reference);
 }
 
+TEST_CASE("plots of bench samples and bench quality name their device, as the tables do") {
+  const CliFolder folder;
+  REQUIRE(run_sundog({"render", folder.scene, "-o", folder.file("r.exr"), "--quiet"}).status == 0);
+  CommandOptions options;
+  options.environment["POCL_DEVICES"] = "basic pthread";
+  for (std::vector<std::string> bench :
+       {std::vector<std::string>{"samples", "--adaptive", "0.05", "--reference", "4"},
+        {"quality", "--samplers", "auto", "--reference", folder.file("r.exr")}}) {
+    bench.insert(bench.begin(), {"bench"});
+    bench.insert(bench.end(), {folder.scene, "--device", "0:0", "--device", "0:1", "--counts", "1,2",
+                               "--repeat", "1", "--html", folder.file("t.html")});
+    const CommandResult result = run_sundog(bench, options);
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.status == 0);
+    const std::string page = sundog::read_file(folder.file("t.html")), heading = "<h2>";
+    std::set<std::string> headings;
+    std::size_t count = 0;
+    for (std::size_t at = page.find(heading); at != std::string::npos;
+         at = page.find(heading, at + 1), ++count)
+      headings.insert(page.substr(at, page.find("</h2>", at) - at));
+    CHECK(headings.size() == count);
+    for (const std::string place : {"0:0 basic", "0:1 pthread"})
+      CHECK(std::ranges::any_of(headings, [&](const std::string& title) {
+        return title.find("on " + place) != std::string::npos &&
+               title.find(": error by ") != std::string::npos;
+      }));
+  }
+}
+
 TEST_CASE("bench textures times a frame with textures and without") {
   const CliFolder folder;
   sundog::write_file(folder.file("board.json"), R"({"camera": {"position": [0, 1, 3], "target": [0, 0, 0]},
@@ -280,13 +324,17 @@ TEST_CASE("bench textures times a frame with textures and without") {
     "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "board"}]})");
   const CommandResult result =
       run_sundog({"bench", "textures", folder.file("board.json"), "--device", "portable", "--size", "24x16",
-                  "--repeat", "1", "--json", folder.file("t.json"), "--quiet"});
-  CAPTURE(result.err);
+                  "--repeat", "6", "--json", folder.file("t.json"), "--svg", folder.file("t.svg")});
+  CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   const json rows = json::parse(sundog::read_file(folder.file("t.json"))).at("measurements");
-  REQUIRE(rows.size() == 1);
-  CHECK(rows[0].at("scene") == "board");
-  CHECK(rows[0].at("ratio") > 0);
-  // Textures change colours alone.
-  CHECK(rows[0].at("rays_textured") == rows[0].at("rays_without"));
+  REQUIRE(rows.size() == 2);
+  CHECK((rows[0].at("textures") == "without" && rows[1].at("textures") == "with"));
+  for (const json& row : rows) CHECK((row.at("scene") == "board" && row.at("time_ms").at("median") > 0));
+  CHECK(rows[0].at("ratio").is_null());
+  const json& ratio = rows[1].at("ratio");
+  CHECK((ratio.at("low") > 0 && ratio.at("low") <= ratio.at("median") &&
+         ratio.at("median") <= ratio.at("high")));
+  CHECK(rows[0].at("rays") == rows[1].at("rays"));  // textures change colours alone
+  CHECK_THAT(sundog::read_file(folder.file("t.svg")), ContainsSubstring(">with textures<"));
 }

@@ -24,9 +24,12 @@ std::vector<std::vector<std::string>> small_benches(const CliFolder& folder) {
           {"textures", SUNDOG_SOURCE_DIR "/scenes/textures.json", "--device", "0:0", "--size", "64x48"}};
 }
 
+constexpr double patient = 600;  // seconds: beside other tests, runs are disturbed and repeated
+
 CommandResult run_bench(std::vector<std::string> arguments, const std::vector<std::string>& more,
                         const std::string& faults = "") {
   CommandOptions options;
+  options.timeout = patient;
   options.environment["POCL_DEVICES"] = "pthread";
   if (!faults.empty()) options.environment["SUNDOG_FAULTS"] = faults;
   arguments.insert(arguments.begin(), "bench");
@@ -168,6 +171,7 @@ TEST_CASE("bench kernels has a row for a device that crashes, cannot be used, or
   folder.write("vendors/fake.icd", SUNDOG_FAKE_DRIVER "\n");
   CommandOptions options;
   options.environment = {{"OCL_ICD_VENDORS", folder.file("vendors") + "/"}};
+  options.timeout = patient;
   const CommandResult all = run_sundog({"bench", "kernels", folder.scene, "--device", "all"}, options);
   CAPTURE(all.out, all.err);
   CHECK(all.status == 0);

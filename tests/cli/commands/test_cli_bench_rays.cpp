@@ -12,7 +12,7 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
   const CliFolder folder;
   const CommandResult result =
       run_sundog({"bench", "rays", SUNDOG_SOURCE_DIR "/scenes/spheres.json", "--device", "portable", "--rays",
-                  "32", "--repeat", "2", "--json", folder.file("r.json")});
+                  "32", "--repeat", "2", "--json", folder.file("r.json"), "--t4", folder.file("r.t4")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   const json report = json::parse(sundog::read_file(folder.file("r.json")));
@@ -31,6 +31,15 @@ TEST_CASE("bench rays times every kind of ray and checks the hits") {
     CHECK(row.at("kernel_Mrays/s").at("median") >= 0.99 * row.at("rate_Mrays/s").at("median").get<double>());
   }
   CHECK(kinds == std::vector<std::string>{"primary", "shadow", "bounce", "shuffled", "reflection", "glass"});
+  for (const json& result : json::parse(sundog::read_file(folder.file("r.t4"))).at("results")) {
+    CAPTURE(result.dump());
+    std::set<std::string> names;
+    for (const auto& [name, value] : result.at("configuration").items()) names.insert(name);
+    CHECK(names == std::set<std::string>{"scene", "device", "tracer", "kind"});
+    names.clear();
+    for (const json& measured : result.at("measurements")) names.insert(measured.at("name"));
+    for (const char* name : {"hits", "checked", "rate", "rays"}) CHECK(names.count(name) == 1);
+  }
 }
 
 TEST_CASE("bench rays takes the kinds that are asked for, and checks alone without times") {
@@ -97,7 +106,8 @@ TEST_CASE("bench roofline measures a device, and counts the work of rays below i
   const CliFolder folder;
   const CommandResult result =
       run_sundog({"bench", "roofline", folder.scene, "--device", "portable", "--megabytes", "1", "--rays",
-                  "32", "--repeat", "1", "--json", folder.file("r.json"), "--svg", folder.file("r.svg")});
+                  "32", "--repeat", "1", "--json", folder.file("r.json"), "--svg", folder.file("r.svg"),
+                  "--t4", folder.file("r.t4")});
   CAPTURE(result.out, result.err);
   REQUIRE(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("Peaks of ") && ContainsSubstring("read memory") &&
@@ -117,6 +127,12 @@ TEST_CASE("bench roofline measures a device, and counts the work of rays below i
     CHECK(row.at("rate_Gop/s").at("median") > 0);
   }
   CHECK(kinds > 0);
+  for (const json& result : json::parse(sundog::read_file(folder.file("r.t4"))).at("results")) {
+    CAPTURE(result.dump());
+    for (const auto& [name, value] : result.at("configuration").items())
+      CHECK(std::set<std::string>{"scene", "device", "kind", "measured", "width", "chains"}.count(name) == 1);
+    CHECK_FALSE(result.at("times").at("runtimes").empty());
+  }
   for (const char* what : {"read memory", "read cache", "copy memory", "float", "int", "launch"})
     CHECK(measured.count(what) == 1);
   CHECK(run_sundog({"bench", "roofline", "--megabytes", "0"}).status == 2);

@@ -60,7 +60,7 @@ TEST_CASE("a work-group that is too large for the device is made smaller, and th
   CAPTURE(result.err, result.out);
   CHECK(result.status == 0);
   CHECK(read_file(folder / "a.pfm") == plain);
-  CHECK(contains(result.out, note));
+  CHECK(contains(result.err, note));
   const json device = folder.stats()["devices"][0];
   CHECK(device["failures"] == 0);
   CHECK(device["retired"] == false);
@@ -99,7 +99,7 @@ TEST_CASE("where resources do not suffice, launches are made smaller until they 
   CAPTURE(result.err, result.out);
   CHECK(result.status == 0);
   CHECK(read_file(folder / "a.pfm") == plain);
-  CHECK(contains(result.out, "launches of at most"));
+  CHECK(contains(result.err, "launches of at most"));
   const json device = folder.stats()["devices"][0];
   CHECK(device["failures"] == 0);
   CHECK(device["retired"] == false);
@@ -201,4 +201,15 @@ TEST_CASE("faults that nobody understands are refused") {
   const CommandResult result = folder.render("build");
   CHECK(result.status == 2);
   CHECK(contains(result.err, "SUNDOG_FAULTS: wanted KIND"));
+}
+
+TEST_CASE("variables of seconds that are no numbers above 0 are refused by name") {
+  for (const char* name : {"SUNDOG_LAUNCH_LIMIT", "SUNDOG_SILENCE_LIMIT"})
+    for (const char* value : {"x", "2s", "0", "-1", "inf", "nan"}) {
+      FaultyFolder folder;
+      folder.options.environment[name] = value;
+      const CommandResult result = folder.render("");
+      CHECK(result.status == 2);
+      CHECK(contains(result.err, std::string("sundog: ") + name + "=" + value + ": wanted seconds above 0"));
+    }
 }

@@ -188,9 +188,13 @@ TEST_CASE("standard streams that are closed are /dev/null, so that what is print
   result = here.run("$0 render $1 -o a.pfm >&-");
   CHECK(result.status == 0);
   CHECK(read_file(here / "a.pfm").starts_with("PF\n32 24\n"));
-  result = here.run("$0 render $1 -o - >&-");
-  CHECK(result.status == 2);
-  CHECK_THAT(result.err, ContainsSubstring("the standard output is closed"));
+  for (const char* command : {"$0 render $1 -o - >&-", "$0 info $1 --json >&-", "$0 devices >&-",
+                              "$0 formulas >&-", "$0 --help >&-"}) {
+    INFO(command);
+    result = here.run(command);
+    CHECK(result.status == 2);
+    CHECK_THAT(result.err, ContainsSubstring("the standard output is closed"));
+  }
 }
 
 TEST_CASE("a symbolic link as the output stays, and what it names is written; a pipe is written into") {

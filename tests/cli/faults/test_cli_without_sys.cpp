@@ -1,6 +1,7 @@
 // Where /sys is not mounted, as in a minimal chroot: PoCL would find no memory and end the process.
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -13,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-const std::string hide = "mount -t tmpfs none /sys && exec \"$@\"";
+const std::string hide = "mount -t tmpfs none /sys && eval \"$MORE\" && exec \"$@\"";
 
 /// `unshare` with what it takes to hide /sys from a command: root's own right, else a user's own namespace.
 /// Empty: this machine grants neither.
@@ -83,4 +84,26 @@ TEST_CASE("without /sys a picture has the bits that it has with it, and check na
   CAPTURE(check.out);
   CHECK(check.status == 0);
   CHECK_THAT(check.out, ContainsSubstring("mount -t sysfs sysfs /sys"));
+}
+
+TEST_CASE("render --stats has the joules and watts that a processor's counter tells") {
+  Hidden hidden;
+  if (hidden.command.empty()) return;
+  const CliFolder folder;
+  // A counter as RAPL's, which goes up by a joule each time that a loop has written it.
+  hidden.options.environment["MORE"] =
+      "zone=/sys/class/powercap/intel-rapl:0; mkdir -p $zone; echo package-0 >$zone/name; "
+      "echo 262143328850 >$zone/max_energy_range_uj; echo 0 >$zone/energy_uj; "
+      "(i=0; while kill -0 $$ 2>/dev/null; do i=$((i + 1)); echo ${i}000000 >$zone/next; "
+      "mv $zone/next $zone/energy_uj; sleep 0.01; done) >/dev/null 2>&1 &";
+  const CommandResult result =
+      hidden.run({"render", folder.scene, "-o", folder.file("a.png"), "--stats", folder.file("a.json")});
+  CAPTURE(result.out, result.err);
+  REQUIRE(result.status == 0);
+  const json stats = json::parse(sundog::read_file(folder / "a.json")), &energy = stats.at("energy");
+  CAPTURE(energy.dump());
+  CHECK(energy.at("counted_by") == "RAPL package-0");
+  const double joules = energy.at("joules"), seconds = joules / energy.at("watts").get<double>();
+  CHECK((joules >= 1 && joules == std::floor(joules)));
+  CHECK((seconds > 0 && seconds <= stats.at("seconds").at("total")));
 }

@@ -52,6 +52,26 @@ TEST_CASE("a frame that its time limit ended continues to the bits of one that h
   CHECK(read_file(folder / "a.pfm") == read_file(folder / "whole.pfm"));
 }
 
+TEST_CASE("a checkpoint of a frame with a time limit asks for one") {
+  const CliFolder folder;
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"render", folder.scene, "-o",  folder.file("a.pfm"), "--samples",
+                                    "64",     "--device",   "0:0", "--resume",           folder.file("c")};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_sundog(all);
+  };
+  REQUIRE(render({"--time-limit", "1e-6"}).status == 0);
+  REQUIRE(std::filesystem::exists(folder / "c"));
+  const CommandResult without = render({}), other = render({"--time-limit", "1e-6", "--size", "20x10"});
+  CHECK(without.status == 2);
+  CHECK(without.err ==
+        "sundog: " + folder.file("c") +
+            ": is a checkpoint of a frame in passes: give the --time-limit, --noise-threshold, "
+            "--adaptive or --subsample that it was made with, or remove it to start anew\n");
+  CHECK(other.status == 2);
+  CHECK(other.err.find("pixels, and the frame has 20x10") != std::string::npos);
+}
+
 TEST_CASE("a time limit below a compiler's time waits for it and for a pass, and each call gets further") {
   CliFolder folder;
   folder.scene = folder.write("least.json", least_scene).string();

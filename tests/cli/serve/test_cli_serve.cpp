@@ -1,5 +1,6 @@
 // The viewer's server against requests that no page of its own makes: by plain sockets.
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -136,6 +137,10 @@ TEST_CASE("scenes are opened below the folder alone") {
     const json answer = ask(socket, {{"do", "open"}, {"file", file}}, "refused");
     CHECK(answer["reason"].get<std::string>().find("below the folder") != std::string::npos);
   }
+  std::ofstream(served().folder / "broken.json") << R"({"objects": [{"type": "sphere", "radus": 1}]})";
+  const json refused = ask(socket, {{"do", "open"}, {"file", "broken.json"}}, "refused");
+  CHECK(refused["at"] == "");  // not a place in the scene that the page shows
+  CHECK(refused["reason"].get<std::string>().find("broken.json: /objects/0") != std::string::npos);
   const json listed = json::parse(get("/api/files", served().with_token()).body);
   CHECK(std::ranges::count(listed, json("sub/other.json")) == 1);
   CHECK(ask(socket, {{"do", "open"}, {"file", "sub/other.json"}}, "scene")["file"] == "other.json");

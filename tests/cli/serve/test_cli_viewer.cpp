@@ -339,6 +339,20 @@ TEST_CASE("keeping a view changes the path's own tracks alone, and their keys at
   v.undo_all();
 }
 
+TEST_CASE("a path plays as many frames a second as the scene says") {
+  Viewer& v = viewer();
+  v.tab("camera");
+  v.run(R"(store.set('/frames_per_second', 1);
+    store.set('/animate', [{type: 'linear', value: '/camera/position', keys: [0, 90].map((frame) => ({frame, value: [frame, 1, 5]}))}]))");
+  v.settle();
+  v.press("Play");
+  v.wait("return store.state.document.camera.position[0] > 0");
+  CHECK(v.run("await new Promise((r) => setTimeout(r, 1000)); return store.state.document.camera.position[0]")
+            .get<double>() < 20);
+  v.press("Stop");
+  v.undo_all();
+}
+
 TEST_CASE("a model that is dropped on the page is shown; one that is damaged is refused") {
   Viewer& v = viewer();
   const json before = v.run("return store.state.document");

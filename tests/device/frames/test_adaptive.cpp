@@ -130,6 +130,28 @@ TEST_CASE("adaptive and subsampled pictures are near the full ones with fewer sa
   CHECK(sampling_figures(sparse.film.taken, sparse.film.done, 0, 2).share_interpolated > 0.05);
 }
 
+TEST_CASE("adaptive pictures of paths and of a lens are as bright as even ones") {
+  const auto light_of = [](const SceneDescription& scene) {
+    const Film film = scenes::render_on(test_devices().front(), scene).film;
+    double light = 0;
+    for (std::size_t p = 0; p < film.pixels(); ++p) {
+      const Color color = mean_of(film.sums[p], film.weights[p]);
+      light += color.r + color.g + color.b;
+    }
+    return light;
+  };
+  for (const char* name : {"cornell_path", "lens"}) {
+    SceneDescription even = scenes::shipped_small(name);
+    even.image.width = 90, even.image.height = 60;
+    even.render.samples = 64;
+    even.render.sampler = SAMPLER_SOBOL;
+    SceneDescription adaptive = even;
+    adaptive.render.sampling.threshold = 0.05;
+    INFO(name);
+    CHECK(light_of(adaptive) == Approx(light_of(even)).epsilon(0.005));
+  }
+}
+
 TEST_CASE("a frame that its time limit ends is saved, and continues from its checkpoint") {
   SceneDescription scene = ball_scene(32768);
   scene.render.sampling.progressive = true;

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "temporary_folder.h"
@@ -43,9 +44,14 @@ TEST_CASE("RAPL's packages are added up without their parts, and their counters 
   zone("intel-rapl:0", "package-0\n", "1671150\n");  // 2 J later
   zone("intel-rapl:0:0", "core\n", "9000000\n");
   zone("intel-rapl:1", "package-1\n", "5500000\n");
-  CHECK(meter.joules() == Approx(2.5));
+  const nlohmann::json stats = energy_json(meter.joules(), 0.5, meter.source());
+  CHECK(stats.at("joules") == Approx(2.5));
+  CHECK(stats.at("watts") == Approx(5));
+  CHECK(stats.at("counted_by") == "RAPL package-0, RAPL package-1");
   std::filesystem::remove(system / "class/powercap/intel-rapl:1/energy_uj");
   CHECK(meter.joules() == -1);
+  const nlohmann::json unknown = energy_json(meter.joules(), 0.5, "not known: gone");
+  CHECK((unknown.at("joules").is_null() && unknown.at("watts").is_null()));
 }
 
 TEST_CASE("where there is no RAPL the sockets of hwmon's amd_energy count") {

@@ -1,6 +1,9 @@
 // Ways of doing work, timed in turn: what counts, what is left out, and what fails. All times are made up.
 #include "bench/runs/measure.h"
 
+#include <dlfcn.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -119,6 +122,39 @@ TEST_CASE("where quiet runs cannot be had the least disturbed count, and the way
   CHECK(subjects[0].runs.size() == 6);
   CHECK(subjects[0].seconds().runs.size() == 3);
   CHECK(subjects[0].others().max < 0.9);
+  // Which runs they were can be seen in the report, and in one that continues it.
+  Report report;
+  report.ways = {subjects[0]};
+  const nlohmann::json runs = report_json(report).at("ways")[0].at("runs");
+  CHECK(std::ranges::count(runs, "busy", [](const auto& run) { return run.at("disturbed"); }) == 3);
+  CHECK(std::ranges::count(runs, "busy", [](const auto& run) { return run.at("left_out"); }) == 3);
+  for (const nlohmann::json& run : runs) CHECK(run.at("disturbed").is_null() != run.at("left_out").is_null());
+}
+
+TEST_CASE("a cold way has no warm-up: its first run counts, with the figures of each run") {
+  Machine machine;
+  std::vector<Subject> subjects{second(machine, "a"), second(machine, "b")};
+  subjects[0].cold = true;
+  MeasureOptions options = machine.options(1);
+  measure(subjects, options);
+  CHECK((subjects[0].runs.size() == 1 && subjects[1].runs.size() == 1));
+  CHECK(machine.now.wall == 1 + 2);
+  CHECK(subjects[0].counted(std::vector<int>{7}) == std::vector<int>{7});
+  CHECK(subjects[1].counted(std::vector<int>{7, 8}) == std::vector<int>{8});
+}
+
+TEST_CASE("each way has the joules of its own devices, and none where one of them is not counted") {
+  REQUIRE(::dlopen(SUNDOG_FAKE_NVML, RTLD_NOW) != nullptr);
+  DeviceInfo counted, other;
+  counted.type = other.type = "gpu";
+  counted.vendor = "NVIDIA Corporation", other.vendor = "another", other.device = 1;
+  Machine machine;
+  std::vector<Subject> subjects{second(machine, "a"), second(machine, "b"), second(machine, "c")};
+  subjects[0].devices = {counted}, subjects[1].devices = {other}, subjects[2].devices = {counted, other};
+  measure(subjects, machine.options(3));
+  CHECK(subjects[0].joules() > 0);
+  CHECK(subjects[0].watts() == Approx(subjects[0].joules()));  // its runs take a second
+  for (std::size_t i : {1u, 2u}) CHECK((subjects[i].joules() < 0 && subjects[i].watts() < 0));
 }
 
 TEST_CASE("a run that had fewer cores than others of its way, and took longer, is disturbed") {

@@ -1,12 +1,14 @@
 // Reports: the same figures as text, JSON, CSV and a page.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "bench/report/machine.h"
 #include "bench/report/report.h"
 #include "bench/report/samples.h"
 #include "bench/report/svg.h"
 #include "catch.h"
+#include "occurrences.h"
 
 using namespace sundog;
 
@@ -19,15 +21,9 @@ Report small_report() {
   report.facts = {{"device", "a \"fast\" one"}, {"driver", "1"}, {"driver", "2"}};
   report.notes = {"Median of 3."};
   report.measurements = {"",
-                         {{"scene", ""}, {"time", "ms"}, {"runs", ""}},
+                         {{"scene", "", true}, {"time", "ms"}, {"runs", ""}},
                          {{"ice, hollow", spread({13, 12, 12.345}), 3.0}, {"say \"x\"", Cell(), Cell()}}};
   return report;
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
 }
 
 }  // namespace
@@ -113,19 +109,20 @@ TEST_CASE("a page stands alone: nothing to load, everything escaped, plots and m
                        ContainsSubstring("&lt;bar&gt;") && ContainsSubstring("Curves &lt;1&gt;") &&
                        ContainsSubstring("a &amp; b") && ContainsSubstring("All 2 measurements") &&
                        ContainsSubstring("prefers-color-scheme: dark") && ContainsSubstring("@media print"));
-  for (const char* outside : {"<script", "https:", "src=", "href=", "url("}) CHECK(count(page, outside) == 0);
+  for (const char* outside : {"<script", "https:", "src=", "href=", "url("})
+    CHECK(occurrences(page, outside) == 0);
   // A plot that is cut out of the page is a file of its own.
-  CHECK(count(page, "http:") == 3);
-  CHECK(count(page, "<svg xmlns=\"http://www.w3.org/2000/svg\"") == 3);
+  CHECK(occurrences(page, "http:") == 3);
+  CHECK(occurrences(page, "<svg xmlns=\"http://www.w3.org/2000/svg\"") == 3);
   for (const std::string& plot : {svg(CurvePlot{}), svg(BarPlot{}), svg(HeatMap{})})
     CHECK_THAT(plot, ContainsSubstring("<style>") && ContainsSubstring("--ink: #1c2126"));
   // On a narrow screen plots keep a width at which they can be read, and scroll like tables.
-  CHECK(count(page, "style=\"--width:") == 3);
+  CHECK(occurrences(page, "style=\"--width:") == 3);
   CHECK_THAT(page, ContainsSubstring("max-width: 640px") && ContainsSubstring("calc(.85 * var(--width))"));
-  CHECK(count(page, "</svg>") == 3);
+  CHECK(occurrences(page, "</svg>") == 3);
   CHECK_THAT(page,
              ContainsSubstring("12.3 [12, 13]<small>13 12 12.3</small>"));  // raw runs, in the details alone
-  CHECK(count(page, "class=\"cell") == 1);  // what was not measured has no cell
+  CHECK(occurrences(page, "class=\"cell") == 1);  // what was not measured has no cell
 }
 
 TEST_CASE("LaTeX has the tables with booktabs, intervals in them, and every special sign escaped") {
@@ -136,7 +133,7 @@ TEST_CASE("LaTeX has the tables with booktabs, intervals in them, and every spec
                        ContainsSubstring("\\begin{tabular}{lrr}") &&
                        ContainsSubstring("scene & time (ms) & runs \\\\") &&
                        ContainsSubstring("ice, hollow & 12.3 {\\footnotesize[12, 13]} & 3 \\\\"));
-  for (const char* rule : {"\\toprule", "\\midrule", "\\bottomrule"}) CHECK(count(text, rule) == 1);
+  for (const char* rule : {"\\toprule", "\\midrule", "\\bottomrule"}) CHECK(occurrences(text, rule) == 1);
   report.parts = {Table{"Best", {{"size", ""}}, {{"[a]"}}}};
   CHECK_THAT(report_latex(report), ContainsSubstring("{[}a]") && !ContainsSubstring("hollow"));
   report.parts = {Table{"T", {{"of even rays", "%"}, {"error x sqrt(samples)", ""}}, {{"a", 1.0}}}};
@@ -166,13 +163,13 @@ TEST_CASE("plots for a paper's column are files of 88 mm, half as wide as those 
 
 TEST_CASE("a legend stands below its plot and wraps, so that no name is cut; one curve needs none") {
   CurvePlot plot{"", "", "", {{"one", {{1, {1, 1, 1}}}}}};
-  CHECK(count(svg(plot, Place::column), "class=\"name\"") == 0);
+  CHECK(occurrences(svg(plot, Place::column), "class=\"name\"") == 0);
   for (int i = 0; i < 4; ++i) plot.curves.push_back({"1024 x 1024, fixed", {}});
   const std::string text = svg(plot, Place::column);
   // Names of 18 letters take 60 + 18 * 7.2 pixels each: one of them beside "one", then a line each two.
-  CHECK(count(text, "class=\"name\"") == 5);
-  CHECK(count(text, "class=\"name\" x=\"56.0\" y=\"394\">one<") == 1);
-  CHECK(count(text, "x=\"56.0\" y=\"416\">1024 x 1024, fixed<") == 1);
+  CHECK(occurrences(text, "class=\"name\"") == 5);
+  CHECK(occurrences(text, "class=\"name\" x=\"56.0\" y=\"394\">one<") == 1);
+  CHECK(occurrences(text, "x=\"56.0\" y=\"416\">1024 x 1024, fixed<") == 1);
   CHECK_THAT(text, ContainsSubstring("viewBox=\"0 0 400 446\""));
 }
 
@@ -184,7 +181,7 @@ TEST_CASE("ratios are drawn about 1, in text too") {
   const std::size_t line = text.find("faster  ");
   REQUIRE(line != std::string::npos);
   CHECK(text.find("\u25cf", line) < text.find("\u2502", line));  // the point is left of 1
-  CHECK(count(svg(std::get<BarPlot>(report.parts[0])), "class=\"bar\"") == 2);
+  CHECK(occurrences(svg(std::get<BarPlot>(report.parts[0])), "class=\"bar\"") == 2);
 }
 
 TEST_CASE("bars in a paper's column are labelled with the words that differ") {
@@ -206,7 +203,7 @@ TEST_CASE("the axis of ratios holds their intervals") {
   CHECK_THAT(report_text(report), ContainsSubstring("0.467"));
 }
 
-TEST_CASE("T4 has a result a row, whose configuration is what stands before the time") {
+TEST_CASE("T4 has a result a row, whose configuration has the parameters alone") {
   const nlohmann::json t4 = report_t4(small_report());
   CHECK(t4.at("schema_version") == "1.0.0");
   const auto& results = t4.at("results");
@@ -216,6 +213,42 @@ TEST_CASE("T4 has a result a row, whose configuration is what stands before the 
   CHECK(results[0].at("invalidity") == "correct");
   CHECK(results[0].at("measurements")[0] ==
         nlohmann::json({{"name", "time"}, {"value", 12.345}, {"unit", "ms"}}));
+  // Results that a bench has beside the time are measurements, wherever they stand.
+  Report report;
+  add_result(report, {{"scene", "", "ice"}, {"chains", "", Cell()}}, {{"rate", "Gop/s", 5.0}});
+  add_result(report, {{"scene", "", "ice"}, {"chains", "", 8.0}}, {{"rate", "Gop/s", 7.0}});
+  const nlohmann::json more = report_t4(report).at("results");
+  CHECK(more[0].at("configuration") == nlohmann::json({{"scene", "ice"}}));
+  CHECK(more[1].at("configuration") == nlohmann::json({{"scene", "ice"}, {"chains", 8.0}}));
+  CHECK(more[1].at("measurements") ==
+        nlohmann::json::array({{{"name", "rate"}, {"value", 7.0}, {"unit", "Gop/s"}}}));
+}
+
+TEST_CASE("printed tables have energy where it is known, and no empty columns where it is not") {
+  MeasuredWay way;
+  way.name = "a";
+  for (const double seconds : {1.0, 3.0}) way.runs.push_back({seconds, 1, 0, 0, ""});
+  Report report;
+  Table table{"Times", {}, {}};
+  add_row(table, {{"way", "", "plain"}}, way);
+  CHECK(table.columns.size() == 1);
+  for (Run& run : way.runs) run.joules = 40 * run.seconds, run.watts = 40;
+  add_row(table, {{"way", "", "counted"}}, way);
+  report.parts = {table};
+  for (const auto& [text, head, row] :
+       {std::tuple(report_text(report), "energy [J]  power [W]", "counted          80         40"),
+        std::tuple(report_latex(report), "energy\\\\(J)} & power (W)", "counted & 80 & 40"),
+        std::tuple(report_html(report), "<th>energy <small>J</small></th><th>power <small>W</small></th>",
+                   "<td class=\"w\">counted</td><td>80</td><td>40</td>")})
+    CHECK_THAT(text, ContainsSubstring(head) && ContainsSubstring(row));
+}
+
+TEST_CASE("points whose x was measured have a horizontal interval, which the axis holds") {
+  CurvePlot plot{"", "ms", "error", {{"a", {{4, {1, 1, 1}}, {8, {0.5, 0.5, 0.5}, {6, 16}}}}}, false, true};
+  // The axis from 2 to 20: x = 64 + log(x / 2) / log(10) * 672.
+  CHECK_THAT(svg(plot), ContainsSubstring("x1=\"384.6\" x2=\"670.9\""));
+  plot.curves[0].points[1].x_interval = {};
+  CHECK(occurrences(svg(plot), "<line class=\"l c0\"") == 2);
 }
 
 TEST_CASE("plots of nothing, of one point and of zeros are drawn without a number that is none") {
@@ -225,8 +258,8 @@ TEST_CASE("plots of nothing, of one point and of zeros are drawn without a numbe
        {svg(CurvePlot{}), svg(CurvePlot{"", "", "", {{"one", {{4, {}}}}}, true}), svg(BarPlot{}),
         svg(BarPlot{"", "", {zero}}), svg(HeatMap{}), svg(HeatMap{"", "", "", "", {"a"}, {"b"}, {{0.0}}})}) {
     CAPTURE(text);
-    CHECK(count(text, "nan") == 0);
-    CHECK(count(text, "inf") == 0);
+    CHECK(occurrences(text, "nan") == 0);
+    CHECK(occurrences(text, "inf") == 0);
     CHECK(text.ends_with("</svg>"));
   }
 }

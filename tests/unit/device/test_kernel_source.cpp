@@ -7,19 +7,10 @@
 #include "catch.h"
 #include "device/embedded_kernels.h"
 #include "device/kernel_source.h"
+#include "occurrences.h"
 #include "temporary_folder.h"
 
 using namespace sundog;
-
-namespace {
-
-std::size_t occurrences(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
-}  // namespace
 
 TEST_CASE("a program is known by its plain text, without a translation") {
   GeneratedFiles files = {{"main.cl", "#include \"plain/one.cl\"\n"},

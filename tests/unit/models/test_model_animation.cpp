@@ -171,6 +171,73 @@ TEST_CASE("a skin follows its joints from frame to frame", "[models]") {
   }
 }
 
+/// A triangle in z = 0 with two morph targets, which lift its second corner by 1 and move its third by (2, 0,
+/// 0) and turn that one's normal; three keys of weights at 0, 1 and 2 seconds in accessor 5. `mesh` follows
+/// the mesh's primitives, `rest` the meshes.
+std::string morphing(const std::string& mesh, const std::string& rest) {
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});  // positions
+  put<float>(bytes, {0, 0, 1, 0, 0, 1, 0, 0, 1});  // normals
+  put<float>(bytes, {0, 0, 0, 0, 0, 1, 0, 0, 0});  // the first target
+  put<float>(bytes, {0, 0, 0, 0, 0, 0, 2, 0, 0});  // the second, and its normals
+  put<float>(bytes, {0, 0, 0, 0, 0, 0, 1, 0, -1});
+  put<float>(bytes, {0, 1, 2, 0, 0, 1, 0.5f, 0, 1});  // times, weights
+  std::string views, accessors;
+  for (int i = 0; i < 5; ++i) {
+    views += fmt::format(R"({{"buffer":0,"byteOffset":{},"byteLength":36}},)", 36 * i);
+    accessors += fmt::format(R"({{"bufferView":{},"componentType":5126,"type":"VEC3","count":3}},)", i);
+  }
+  return document(
+      R"("buffers":[{"byteLength":216,"uri":"data:application/octet-stream;base64,)" + base64(bytes) +
+      R"("}],"bufferViews":[)" + views +
+      R"({"buffer":0,"byteOffset":180,"byteLength":12},{"buffer":0,"byteOffset":192,"byteLength":24}],
+    "accessors":[)" +
+      accessors +
+      R"({"bufferView":6,"componentType":5126,"type":"SCALAR","count":6},
+    {"bufferView":5,"componentType":5126,"type":"SCALAR","count":3}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1},
+    "targets":[{"POSITION":2},{"POSITION":3,"NORMAL":4}]}])" +
+      mesh + "}]," + rest);
+}
+
+TEST_CASE("morph targets shape a mesh by its node's weights, or by its own", "[models]") {
+  const Model model = load_text("a.gltf", morphing(R"(,"weights":[0.5,0])", R"("nodes":[{"mesh":0},{"mesh":0},
+    {"mesh":0,"weights":[0,1]}])"));
+  CHECK(model.warnings == std::vector<std::string>{});
+  REQUIRE(model.meshes.size() == 2);  // the first two nodes share one
+  CHECK(model.meshes[0].positions.at(1) == glm::vec3(1, 0, 0.5f));
+  CHECK(model.meshes[0].positions.at(2) == glm::vec3(0, 1, 0));
+  CHECK(model.meshes[1].positions.at(1) == glm::vec3(1, 0, 0));
+  CHECK(model.meshes[1].positions.at(2) == glm::vec3(2, 1, 0));
+  CHECK(glm::distance(model.meshes[1].normals.at(2), glm::vec3(1, 0, 0)) < 1e-6f);
+  CHECK_THAT(load_error("a.gltf", morphing(R"(,"weights":[0.5])", one_node)),
+             ContainsSubstring("/meshes/0/weights: 2 numbers wanted"));
+  CHECK_THAT(load_error("a.gltf", morphing("", R"("nodes":[{"mesh":0,"weights":[1,2,3]}])")),
+             ContainsSubstring("/nodes/0/weights: 2 numbers wanted"));
+  CHECK(load_text("a.gltf", quad(one_node, R"(,"targets":[{"COLOR_0":2}])")).unread ==
+        std::vector<std::string>{"morph targets' colours and texture coordinates"});
+  CHECK_THAT(load_error("a.gltf", quad(one_node, R"(,"targets":[{"POSITION":2}])")),
+             ContainsSubstring("/targets/0/POSITION"));
+}
+
+TEST_CASE("weights of morph targets play, and leave other nodes of the mesh alone", "[models]") {
+  const Played scene(morphing("", R"("nodes":[{"mesh":0},{"mesh":0}],
+    "animations":[{"samplers":[{"input":6,"output":5}],
+    "channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}])"));
+  SceneFrames frames(scene.file, {}, {});
+  const auto mesh = [](const SceneDescription& read, std::size_t object) {
+    return read.meshes.at(static_cast<std::size_t>(std::get<MeshShape>(read.objects.at(object).shape).mesh));
+  };
+  for (const double frame : {24.0, 0.0, 12.0, 36.0}) {
+    const auto read = frames.read(frame);
+    const double second = frame / 24, first = second < 1 ? second : 1 - (second - 1),
+                 other = second < 1 ? second / 2 : 0.5 + (second - 1) / 2;
+    CHECK(mesh(*read, 0).positions.at(1).z == Approx(first));
+    CHECK(mesh(*read, 0).positions.at(2).x == Approx(2 * other));
+    CHECK(mesh(*read, 1).positions.at(1) == glm::vec3(1, 0, 0));
+  }
+}
+
 TEST_CASE("frames of an animated model are read one after the other as alone", "[models]") {
   const Played moving(animated(node, {{slide()}}));
   SceneFrames frames(moving.file, {}, {});

@@ -5,6 +5,8 @@
 #include "catch.h"
 #include "gltf_text.h"
 #include "model_files.h"
+#include "scene/load.h"
+#include "temporary_folder.h"
 
 using namespace sundog;
 
@@ -262,9 +264,9 @@ TEST_CASE("glTF's lights come with their node's place and direction, in sundog's
   CHECK(model.lights[2].outer_angle == Approx(glm::degrees(0.2)));
 }
 
-TEST_CASE("the first perspective camera of a glTF's scene is the model's", "[models]") {
+TEST_CASE("the first camera of a glTF's scene that can be one is the model's", "[models]") {
   const Model model = load_text("a.gltf", document(R"("cameras":[
-    {"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"znear":0,"zfar":9}},
+    {"type":"orthographic","orthographic":{"xmag":1e-30,"ymag":1e-30,"znear":0,"zfar":9}},
     {"type":"perspective","perspective":{"yfov":1,"znear":0.5}},{"type":"perspective","perspective":{"yfov":2,"znear":1}}],
     "nodes":[{"camera":0},{"camera":1,"translation":[1,2,3],"rotation":[0,0.70710678,0,0.70710678]},{"camera":2}])"));
   REQUIRE(model.camera);
@@ -275,4 +277,16 @@ TEST_CASE("the first perspective camera of a glTF's scene is the model's", "[mod
   CHECK(near(model.camera->target, {0, 2, 3}));
   CHECK(near(model.camera->up, {0, 1, 0}));
   CHECK(model.warnings.size() == 1);
+}
+
+TEST_CASE("an orthographic camera of a glTF shows twice its ymag", "[models]") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.gltf", quad(R"("cameras":[
+    {"type":"orthographic","orthographic":{"xmag":3,"ymag":-2,"znear":0,"zfar":9}}],
+    "nodes":[{"mesh":0},{"camera":0,"translation":[1,2,3]}])"));
+  CHECK(load_model(file).warnings == std::vector<std::string>{});
+  const Camera camera = load_scene(file).camera;
+  CHECK(camera.orthographic == 4);
+  CHECK(camera.position == dvec3(1, 2, 3));
+  CHECK(camera.far == 9);
 }

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // The rule: a file in which the validator found no error must load, and one with an error must be refused
-// with its place, unless all its errors are of these kinds. They concern what is not read (morph targets,
-// skins, custom attributes, textures, extensions at the wrong place), or contradict nothing that is (missing
+// with its place, unless all its errors are of these kinds. They concern what is not read (skins,
+// custom attributes, textures, extensions at the wrong place), or contradict nothing that is (missing
 // bounds, an empty list, a buffer view's hint of use).
 const std::set<std::string> not_read{"UNEXPECTED_EXTENSION_OBJECT",
                                      "BUFFER_MISSING_GLB_DATA",
@@ -31,20 +31,15 @@ const std::set<std::string> not_read{"UNEXPECTED_EXTENSION_OBJECT",
                                      "MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS",
                                      "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
                                      "MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH",
-                                     "MESH_PRIMITIVE_MORPH_TARGET_INVALID_ATTRIBUTE_COUNT",
-                                     "MESH_PRIMITIVE_MORPH_TARGET_NO_BASE_ACCESSOR",
-                                     "MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT",
-                                     "MESH_INVALID_WEIGHTS_COUNT"};
+                                     "MESH_PRIMITIVE_MORPH_TARGET_NO_BASE_ACCESSOR"};
 
 bool must_be_refused(const fs::path& report) {
   std::ifstream in(report);
   const auto messages = nlohmann::json::parse(in).at("issues").at("messages");
   for (const auto& message : messages) {
-    const bool in_targets = message.value("pointer", "").find("/targets/") != std::string::npos;
     const bool lost_offset = message.value("pointer", "").ends_with("/byteOffset") &&
                              message.at("code") == "UNSATISFIED_DEPENDENCY";  // only warned of
-    if (message.at("severity") == 0 && not_read.count(message.at("code")) == 0 && !in_targets && !lost_offset)
-      return true;
+    if (message.at("severity") == 0 && not_read.count(message.at("code")) == 0 && !lost_offset) return true;
   }
   return false;
 }

@@ -71,6 +71,9 @@ TEST_CASE("OBJ vertex colours reach the mesh and its material", "[models]") {
   REQUIRE(model.materials.size() == 1);
   CHECK(model.materials[0].vertex_color);
   CHECK(model.meshes[0].materials == std::vector<int>{0});
+  const Model bytes = load_text("a.obj", "v 0 0 0 255 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+  CHECK(bytes.meshes.at(0).colors.at(0) == glm::vec3(1, 0, 0));
+  CHECK(bytes.meshes.at(0).colors.at(1).y == Approx(0.033105));  // sRGB 0.2 as a linear value
 }
 
 TEST_CASE("OBJ faces of one or two corners are dropped and counted", "[models]") {

@@ -142,6 +142,20 @@ TEST_CASE("an ASCII PLY's polygons are triangulated and its normals made", "[mod
   CHECK(model.materials.empty());
 }
 
+TEST_CASE("colours from 0 to 255 in properties for floats are bytes, others are light", "[models]") {
+  const std::string colors = "property float red\nproperty float green\nproperty float blue\n";
+  const auto first = [&](const std::string& color) {
+    const std::string corner = " 0 0 0\n";
+    const Model model = load_text("a.ply", header("ascii", xyz + colors, 3, 1) + "0 0 0 " + color +
+                                               "\n1 0 0" + corner + "0 1 0" + corner + "3 0 1 2\n");
+    return glm::vec3(model.meshes.at(0).colors.at(0));
+  };
+  CHECK(first("255 128 1").x == 1);
+  CHECK(first("255 128 1").y == Approx(0.21586).epsilon(1e-3));
+  CHECK(first("1 0 1") == glm::vec3(1, 0, 1));
+  CHECK(first("3.5 0.5 1") == glm::vec3(3.5f, 0.5f, 1));
+}
+
 TEST_CASE("PLY faces of different colour split the vertices between them, and still smooth", "[models]") {
   const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   const Model model =

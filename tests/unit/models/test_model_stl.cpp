@@ -53,6 +53,15 @@ TEST_CASE("a binary STL that promises fewer facets than it holds says so", "[mod
   CHECK_THAT(model.warnings[0], ContainsSubstring("1 facets promised, but the file has room for 2"));
 }
 
+TEST_CASE("a binary STL with colours says that they are not read", "[models]") {
+  const std::vector<std::string> colors{"colours of facets"};
+  CHECK(load_text("a.stl", binary(2, two_triangles, "COLOR=\xff\x80\x20\xff")).unread == colors);
+  std::string last = binary(2, two_triangles);
+  last.back() = '\x80';
+  CHECK(load_text("a.stl", last).unread == colors);
+  CHECK(load_text("a.stl", binary(2, two_triangles)).unread == std::vector<std::string>{});
+}
+
 TEST_CASE("an ASCII STL may be in capitals, behind a byte order mark", "[models]") {
   std::string text = "solid a\n" + ascii_facet("0 0 0", "2 0 0", "0 1 0") + "endsolid a\n";
   CHECK(area_of(load_text("a.stl", "\xEF\xBB\xBF" + text).meshes.at(0)) == 1);

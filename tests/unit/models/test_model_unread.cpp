@@ -39,14 +39,15 @@ TEST_CASE("what an OBJ and its materials have and is not read is one warning", "
   const TemporaryFolder folder;
   folder.write("m.mtl",
                "newmtl a\nKd 1 1 1\nmap_Kd a.png\nmap_Bump -bm 1 b.png\nKe 0 0 0\nPs 0\n"
-               "newmtl b\nmap_Kd c.png\nKe 1 0 0\nrefl r.png\n");
+               "newmtl b\nmap_Kd c.png\nKe 1 0 0\nrefl r.png\nKs xyz 0.4 0.2 0.1\n");
   const Model model = load_model(folder.write(
       "a.obj",
       "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nl 1 2\np 1\n"));
-  CHECK(model.unread == Features{"reflection maps", "lines", "points"});
+  CHECK(model.unread == Features{"spectral and CIE XYZ colours", "reflection maps", "lines", "points"});
   REQUIRE(model.warnings.size() == 4);
   CHECK_THAT(model.warnings[0], ContainsSubstring("a.png is missing"));
-  CHECK(model.warnings[3] == "read without its reflection maps, lines and points");
+  CHECK(model.warnings[3] ==
+        "read without its spectral and CIE XYZ colours, reflection maps, lines and points");
 }
 
 TEST_CASE("attributes of vertices that are not used are named once", "[models]") {

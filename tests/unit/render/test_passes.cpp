@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "render/film/checkpoint.h"
 #include "render/plan/convergence.h"
+#include "render/plan/pixel_rules.h"
 #include "render/plan/subsample.h"
 #include "shared/sampler.h"
 #include "temporary_folder.h"
@@ -203,6 +204,27 @@ TEST_CASE("where blocks of pixels take more rays, more of the error must be at s
     CHECK(dear <= right);
     CHECK(dear < cheap);
   }
+}
+
+TEST_CASE("pixels that have found no rare bright light yet are not left darker than the others") {
+  // One sample in sixteen is bright. A pixel that decides by its own change stops while it has seen none.
+  const auto lit = [](int x, int y, u32 sample) {
+    const u32 chance = hash_u32(sample + 4096 * hash_u32(static_cast<u32>(at(x, y) + 1)));
+    return MadeUpPixel{chance % 16 == 0 ? 4.25f : 0.05f, 1};
+  };
+  const auto light_of = [&](SamplingPlan plan) {
+    Film film = growing(false);
+    run(film, plan, lit);
+    double light = 0;
+    for (std::size_t p = 0; p < film.pixels(); ++p) light += color_at(film, p).r;
+    return light / static_cast<double>(film.pixels());
+  };
+  SamplingPlan even = adaptive_plan(0, 256), adaptive = adaptive_plan(0.5, 256);
+  even.settings.progressive = true;
+  adaptive.settings.first_samples = 4;
+  CHECK(light_of(adaptive) < 0.9 * light_of(even));
+  adaptive.noisy = true;
+  CHECK(light_of(adaptive) == Approx(light_of(even)).epsilon(0.02));
 }
 
 TEST_CASE("a budget is kept, and the pixels of the largest errors get it") {

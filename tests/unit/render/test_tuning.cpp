@@ -38,6 +38,13 @@ TEST_CASE("a tuning's options are written, read and shown; without them a file i
   }
 }
 
+TEST_CASE("the text of a tuning says which of its work-groups is for first surfaces") {
+  Tuning tuning;
+  tuning.work_group = {WorkGroup::Kind::fixed, 64, 1};
+  tuning.surfaces_group = {WorkGroup::Kind::fixed, 8, 4};
+  CHECK(tuning_text(tuning) == "work-group 64, work-group 8x4 for first surfaces");
+}
+
 TEST_CASE("a tuning file has no options that no tuning tries") {
   TuningFile file{"P", "D", "1", "k", 0, {TuningEntry{"render_whitted", "solids+paths", "s", {}}}};
   const auto read_with = [&](const char* options) {

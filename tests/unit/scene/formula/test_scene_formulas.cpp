@@ -51,7 +51,7 @@ TEST_CASE("a long text in the place of a formula's name is not quoted whole") {
 
 TEST_CASE("a formula in a scene is accepted as one string or as lines") {
   CHECK(load_scene_text(scene_of_formula({{"map", "z = z ^ 8 + c"}})).fields.size() == 1);
-  CHECK(load_scene_text(scene_of_formula({{"map", {"t = 8", "z = z ^ 8 + c"}}})).fields.size() == 1);
+  CHECK(load_scene_text(scene_of_formula({{"map", {"t = 8", "", "z = z ^ 8 + c"}}})).fields.size() == 1);
 }
 
 TEST_CASE("a distance that has statements alone, or nothing but a comment, wants an expression") {
@@ -61,6 +61,7 @@ TEST_CASE("a distance that has statements alone, or nothing but a comment, wants
 
 TEST_CASE("an error in a scene's formula names the line of the array and the column in it") {
   check_map_refused({"t = 1", "z = (z +", "  y)"}, "line 3, column 3: unknown name 'y'");
+  check_map_refused({"t = 1", "", "z = z + y"}, "line 3, column 9: unknown name 'y'");
   check_map_refused("z = z + c.w", "line 1, column 10: ");
 }
 

@@ -77,7 +77,7 @@ export function CameraPath({camera, onChange}) {
     began.current = performance.now();
     const tick = () => {
       if (stopped) return;
-      const frame = views[0].frame + ((performance.now() - began.current) / 1000) * 24;
+      const frame = views[0].frame + ((performance.now() - began.current) / 1000) * (document.frames_per_second ?? 24);
       if (frame > last.frame) return play(false);
       const view = viewAt(document, frame);
       onChange(withView(camera, view.position, view.target), gesture);

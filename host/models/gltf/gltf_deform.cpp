@@ -1,6 +1,7 @@
-// Blends joint matrices by a vertex's weights, and moves positions and normals.
-#include "models/gltf/gltf_skins.h"
+// Adds weighted morph targets; blends joint matrices by a vertex's weights, and moves positions and normals.
+#include "models/gltf/gltf_deform.h"
 
+#include <cmath>
 #include <optional>
 
 namespace sundog::models {
@@ -31,7 +32,22 @@ glm::vec3 unit(const glm::dvec3& v) {
   return glm::vec3(length > 0 ? v / length : v);
 }
 
+glm::vec3 change(const std::vector<float>& changes, std::size_t vertex) {
+  const glm::vec3 v(changes[3 * vertex], changes[3 * vertex + 1], changes[3 * vertex + 2]);
+  return std::isfinite(v.x + v.y + v.z) ? v : glm::vec3(0);
+}
+
 }  // namespace
+
+void move_by_target(float weight, const TargetChanges& changes, const std::vector<std::uint32_t>& used,
+                    std::size_t first, Mesh& mesh) {
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const std::size_t at = first + i;
+    if (changes.positions) mesh.positions[at] += weight * change(*changes.positions, used[i]);
+    if (changes.normals) mesh.normals[at] += weight * change(*changes.normals, used[i]);
+    if (changes.tangents) mesh.tangents[at] += glm::vec4(weight * change(*changes.tangents, used[i]), 0);
+  }
+}
 
 void move_by_joints(const std::vector<glm::dmat4>& matrices, const JointWeights& of,
                     const std::vector<std::uint32_t>& used, std::size_t first, Mesh& mesh) {
