@@ -74,6 +74,7 @@ struct CompiledScene : SceneTables {
   std::string integrator = "whitted";  // a name listed in scene/integrators.h
   Tracer tracer = Tracer::automatic;
   Sampling sampling;
+  std::vector<std::string> light_groups;  // sorted; group i is number i + 1 in the tables
   PhotonPlan photons_by;
   SceneFeatures features;
   BvhFigures figures;

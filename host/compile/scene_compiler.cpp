@@ -16,7 +16,6 @@
 #include "compile/view/field_view.h"
 #include "compile/view/local_origin.h"
 #include "scene/integrators.h"
-#include "scene/light_groups.h"
 
 namespace sundog {
 namespace {
@@ -132,6 +131,12 @@ void take(const Lights& lights, CompiledScene& out) {
   out.info.sees_environment = lights.sees_environment;
 }
 
+void take(const AllLights& lights, CompiledScene& out) {
+  take_tables(lights, out);
+  out.light_groups = lights.groups;
+  out.photons_by = lights.photons_by;
+}
+
 void take(const Surfaces& surfaces, CompiledScene& out) {
   take_tables(surfaces, out);
   out.info.texel_page = surfaces.texel_page;
@@ -230,21 +235,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   memo(halo, HaloInputs{&scene.environment}, compile_halo);
   work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
   take(lights.value, out);
-  const AllLights all_lights = compile_all_lights({.origin = origin,
-                                                   .camera_position = out.info.camera_position,
-                                                   .lights = scene.lights,
-                                                   .materials = scene.materials,
-                                                   .meshes = scene.meshes,
-                                                   .objects = scene.objects,
-                                                   .environment_group = scene.environment.group,
-                                                   .groups = light_groups(scene),
-                                                   .render = scene.render,
-                                                   .of_scene = lights.value,
-                                                   .packed_materials = surfaces.value.materials,
-                                                   .instances = out.instances,
-                                                   .boxes = instances.value.boxes});
-  take_tables(all_lights, out);
-  out.photons_by = all_lights.photons_by;
+  take(compile_all_lights(all_lights_inputs(scene, out, lights.value, surfaces.value, instances.value)), out);
   finish(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -10,6 +10,7 @@
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/frame/frame_tiles.h"
+#include "render/plan/tiles.h"
 #include "scene/integrators.h"
 
 namespace sundog {
