@@ -45,15 +45,6 @@ struct StopFlags {
   bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
 };
 
-/// A worker's statistics so far.
-struct WorkerFigures {
-  std::map<std::string, KernelTimes> kernels;
-  double readback_seconds = 0;
-  std::vector<std::string> notes;  // problems that did not stop it: smaller launches, an unusable cache
-  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
-  std::uint64_t kernels_built = 0;  // programs compiled by the driver
-};
-
 /// A worker is used by one thread; overdue() and compiles() may be called by any.
 class DeviceWorker {
  public:

@@ -86,6 +86,11 @@ FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
   return needs;
 }
 
+double tile_seconds_of(const DeviceInfo& device, const RenderOptions& options) {
+  if (options.tile_seconds > 0) return options.tile_seconds;
+  return options.tuning ? 1e-3 * options.tuning(device).tile_ms : 0;
+}
+
 std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const RenderOptions& options) {
   std::vector<DeviceSpeed> speeds;
   for (const WorkerPlan& device : devices)
@@ -93,7 +98,7 @@ std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const
                       .sample = device.measured_pixels,
                       .estimate = device.info.estimate,
                       .processor = device.processor,
-                      .tile_seconds = options.tuning ? 1e-3 * options.tuning(device.info).tile_ms : 0});
+                      .tile_seconds = tile_seconds_of(device.info, options)});
   return speeds;
 }
 
@@ -134,7 +139,7 @@ std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<
                                        Film(area.width, area.height, needs_of(scene, options)),
                                        speeds_of(devices, options));
   for (const WorkerPlan& device : devices)
-    frame->workers.push_back({.device = device.make(frame->options), .report = {.info = device.info}});
+    frame->workers.emplace_back(device.make(frame->options)).report.info = device.info;
   frame->area = area;
   frame->inner = options.region.value_or(area);
   frame->inner.x -= area.x, frame->inner.y -= area.y;
