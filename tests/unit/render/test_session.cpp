@@ -54,7 +54,8 @@ struct MadeUpWorker : SceneWorker {
     if (fails) throw DeviceError("a made-up failure");
     if (pause_us > 0) std::this_thread::sleep_for(std::chrono::microseconds(pause_us));
     const Tile& tile = request.tile;
-    TileResult made{tile, {}, {}, {}, {}};
+    TileResult made;
+    made.tile = tile;
     if (flags.set()) made.tile.height = 0;
     const float light = scene->lights.empty() ? 0 : scene->lights[0].color.x;
     for (int y = 0; y < made.tile.height; ++y)
