@@ -9,6 +9,7 @@
 #include "api/impl.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "render/film/group_names.h"
 #include "scene/shot.h"
 
 namespace sundog {
@@ -95,17 +96,9 @@ Figures figures_of(const RenderResult& result, double compile_seconds) {
   return figures;
 }
 
-void check_aovs(const std::vector<std::string>& aovs) {
-  for (const std::string& name : aovs)
-    if (std::ranges::count(aov_names(), name) == 0) {
-      throw UsageError(
-          fmt::format("there is no AOV \"{}\"; wanted some of {}", name, fmt::join(aov_names(), ", ")));
-    }
-}
-
 std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions& options,
                                         Callbacks& callbacks) {
-  check_aovs(options.aovs);
+  for (const std::string& name : options.aovs) check_aov(name);
   auto film = std::make_shared<Film::Impl>();
   const auto description = scene.impl().describe();
   const Stopwatch clock;

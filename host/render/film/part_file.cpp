@@ -65,10 +65,7 @@ std::optional<int> whole(const json& head, const char* key, int least, int most)
 
 /// Whether the values are distinct names of AOVs.
 bool are_aovs(const std::vector<std::string>& names) {
-  const auto known = [](const std::string& name) {
-    return std::ranges::count(aov_names(), name) == 1 || is_light_group(name);
-  };
-  return std::ranges::all_of(names, known) &&
+  return std::ranges::all_of(names, is_aov) &&
          std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 

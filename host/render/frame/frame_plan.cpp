@@ -16,13 +16,6 @@
 namespace sundog {
 namespace {
 
-void check_aovs(const std::vector<std::string>& names) {
-  for (const std::string& name : names)
-    if (!is_light_group(name) && std::ranges::count(aov_names(), name) == 0)
-      throw UsageError(
-          fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
-}
-
 /// The variance is known only if samples are doubled in passes.
 void check_variance(const std::vector<std::string>& names, const Sampling& sampling) {
   if (std::ranges::count(names, "variance") > 0 && !in_passes(sampling))
@@ -117,7 +110,7 @@ Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::
 
 void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                  const RenderOptions& options) {
-  check_aovs(options.aovs);
+  for (const std::string& name : options.aovs) check_aov(name);
   check_variance(options.aovs, scene.sampling);
   check_light(options.aovs, scene);
   if (devices.empty()) throw DeviceError("no device to render on");
