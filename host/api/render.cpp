@@ -1,6 +1,4 @@
 // render(): compiles a Scene, opens the devices, renders, and converts options and results.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>

@@ -1,10 +1,7 @@
 // Tone maps images for screens: bloom, white balance, exposure, vignette, a curve that compresses highlights,
 // and contrast. Files of other formats keep the rendered values.
 #pragma once
-#include <array>
-
 #include "base/image.h"
-#include "base/named_values.h"
 
 namespace sundog {
 
@@ -14,10 +11,6 @@ namespace sundog {
 /// aces: the output transform of ACES 1.3 for standard range (aces.h).
 /// agx: Sobotka's AgX with Wrensch's matrices (2023): a range of 16.5 stops; bright colours fade to white.
 enum class ToneCurve { none, reinhard, aces, agx };
-
-inline constexpr std::array tone_curves = {
-    NamedValue<ToneCurve>{"none", ToneCurve::none}, NamedValue<ToneCurve>{"reinhard", ToneCurve::reinhard},
-    NamedValue<ToneCurve>{"aces", ToneCurve::aces}, NamedValue<ToneCurve>{"agx", ToneCurve::agx}};
 
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;

@@ -81,8 +81,8 @@ struct CompiledScene : SceneTables {
 };
 
 /// Compiles a scene. Pure: equal descriptions give equal bytes for any number of threads, except the times in
-/// the figures. Assembled from parts (scene_compiler.h). Throws SceneError for an empty image, and for more
-/// triangles than indices can address.
+/// the figures. Assembled from parts (scene_compiler.h). Throws SceneError for more pixels, triangles or
+/// texels than indices can address.
 CompiledScene compile(const SceneDescription& scene);
 
 }  // namespace sundog

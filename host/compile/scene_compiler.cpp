@@ -2,14 +2,10 @@
 // merges their tables and features.
 #include "compile/scene_compiler.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
 
-#include "base/error.h"
 #include "compile/placing/instances.h"
 #include "compile/steps.h"
 #include "compile/surfaces/lobe_energy.h"
@@ -19,35 +15,6 @@
 
 namespace sundog {
 namespace {
-
-/// Checks indices, which may be invalid in a scene made in memory.
-void check_objects(const SceneDescription& scene) {
-  const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
-  for (const Object& object : scene.objects) {
-    const auto* shape = std::get_if<MeshShape>(&object.shape);
-    if (shape && (shape->mesh < 0 || !fits(shape->mesh, scene.meshes.size())))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" places a mesh that does not exist");
-    const auto* field = std::get_if<FieldShape>(&object.shape);
-    if (field && (field->field < 0 || !fits(field->field, scene.fields.size())))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" places a field that does not exist");
-    if (!fits(object.material, scene.materials.size()))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" names a material that does not exist");
-  }
-  for (const MaterialDescription& material : scene.materials)
-    if (!fits(material.medium, scene.media.size()))
-      throw SceneError(scene.file.string(), "",
-                       "material \"" + material.name + "\" names a medium that does not exist");
-}
-
-void check_integrator(const SceneDescription& scene) {
-  if (!find_integrator(scene.render.integrator))
-    throw SceneError(scene.file.string(), "/render/integrator",
-                     fmt::format("wanted one of {}, found \"{}\"", fmt::join(integrator_names, ", "),
-                                 scene.render.integrator));
-}
 
 /// log2 of the number of places of each pixel in the blue noise sequence; each ray to a light takes its own.
 void set_sample_room(CompiledScene& out) {
@@ -187,8 +154,6 @@ SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
 //   lights, fog ─────────┴▶ lights ─▶ lights of meshes, tree, photons ───┘
 CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
-  check_objects(scene);
-  check_integrator(scene);
   const std::vector<FieldView> views = views_of(scene);
   const dvec3 origin = any_deep(views) ? scene.camera.position : local_origin(scene);
   CompiledScene out;
