@@ -16,8 +16,6 @@
 namespace sundog {
 namespace {
 
-dvec3 unit(const dvec3& vector) { return vector / glm::length(vector); }
-
 /// A camera's axes and the vectors from pixel to pixel.
 struct Frame {
   dvec3 forward, up, corner, dx, dy;
@@ -25,9 +23,10 @@ struct Frame {
 
 Frame frame_of(const ViewInputs& in, const View& view) {
   const ImageSettings& image = in.image;
+  const auto unit_vector = [](const dvec3& vector) { return vector / glm::length(vector); };
   Frame frame;
-  frame.forward = unit(view.target - view.position);
-  frame.up = unit(in.camera.up);
+  frame.forward = unit_vector(view.target - view.position);
+  frame.up = unit_vector(in.camera.up);
   const dvec3 side = glm::cross(frame.forward, frame.up);
   const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, frame.forward);
   const bool parallel = in.camera.orthographic > 0;
