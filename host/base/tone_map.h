@@ -15,11 +15,11 @@ enum class ToneCurve { none, reinhard, aces, agx };
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;
   double exposure = 0;       // in stops: multiplies colours by 2^exposure before the curve
-  double white_balance = 0;  // kelvin, 1667..25000: light of this temperature turns white; 0: off
+  double white_balance = 0;  // kelvin: light of this temperature turns white; 0: off
   bool automatic = false;    // the exposure is automatic_exposure()
-  double contrast = 1;       // slope at middle grey, applied after the curve, 0.25..4; 1: off
-  double vignette = 0;       // share of light that corners lose, 0..1
-  double bloom = 0;          // share of light that spreads to its surroundings, 0..1
+  double contrast = 1;       // slope at middle grey, applied after the curve; 1: off
+  double vignette = 0;       // share of light that corners lose
+  double bloom = 0;          // share of light that spreads to its surroundings
 
   bool operator==(const ToneMap&) const = default;
 };
