@@ -9,7 +9,7 @@
 
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"

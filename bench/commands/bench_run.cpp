@@ -21,8 +21,8 @@
 #include "base/file.h"
 #include "bench/commands/known_report.h"
 #include "bench/report/machine.h"
-#include "bench/runs/energy.h"
 #include "device/driver_folder.h"
+#include "device/energy.h"
 #include "render/film/hash.h"
 
 namespace sundog {

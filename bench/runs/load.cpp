@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "bench/runs/energy.h"
+#include "device/energy.h"
 
 namespace sundog {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "bench/runs/energy.h"
+#include "device/energy.h"
 
 namespace sundog {
 namespace {

@@ -2,14 +2,16 @@
 #include <algorithm>
 
 #include "api/impl.h"
+#include "base/code_names.h"
 
 namespace sundog {
 inline namespace v0 {
 namespace {
 
 core::ToneMap tone_map_of(const ToneMap& map) {
-  const auto curve = sundog::value_named(sundog::tone_curves, map.curve);
-  if (!curve)
+  const auto& curves = sundog::enumerator_names<sundog::ToneCurve>;
+  const auto curve = std::ranges::find(curves, std::string_view(map.curve));
+  if (curve == curves.end() || map.curve.empty())
     throw Error(ErrorKind::usage,
                 "tone map: wanted the curve none, reinhard, aces or agx, found \"" + map.curve + "\"");
   if (!(std::abs(map.exposure) <= 32))
@@ -17,7 +19,8 @@ core::ToneMap tone_map_of(const ToneMap& map) {
   const bool white = map.white_balance >= sundog::least_white && map.white_balance <= sundog::greatest_white;
   if (map.white_balance != 0 && !white)
     throw Error(ErrorKind::usage, "tone map: wanted a white balance of 1667 to 25000 kelvin, or 0");
-  return core::ToneMap{*curve, map.exposure, map.white_balance};
+  return core::ToneMap{static_cast<sundog::ToneCurve>(curve - curves.begin()), map.exposure,
+                       map.white_balance};
 }
 
 std::shared_ptr<const Image::Impl> no_pixels() {

@@ -1,6 +1,4 @@
 // render(): compiles a Scene, opens the devices, renders, and converts options and results.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,6 +7,7 @@
 #include "api/impl.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "render/film/group_names.h"
 #include "scene/shot.h"
 
 namespace sundog {
@@ -95,17 +94,9 @@ Figures figures_of(const RenderResult& result, double compile_seconds) {
   return figures;
 }
 
-void check_aovs(const std::vector<std::string>& aovs) {
-  for (const std::string& name : aovs)
-    if (std::ranges::count(aov_names(), name) == 0) {
-      throw UsageError(
-          fmt::format("there is no AOV \"{}\"; wanted some of {}", name, fmt::join(aov_names(), ", ")));
-    }
-}
-
 std::shared_ptr<Film::Impl> render_host(const Scene& scene, const RenderOptions& options,
                                         Callbacks& callbacks) {
-  check_aovs(options.aovs);
+  for (const std::string& name : options.aovs) check_aov(name);
   auto film = std::make_shared<Film::Impl>();
   const auto description = scene.impl().describe();
   const Stopwatch clock;

@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,14 +28,6 @@ std::vector<std::string> names_of(const std::vector<Row>& rows) {
   std::vector<std::string> names;
   for (const Row& row : rows) names.push_back(row.name);
   return names;
-}
-
-/// The value of that name, if any.
-template <class Value, std::size_t N>
-constexpr std::optional<Value> value_named(const std::array<NamedValue<Value>, N>& table,
-                                           std::string_view name) {
-  const auto row = std::ranges::find(table, name, &NamedValue<Value>::name);
-  return row == table.end() ? std::nullopt : std::optional(row->value);
 }
 
 /// The name of a value. Throws std::logic_error if it is missing.

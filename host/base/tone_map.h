@@ -1,10 +1,7 @@
 // Tone maps images for screens: bloom, white balance, exposure, vignette, a curve that compresses highlights,
 // and contrast. Files of other formats keep the rendered values.
 #pragma once
-#include <array>
-
 #include "base/image.h"
-#include "base/named_values.h"
 
 namespace sundog {
 
@@ -15,18 +12,14 @@ namespace sundog {
 /// agx: Sobotka's AgX with Wrensch's matrices (2023): a range of 16.5 stops; bright colours fade to white.
 enum class ToneCurve { none, reinhard, aces, agx };
 
-inline constexpr std::array tone_curves = {
-    NamedValue<ToneCurve>{"none", ToneCurve::none}, NamedValue<ToneCurve>{"reinhard", ToneCurve::reinhard},
-    NamedValue<ToneCurve>{"aces", ToneCurve::aces}, NamedValue<ToneCurve>{"agx", ToneCurve::agx}};
-
 struct ToneMap {
   ToneCurve curve = ToneCurve::none;
   double exposure = 0;       // in stops: multiplies colours by 2^exposure before the curve
-  double white_balance = 0;  // kelvin, 1667..25000: light of this temperature turns white; 0: off
+  double white_balance = 0;  // kelvin: light of this temperature turns white; 0: off
   bool automatic = false;    // the exposure is automatic_exposure()
-  double contrast = 1;       // slope at middle grey, applied after the curve, 0.25..4; 1: off
-  double vignette = 0;       // share of light that corners lose, 0..1
-  double bloom = 0;          // share of light that spreads to its surroundings, 0..1
+  double contrast = 1;       // slope at middle grey, applied after the curve; 1: off
+  double vignette = 0;       // share of light that corners lose
+  double bloom = 0;          // share of light that spreads to its surroundings
 
   bool operator==(const ToneMap&) const = default;
 };

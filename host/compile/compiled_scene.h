@@ -74,14 +74,15 @@ struct CompiledScene : SceneTables {
   std::string integrator = "whitted";  // a name listed in scene/integrators.h
   Tracer tracer = Tracer::automatic;
   Sampling sampling;
+  std::vector<std::string> light_groups;  // sorted; group i is number i + 1 in the tables
   PhotonPlan photons_by;
   SceneFeatures features;
   BvhFigures figures;
 };
 
 /// Compiles a scene. Pure: equal descriptions give equal bytes for any number of threads, except the times in
-/// the figures. Assembled from parts (scene_compiler.h). Throws SceneError for an empty image, and for more
-/// triangles than indices can address.
+/// the figures. Assembled from parts (scene_compiler.h). Throws SceneError for more pixels, triangles or
+/// texels than indices can address.
 CompiledScene compile(const SceneDescription& scene);
 
 }  // namespace sundog

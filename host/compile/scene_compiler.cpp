@@ -2,53 +2,19 @@
 // merges their tables and features.
 #include "compile/scene_compiler.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
 
-#include "base/error.h"
 #include "compile/placing/instances.h"
 #include "compile/steps.h"
 #include "compile/surfaces/lobe_energy.h"
 #include "compile/view/field_view.h"
 #include "compile/view/local_origin.h"
 #include "scene/integrators.h"
-#include "scene/light_groups.h"
 
 namespace sundog {
 namespace {
-
-/// Checks indices, which may be invalid in a scene made in memory.
-void check_objects(const SceneDescription& scene) {
-  const auto fits = [](int index, std::size_t size) { return index < static_cast<int>(size); };
-  for (const Object& object : scene.objects) {
-    const auto* shape = std::get_if<MeshShape>(&object.shape);
-    if (shape && (shape->mesh < 0 || !fits(shape->mesh, scene.meshes.size())))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" places a mesh that does not exist");
-    const auto* field = std::get_if<FieldShape>(&object.shape);
-    if (field && (field->field < 0 || !fits(field->field, scene.fields.size())))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" places a field that does not exist");
-    if (!fits(object.material, scene.materials.size()))
-      throw SceneError(scene.file.string(), object.place,
-                       "object \"" + object.name + "\" names a material that does not exist");
-  }
-  for (const MaterialDescription& material : scene.materials)
-    if (!fits(material.medium, scene.media.size()))
-      throw SceneError(scene.file.string(), "",
-                       "material \"" + material.name + "\" names a medium that does not exist");
-}
-
-void check_integrator(const SceneDescription& scene) {
-  if (!find_integrator(scene.render.integrator))
-    throw SceneError(scene.file.string(), "/render/integrator",
-                     fmt::format("wanted one of {}, found \"{}\"", fmt::join(integrator_names, ", "),
-                                 scene.render.integrator));
-}
 
 /// log2 of the number of places of each pixel in the blue noise sequence; each ray to a light takes its own.
 void set_sample_room(CompiledScene& out) {
@@ -132,6 +98,12 @@ void take(const Lights& lights, CompiledScene& out) {
   out.info.sees_environment = lights.sees_environment;
 }
 
+void take(const AllLights& lights, CompiledScene& out) {
+  take_tables(lights, out);
+  out.light_groups = lights.groups;
+  out.photons_by = lights.photons_by;
+}
+
 void take(const Surfaces& surfaces, CompiledScene& out) {
   take_tables(surfaces, out);
   out.info.texel_page = surfaces.texel_page;
@@ -182,8 +154,6 @@ SceneCompiler& SceneCompiler::operator=(SceneCompiler&&) noexcept = default;
 //   lights, fog ─────────┴▶ lights ─▶ lights of meshes, tree, photons ───┘
 CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   const auto start = std::chrono::steady_clock::now();
-  check_objects(scene);
-  check_integrator(scene);
   const std::vector<FieldView> views = views_of(scene);
   const dvec3 origin = any_deep(views) ? scene.camera.position : local_origin(scene);
   CompiledScene out;
@@ -230,21 +200,7 @@ CompiledScene SceneCompiler::compile(const SceneDescription& scene) {
   memo(halo, HaloInputs{&scene.environment}, compile_halo);
   work_.lights += memo(lights, light_inputs(scene, origin, halo.known()), compile_lights);
   take(lights.value, out);
-  const AllLights all_lights = compile_all_lights({.origin = origin,
-                                                   .camera_position = out.info.camera_position,
-                                                   .lights = scene.lights,
-                                                   .materials = scene.materials,
-                                                   .meshes = scene.meshes,
-                                                   .objects = scene.objects,
-                                                   .environment_group = scene.environment.group,
-                                                   .groups = light_groups(scene),
-                                                   .render = scene.render,
-                                                   .of_scene = lights.value,
-                                                   .packed_materials = surfaces.value.materials,
-                                                   .instances = out.instances,
-                                                   .boxes = instances.value.boxes});
-  take_tables(all_lights, out);
-  out.photons_by = all_lights.photons_by;
+  take(compile_all_lights(all_lights_inputs(scene, out, lights.value, surfaces.value, instances.value)), out);
   finish(out);
   out.figures.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

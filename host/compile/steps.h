@@ -260,10 +260,14 @@ struct AllLights {
   SharedTable<Instance> instances;
   SharedTable<PhotonTarget> photon_targets;
   SharedTable<float> photon_lights;
+  std::vector<std::string> groups;
   PhotonPlan photons_by;
   SceneFeatures features;
 };
 AllLights compile_all_lights(const AllLightsInputs& in);
+/// `so_far`: the scene with its origin, camera and instances.
+AllLightsInputs all_lights_inputs(const SceneDescription& scene, const CompiledScene& so_far,
+                                  const Lights& of_scene, const Surfaces& surfaces, const Instances& placed);
 
 ContentKey key_of(const HaloInputs& inputs);
 ContentKey key_of(const LightInputs& inputs);

@@ -9,9 +9,6 @@
 
 namespace sundog {
 
-/// Plans a worker for a device of this process.
-WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
-
 /// Renders on all `devices` together and waits for each to finish. Throws DeviceError if every device failed,
 /// BuildError if the kernels build on none, SceneError for a damaged checkpoint, UsageError for a checkpoint
 /// of another scene, unknown AOVs, or shares that do not match the devices.
@@ -21,10 +18,6 @@ RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& d
 /// Does not wait for a driver that is still compiling or inside a launch when the frame is finished: its
 /// thread, which holds the scene, is handed to DeviceInfo::threads.
 RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<DeviceInfo>& devices,
-                    const RenderOptions& options = {});
-
-/// Renders on workers, which may be devices of other processes.
-RenderResult render(const std::shared_ptr<const CompiledScene>& scene, const std::vector<WorkerPlan>& workers,
                     const RenderOptions& options = {});
 
 }  // namespace sundog

@@ -47,17 +47,17 @@ struct Guide {
 enum class Filter { box, tent, gaussian, blackman_harris, mitchell };
 
 struct RenderSettings {
-  int max_depth = 8;      // 1..64 (paths: 1..65536); 1: camera rays only
-  int samples = 1;        // per pixel, 1..65536; 1 = the pixel's centre
-  int light_samples = 0;  // shadow rays from each surface to random area lights, 0..1024; 0: to each light
+  int max_depth = 8;      // 1: camera rays only
+  int samples = 1;        // per pixel; 1 = the pixel's centre
+  int light_samples = 0;  // shadow rays from each surface to random area lights; 0: to each light
   double cutoff = 1e-3;   // throughput below which a ray ends, [0, 1]
-  double max_component = std::numeric_limits<double>::infinity();  // upper limit of a sample's light, above 0
+  double max_component = std::numeric_limits<double>::infinity();  // upper limit of a sample's light
   std::string integrator = "whitted";
-  int roulette = 2;                   // path: depth at which Russian roulette starts, 1..65; 65: never
+  int roulette = 2;                   // path: depth at which Russian roulette starts; 65: never
   u32 light_strategy = STRATEGY_MIS;  // path: a STRATEGY_* constant
   std::vector<Guide> guides;          // path: spheres to aim at
   bool caustics = false;              // path: photon mapping of light through glass and mirrors
-  int photons = 65536;                // photons emitted per map, 64..4194304
+  int photons = 65536;                // photons emitted per map
   double photon_radius = 0;           // radius of the first map; 0: chosen for the scene
   u32 sampler = SAMPLER_AUTO;         // a SAMPLER_* constant
   int seed = 0;                       // changes the noise
@@ -65,7 +65,7 @@ struct RenderSettings {
   double filter_radius = 0;  // in pixels; 0: the filter's default
   Sampling sampling;
   Tracer tracer = Tracer::automatic;
-  int texture_memory = 1024;    // MiB for images on a device, 1..65536
+  int texture_memory = 1024;    // MiB for images on a device
   bool spatial_splits = false;  // split triangles in the BVH build: slower, better for long thin ones
 };
 

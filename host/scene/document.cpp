@@ -44,15 +44,6 @@ void drop_lamps(SceneDescription& scene) {
   }
 }
 
-void change_lights(SceneDescription& scene, const json& after, const JsonContext& context) {
-  drop_lamps(scene);
-  scene.lights.clear();
-  if (const auto lights = after.find("lights"); lights != after.end())
-    for (const JsonValue& light : JsonObject::section("scene", "lights", *lights, context).items("lights"))
-      scene.lights.push_back(read_light(light, scene.unit));
-  add_lamps(scene);
-}
-
 bool has_place(const json& document) {
   return document.contains("camera") && document["camera"].is_object() &&
          document["camera"].contains("position");
@@ -68,19 +59,19 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   if (!same_but(before, after, is_read_here) || !has_place(after)) return nullptr;
   const JsonContext context{
       .file = scene.file, .native_code = options.native_code, .outside_files = options.outside_files};
-  const auto section = [&](const char* key) {
-    return JsonObject::section("scene", key, after[key], context);
-  };
   auto changed = std::make_shared<SceneDescription>(scene);
-  bool placed = false;
-  changed->image = after.contains("image") ? read_image(section("image")) : ImageSettings{};
-  changed->camera = read_camera(section("camera"), changed->image, scene.unit, placed);
+  read_view_sections(
+      [&](std::string_view key) {
+        const auto found = after.find(key);
+        return found == after.end() ? std::nullopt
+                                    : std::optional(JsonObject::section("scene", key, *found, context));
+      },
+      *changed);
   if (const Lens& lens = scene.camera.lens; !changed->camera.lens.focus_on.empty()) {
     if (lens.focus_on != changed->camera.lens.focus_on) return nullptr;
     changed->camera.lens.focus_point = lens.focus_point;
     focus_on_point(*changed);
   }
-  changed->render = after.contains("render") ? read_render(section("render")) : RenderSettings{};
   // A model's materials were read for one kind of integrator.
   const auto own_materials = [](const SceneDescription& s) {
     return integrator_of(s.render.integrator).own_materials;
@@ -91,7 +82,8 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   const bool same_surfaces = std::ranges::all_of(
       surface_sections(), [&](std::string_view key) { return same_section(before, after, key); });
   if (!same_surfaces && !change_surfaces(*changed, before, after, context)) return nullptr;
-  if (!same_section(before, after, "lights")) change_lights(*changed, after, context);
+  drop_lamps(*changed);
+  add_lamps(*changed);
   check_light_groups(*changed, JsonValue(after, context));
   return changed;
 }

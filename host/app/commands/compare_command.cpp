@@ -11,7 +11,7 @@
 #include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
+#include "app/render/output_files.h"
 #include "base/file.h"
 #include "base/image_compare.h"
 #include "base/image_io.h"

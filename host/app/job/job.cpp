@@ -12,6 +12,7 @@
 #include "app/process/environment.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
+#include "render/device/local_worker.h"
 #include "render/film/hash.h"
 #include "render/plan/deal_devices.h"
 #include "render/remote/remote_values.h"

@@ -52,41 +52,36 @@ std::shared_ptr<const SceneDescription> read_frame(const json& settings, SceneFr
   return at_moment(*frames.read(at.frame), at);
 }
 
-std::unique_ptr<SceneFrames> open_frames(const json& settings) {
-  if (settings.at("scene_text").is_string()) set_standard_input(settings["scene_text"].get<std::string>());
-  const LoadOptions options{std::nullopt, settings.at("native_code").get<bool>(),
-                            settings.at("outside_files").get<bool>()};
-  return std::make_unique<SceneFrames>(settings.at("scene").get<std::string>(),
-                                       settings.at("overrides").get<std::vector<std::string>>(),
+std::unique_ptr<SceneFrames> open_frames(const json& scene) {
+  if (scene.at("text").is_string()) set_standard_input(scene["text"].get<std::string>());
+  const LoadOptions options{std::nullopt, scene.at("native_code").get<bool>(),
+                            scene.at("outside_files").get<bool>()};
+  return std::make_unique<SceneFrames>(scene.at("file").get<std::string>(),
+                                       scene.at("overrides").get<std::vector<std::string>>(),
                                        with_streams(options));
 }
 
 std::shared_ptr<const CompiledScene> load_flat(const json& settings) {
   std::optional<double> frame;
   if (settings.at("frame").is_number()) frame = settings["frame"].get<double>();
-  return std::make_shared<const CompiledScene>(compile(*open_frames(settings)->read(frame)));
+  return std::make_shared<const CompiledScene>(compile(*open_frames(settings.at("scene"))->read(frame)));
 }
 
 /// Compiles a frame of an animation; keeps the scene's files and tables for the next frame.
-std::shared_ptr<const CompiledScene> load_frame(const json& settings, const std::string& of_all,
-                                                KeptOpen& kept) {
-  if (kept.frames_settings != of_all) kept.frames = open_frames(settings);
+std::shared_ptr<const CompiledScene> load_frame(const json& settings, KeptOpen& kept) {
+  const std::string of_all = json_text(settings.at("scene"));
+  if (kept.frames_settings != of_all) kept.frames = open_frames(settings.at("scene"));
   kept.frames_settings = of_all;
   return std::make_shared<const CompiledScene>(kept.compiler.compile(*read_frame(settings, *kept.frames)));
 }
 
 /// Loads the scene once for all devices of this process.
 std::shared_ptr<const CompiledScene> load_once(const json& settings, KeptOpen& kept) {
-  json of_scene;
-  for (const char* key : {"scene", "scene_text", "overrides", "native_code", "outside_files"})
-    of_scene[key] = settings.at(key);
-  const std::string of_all = json_text(of_scene);
-  of_scene["frame"] = settings.at("frame");
-  of_scene["moment"] = settings.at("moment");
+  const std::string of_scene = json_text({settings.at("scene"), settings.at("frame"), settings.at("moment")});
   const std::lock_guard lock(kept.mutex);
-  if (kept.scene_settings != json_text(of_scene))
-    kept.scene = settings.at("frame").is_number() ? load_frame(settings, of_all, kept) : load_flat(settings);
-  kept.scene_settings = json_text(of_scene);
+  if (kept.scene_settings != of_scene)
+    kept.scene = settings.at("frame").is_number() ? load_frame(settings, kept) : load_flat(settings);
+  kept.scene_settings = of_scene;
   return kept.scene;
 }
 
@@ -141,13 +136,14 @@ std::shared_ptr<const SceneDescription> at_moment(SceneDescription scene, const 
 }
 
 json remote_settings(const RenderCommand& command, const DeviceInfo& device) {
-  return {{"scene", command.scene},
-          {"scene_text", is_standard_input(command.scene) ? json(standard_input()) : json()},
-          {"overrides", command.overrides},
+  return {{"scene",
+           {{"file", command.scene},
+            {"text", is_standard_input(command.scene) ? json(standard_input()) : json()},
+            {"overrides", command.overrides},
+            {"native_code", command.native_code},
+            {"outside_files", command.outside_files}}},
           {"frame", command.frame ? json(*command.frame) : json()},
           {"moment", moment_json(command.moment)},
-          {"native_code", command.native_code},
-          {"outside_files", command.outside_files},
           {"aovs", made_aovs(command)},
           {"work_group", command.work_group},
           {"device", device},

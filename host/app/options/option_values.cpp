@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/numbers.h"
+#include "render/device/tuning.h"
 #include "render/film/film.h"
 #include "scene/json/value.h"
 #include "scene/read/parts.h"
@@ -92,12 +93,7 @@ std::string render_setting(const char* option, const char* key, const std::strin
 }
 
 WorkGroup parse_work_group(const std::string& text, const char* option) {
-  using enum WorkGroup::Kind;
-  if (text == "auto") return {automatic};
-  if (text == "driver") return {driver};
-  if (const auto edge = number(text, 1, most_edge)) return {fixed, static_cast<std::size_t>(*edge), 1};
-  if (const auto pair = number_pair(text))
-    return {fixed, static_cast<std::size_t>(pair->first), static_cast<std::size_t>(pair->second)};
+  if (const auto group = work_group_of(text)) return *group;
   throw UsageError(
       fmt::format("{} {}: wanted a size (64) or width x height (8x8), each from 1 to {}, auto or driver",
                   option, text, most_edge));

@@ -7,8 +7,8 @@
 
 #include <cstdlib>
 
-#include "app/options/output_files.h"
 #include "app/process/revision.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "base/numbers.h"
 

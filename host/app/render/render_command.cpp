@@ -12,7 +12,6 @@
 #include "app/options/picture_options.h"
 #include "app/render/render_scene.h"
 #include "base/error.h"
-#include "base/names.h"
 #include "render/film/group_names.h"
 #include "scene/integrators.h"
 #include "scene/kinds.h"
@@ -104,11 +103,7 @@ RenderCommand checked(const TypedRender& typed) {
   if (command.devices.empty()) command.devices = devices_of_environment();
   command.aovs = with_parts_named(command.aovs);
   for (const std::string& name : command.aovs)
-    if (std::ranges::count(aov_names(), name) == 0 && !is_light_group(name))
-      throw UsageError(
-          fmt::format("--aov {}: {}", name,
-                      did_you_mean(name, aov_names(),
-                                   fmt::format("wanted one of {}", fmt::join(aov_names(), ", ")), "")));
+    if (!is_light_group(name)) check_aov(name, "--aov ");
   return command;
 }
 

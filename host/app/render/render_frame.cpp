@@ -10,24 +10,25 @@
 #include "app/job/remote_devices.h"
 #include "app/options/devices.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
 #include "app/process/warnings.h"
 #include "app/render/draft.h"
+#include "app/render/output_files.h"
 #include "app/render/render_result.h"
 #include "app/render/save_image.h"
 #include "base/file.h"
 #include "base/json_text.h"
-#include "bench/runs/energy.h"
+#include "device/energy.h"
+#include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
-#include "render/frame/frame_tiles.h"
+#include "render/frame/frame_loop.h"
 #include "render/plan/passes.h"
-#include "scene/light_groups.h"
+#include "render/plan/tiles.h"
 #include "scene/load.h"
 
 namespace sundog {
@@ -185,7 +186,7 @@ DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setu
   drawn.scene = std::move(loaded);
   const RenderCommand& command = drawn.command;
   const LoadedScene& scene = drawn.scene;
-  drawn.command.aovs = with_group_numbers(asked.aovs, light_groups(*scene.description));
+  drawn.command.aovs = with_group_numbers(asked.aovs, scene.flat->light_groups);
   setup.stop.asks();
   print_warnings(view_warnings(*scene.description, *scene.flat, setup.devices));
   for (const std::string& file : {command.out, command.stats, checkpoint_file(command, setup)})
@@ -214,7 +215,7 @@ DrawnFrame draw_frame(const RenderCommand& asked, LoadedScene loaded, const Setu
   const Stopwatch frame;
   const auto make = [&](const LoadedScene& at) {
     return setup.session ? setup.session->render(at.flat, options)
-                         : render(at.flat, plan_workers(command, at, setup), options);
+                         : render_frame(*at.flat, plan_workers(command, at, setup), options, false);
   };
   drawn.result = make(scene);
   for (int time = 1; time < scene.times && drawn.result.complete && !drawn.result.failure; ++time)

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "app/job/remote_devices.h"
-#include "app/options/output_files.h"
 #include "app/process/exit_status.h"
 #include "app/process/warnings.h"
 #include "app/render/frame_log.h"
+#include "app/render/output_files.h"
 #include "app/render/render_result.h"
 #include "base/error.h"
 #include "base/file.h"

@@ -11,12 +11,12 @@
 
 #include "app/job/job.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
 #include "app/process/exit_status.h"
 #include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
 #include "app/render/denoise.h"
 #include "app/render/metadata.h"
+#include "app/render/output_files.h"
 #include "app/render/save_image.h"
 #include "base/error.h"
 #include "base/image_io.h"

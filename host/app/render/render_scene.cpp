@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "app/job/job.h"
-#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/interrupt.h"
@@ -18,6 +17,7 @@
 #include "app/process/warnings.h"
 #include "app/render/denoise.h"
 #include "app/render/metadata.h"
+#include "app/render/output_files.h"
 #include "app/render/render_frame.h"
 #include "app/render/render_frames.h"
 #include "base/cache_folder.h"

@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <thread>
 
-#include "app/options/output_files.h"
 #include "app/process/environment.h"
 #include "app/process/standard_streams.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "render/film/checkpoint.h"

@@ -10,7 +10,7 @@
 
 #include "app/process/scene_figures.h"
 #include "app/render/stray_exits.h"
-#include "bench/runs/energy.h"
+#include "device/energy.h"
 #include "render/film/sampling_report.h"
 #include "scene/integrators.h"
 

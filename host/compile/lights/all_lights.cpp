@@ -27,8 +27,26 @@ void set_light_groups(const AllLightsInputs& in, AllLights& out) {
 
 }  // namespace
 
+AllLightsInputs all_lights_inputs(const SceneDescription& scene, const CompiledScene& so_far,
+                                  const Lights& of_scene, const Surfaces& surfaces, const Instances& placed) {
+  return {.origin = so_far.origin,
+          .camera_position = so_far.info.camera_position,
+          .lights = scene.lights,
+          .materials = scene.materials,
+          .meshes = scene.meshes,
+          .objects = scene.objects,
+          .environment_group = scene.environment.group,
+          .groups = light_groups(scene),
+          .render = scene.render,
+          .of_scene = of_scene,
+          .packed_materials = surfaces.materials,
+          .instances = so_far.instances,
+          .boxes = placed.boxes};
+}
+
 AllLights compile_all_lights(const AllLightsInputs& in) {
   AllLights out;
+  out.groups = in.groups;
   MeshLights with_meshes = add_mesh_lights(in);
   out.lights = std::move(with_meshes.lights);
   out.instances = std::move(with_meshes.instances);

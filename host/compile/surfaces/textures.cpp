@@ -44,7 +44,7 @@ class TextureCompiler {
     for (std::size_t i = 0; i < in_.materials.size(); ++i)
       if (const MaterialDescription& material = in_.materials[i]; has_maps(material)) {
         cut_images_.clear();
-        find_cut_images(material.textures.opacity, material);
+        find_cut_images(material.textures.opacity);
         out_.materials.edit()[i].maps = static_cast<u32>(out_.material_maps.size());
         add_maps(material);
       }
@@ -88,17 +88,17 @@ class TextureCompiler {
     out_.features.parallax |= maps.parallax > 0;
     maps.occlusion = static_cast<float>(material.occlusion);
     maps.coat = static_cast<float>(material.coat);
-    maps.normal_turn = normal_turn(textures.normal, material);
+    maps.normal_turn = normal_turn(textures.normal);
     if (textures.normal >= 0 || textures.height >= 0) add_relief(textures, maps);
     out_.material_maps.push_back(maps);
   }
 
   /// The directions of the texture's u and v on the surface: normal maps rotate with their picture, like
   /// heights.
-  float4 normal_turn(int texture, const MaterialDescription& material) const {
+  float4 normal_turn(int texture) const {
     glm::dvec2 u(1, 0), v(0, 1);
     if (texture >= 0) {
-      const TextureDescription& map = texture_at(texture, material);
+      const TextureDescription& map = texture_at(texture);
       const glm::dvec2 across(map.uv[0][0], map.uv[1][0]), up(map.uv[0][1], map.uv[1][1]);
       if (map.mapping == Mapping::uv && across != glm::dvec2(0) && up != glm::dvec2(0))
         u = glm::normalize(across), v = glm::normalize(up);
@@ -116,27 +116,19 @@ class TextureCompiler {
       maps.height_texels = node.scale;
   }
 
-  const TextureDescription& texture_at(int index, const MaterialDescription& material) const {
-    if (index >= static_cast<int>(in_.textures.size()))
-      throw SceneError(*in_.file, "",
-                       "material \"" + material.name + "\" names a texture that does not exist");
+  const TextureDescription& texture_at(int index) const {
     return in_.textures[static_cast<std::size_t>(index)];
   }
 
-  const ImageDescription& image_at(int index) const {
-    const auto at = static_cast<std::size_t>(index);
-    if (at >= in_.images.size())
-      throw SceneError(*in_.file, "", "a texture names an image that does not exist");
-    return in_.images[at];
-  }
+  const ImageDescription& image_at(int index) const { return in_.images[static_cast<std::size_t>(index)]; }
 
   /// Adds the images whose alpha a texture uses. `depth` ends the recursion in graphs that add_graph()
   /// rejects.
-  void find_cut_images(int index, const MaterialDescription& material, u32 depth = 0) {
+  void find_cut_images(int index, u32 depth = 0) {
     if (index < 0 || depth > MOST_TEXTURE_STACK) return;
-    const TextureDescription& texture = texture_at(index, material);
+    const TextureDescription& texture = texture_at(index);
     if (texture.image >= 0 && texture.channel == 3) cut_images_.push_back(&image_at(texture.image));
-    for (const int of : texture.of) find_cut_images(of, material, depth + 1);
+    for (const int of : texture.of) find_cut_images(of, depth + 1);
   }
 
   /// Whether an image's colours are weighted by its alpha: it is the material's opacity.
@@ -146,19 +138,18 @@ class TextureCompiler {
                                [&](const ImageDescription* cut) { return same_picture(*cut, image); });
   }
 
-  bool any_counts_by_alpha(int index, const MaterialDescription& material, u32 depth = 0) const {
+  bool any_counts_by_alpha(int index, u32 depth = 0) const {
     if (index < 0 || cut_images_.empty() || depth > MOST_TEXTURE_STACK) return false;
-    const TextureDescription& texture = texture_at(index, material);
+    const TextureDescription& texture = texture_at(index);
     if (texture.image >= 0 && counts_by_alpha(image_at(texture.image))) return true;
-    return any_counts_by_alpha(texture.of[0], material, depth + 1) ||
-           any_counts_by_alpha(texture.of[1], material, depth + 1);
+    return any_counts_by_alpha(texture.of[0], depth + 1) || any_counts_by_alpha(texture.of[1], depth + 1);
   }
 
   /// The first node of a texture; its own node follows those of its operands.
   u32 first_node(int texture, const MaterialDescription& material) {
     if (texture < 0) return NO_TEXTURE;
     // Materials share a texture's nodes, except images weighted by alpha for only one of them.
-    const std::pair key(texture, any_counts_by_alpha(texture, material) ? cut_images_ : CutImages());
+    const std::pair key(texture, any_counts_by_alpha(texture) ? cut_images_ : CutImages());
     const auto found = nodes_.find(key);
     if (found != nodes_.end()) return found->second;
     const auto first = static_cast<u32>(out_.texture_nodes.size());
@@ -170,7 +161,7 @@ class TextureCompiler {
 
   /// Adds the nodes of a texture; `below` is the stack depth.
   void add_graph(int index, const MaterialDescription& material, u32 below) {
-    const TextureDescription& texture = texture_at(index, material);
+    const TextureDescription& texture = texture_at(index);
     if (out_.texture_nodes.size() >= most_nodes)
       throw SceneError(*in_.file, "/textures",
                        fmt::format("the materials' textures take more than {} images, patterns and colours, "

@@ -16,33 +16,18 @@
 namespace sundog {
 namespace {
 
-[[noreturn]] void fail(const ViewInputs& in, const char* place, const std::string& what) {
-  throw SceneError(*in.file, place, what);
-}
-
-/// Normalises `vector`; fails with `what` if it has no direction.
-dvec3 unit_vector(const ViewInputs& in, const dvec3& vector, const char* place, const std::string& what) {
-  const double length = glm::length(vector);
-  if (!(length > 0) || !std::isfinite(length)) fail(in, place, what);
-  return vector / length;
-}
-
 /// A camera's axes and the vectors from pixel to pixel.
 struct Frame {
   dvec3 forward, up, corner, dx, dy;
 };
 
-std::string text(const dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
-
-Frame frame_of(const ViewInputs& in, const View& view, const std::string& place) {
+Frame frame_of(const ViewInputs& in, const View& view) {
   const ImageSettings& image = in.image;
+  const auto unit_vector = [](const dvec3& vector) { return vector / glm::length(vector); };
   Frame frame;
-  frame.forward = unit_vector(in, view.target - view.position, (place + "/target").c_str(),
-                              "wanted a target apart from the position, found both at " + text(view.target));
-  frame.up = unit_vector(in, in.camera.up, "/camera/up", "wanted a direction, found " + text(in.camera.up));
+  frame.forward = unit_vector(view.target - view.position);
+  frame.up = unit_vector(in.camera.up);
   const dvec3 side = glm::cross(frame.forward, frame.up);
-  if (glm::length(side) < 1e-9)
-    fail(in, "/camera/up", "wanted a direction across the view, found one along it: " + text(in.camera.up));
   const dvec3 right = glm::normalize(side), screen_up = glm::cross(right, frame.forward);
   const bool parallel = in.camera.orthographic > 0;
   const double height =
@@ -82,12 +67,7 @@ SceneInfo camera_and_settings(const ViewInputs& in) {
   SceneInfo info{};
   const Camera& camera = in.camera;
   const ImageSettings& image = in.image;
-  if (image.width < 1 || image.height < 1)
-    fail(in, "/image/size", fmt::format("wanted at least 1x1, found {}x{}", image.width, image.height));
-  if (!(camera.fov > 0 && camera.fov < 180))
-    fail(in, "/camera/fov", fmt::format("wanted degrees between 0 and 180, found {}", camera.fov));
-
-  const Frame frame = frame_of(in, {camera.position, camera.target}, "/camera");
+  const Frame frame = frame_of(in, {camera.position, camera.target});
   info.camera_position = pack(camera.position - in.origin);
   const double spread = camera.orthographic > 0 ? 1 / glm::length(camera.target - camera.position) : 0;
   info.camera_corner = pack(frame.corner, spread);
@@ -96,7 +76,7 @@ SceneInfo camera_and_settings(const ViewInputs& in) {
   info.camera_forward = pack(frame.forward, camera.near);
   info.background_bottom = pack(image.background_bottom, camera.far);
   if (camera.lens.radius > 0) set_lens(camera, frame, info);
-  if (camera.moves_to) set_motion(camera, frame, frame_of(in, *camera.moves_to, "/camera/moves_to"), info);
+  if (camera.moves_to) set_motion(camera, frame, frame_of(in, *camera.moves_to), info);
   info.background_top = pack(image.background_top);
   info.transparent = image.transparent;
   info.up = pack(frame.up);
@@ -104,9 +84,9 @@ SceneInfo camera_and_settings(const ViewInputs& in) {
   info.origin = place.high;
   info.origin_rest = place.low;
   if (!is_frame_size(image.width, image.height))
-    fail(in, "/image",
-         fmt::format("wanted at most {} pixels in all, found {} x {}", most_pixels, image.width,
-                     image.height));
+    throw SceneError(*in.file, "/image",
+                     fmt::format("wanted at most {} pixels in all, found {} x {}", most_pixels, image.width,
+                                 image.height));
   info.width = static_cast<u32>(image.width);
   info.height = static_cast<u32>(image.height);
   info.max_depth = static_cast<u32>(in.render.max_depth);

@@ -20,7 +20,7 @@ struct View {
 struct Lens {
   double radius = 0;              // 0: a pinhole
   std::optional<double> focus{};  // none: the target's distance
-  int blades = 0;                 // blades of the aperture, 3..16; 0: round
+  int blades = 0;                 // blades of the aperture; 0: round
   double rotate = 0;              // rotation of the blades, degrees
   std::string focus_on{};         // the object whose centre has set `focus`; empty: none
   dvec3 focus_point{0};           // that object's centre

@@ -30,7 +30,7 @@ struct LightDescription {
   dvec2 size{1};              // rectangle: across and along `up`
   dvec3 up{0, 1, 0};
   double radius = 0.5;  // disk, sphere
-  double angle = 0;     // directional: its diameter in the sky in degrees, 0..90; 0: a delta light
+  double angle = 0;     // directional: its diameter in the sky in degrees; 0: a delta light
   int samples = 1;      // area lights: shadow rays that a surface sends
   bool visible = true;  // the camera's rays see it, where others do
   bool hidden = false;  // no ray meets it (scene/lamps.h places what they meet)

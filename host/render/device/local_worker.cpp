@@ -103,4 +103,11 @@ void LocalWorker::close() {
   works_ = false;
 }
 
+WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device) {
+  return {device, device.shares_cores() ? 0 : -1,
+          [scene = std::move(scene), device](const RenderOptions& options) {
+            return std::make_shared<LocalWorker>(device, scene, options);
+          }};
+}
+
 }  // namespace sundog

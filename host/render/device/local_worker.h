@@ -7,6 +7,7 @@
 #include "render/device/launch_watch.h"
 #include "render/device/tile_renderer.h"
 #include "render/frame/device_worker.h"
+#include "render/frame/result.h"
 
 namespace sundog {
 
@@ -53,5 +54,8 @@ class LocalWorker : public SceneWorker {
   double readback_before_ = 0;  // from previous scenes
   WorkerFigures closed_;        // from previously opened renderers
 };
+
+/// Plans a worker for a device of this process.
+WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
 
 }  // namespace sundog

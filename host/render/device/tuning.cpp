@@ -7,11 +7,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "base/cache_folder.h"
 #include "base/environment.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
+#include "base/limits.h"
+#include "base/numbers.h"
 #include "device/embedded_kernels.h"
 #include "device/program_cache.h"
 
@@ -46,6 +50,16 @@ std::string work_group_text(const WorkGroup& group) {
   if (group.kind == automatic) return "default";
   if (group.kind == driver) return "driver";
   return group.y > 1 ? fmt::format("{}x{}", group.x, group.y) : fmt::format("{}", group.x);
+}
+
+std::optional<WorkGroup> work_group_of(std::string_view text) {
+  if (text == "auto" || text == "default") return WorkGroup{};
+  if (text == "driver") return WorkGroup{driver, 0, 0};
+  const std::size_t cross = std::min(text.find('x'), text.size());
+  const auto x = whole_number<int>(text.substr(0, cross));
+  const auto y = cross < text.size() ? whole_number<int>(text.substr(cross + 1)) : 1;
+  if (std::clamp(x.value_or(0), 1, most_edge) != x || std::clamp(y.value_or(0), 1, most_edge) != y) return {};
+  return WorkGroup{fixed, static_cast<std::size_t>(*x), static_cast<std::size_t>(*y)};
 }
 
 std::string tuning_text(const Tuning& tuning) {

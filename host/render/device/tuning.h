@@ -16,6 +16,8 @@ namespace sundog {
 
 /// "64", "8x4", "default", "driver".
 std::string work_group_text(const WorkGroup& group);
+/// The work-group of such a text, also of "auto"; none for other texts.
+std::optional<WorkGroup> work_group_of(std::string_view text);
 
 /// "work-group 8x2, 16x1 pixels a work-item, ..."; or "the defaults".
 std::string tuning_text(const Tuning& tuning);

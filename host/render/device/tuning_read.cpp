@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -31,17 +30,9 @@ std::string scene_class_from(const JsonValue& value) {
 }
 
 WorkGroup work_group_from(const JsonValue& value) {
-  using enum WorkGroup::Kind;
-  const std::string text = value.text();
-  if (text == "default") return {};
-  if (text == "driver") return {driver, 0, 0};
-  unsigned x = 0, y = 1;
-  char rest = 0;
-  const int found = std::sscanf(text.c_str(), "%ux%u%c", &x, &y, &rest);
-  const bool plain = found == 1 && text == std::to_string(x);
-  if ((!plain && found != 2) || x == 0 || y == 0 || x > 65536 || y > 65536)
-    value.wanted("a size such as \"64\" or \"8x8\", \"default\" or \"driver\"");
-  return {fixed, x, y};
+  const auto group = work_group_of(value.text());
+  if (!group) value.wanted("a size such as \"64\" or \"8x8\", \"default\" or \"driver\"");
+  return *group;
 }
 
 std::string options_from(const JsonValue& value) {

@@ -34,7 +34,7 @@ void add_field_warnings(const SceneDescription& scene, const CompiledScene& flat
     warnings.push_back(
         "the field of view is so narrow that floats do not tell its pixels apart: move the camera nearer to "
         "what it sees and raise fov");
-  if (flat.field_source.find("deep_begin.h") == std::string::npos) return;
+  if (!any_deep(views_of(scene))) return;
   for (const DeviceInfo& device : devices)
     if (device.extensions.find("cl_khr_fp64") == std::string::npos)
       warnings.push_back(fmt::format(

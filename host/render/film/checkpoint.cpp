@@ -45,10 +45,10 @@ std::uint32_t aovs_of(const FilmNeeds& needs) { return needs.shows_surfaces ? ne
 /// Calls visit(array) for each array of the file, in file order.
 template <class Whole, class Pixels, class Visit>
 void for_each_array(Whole& film, Pixels& pixels, Whole& made, const Visit& visit) {
-  visit(film.sums), visit(film.weights), visit(film.aovs), visit(film.rays), visit(film.done);
+  visit_samples(visit, film), visit(film.done);
   visit(film.taken), visit(film.states), visit(film.earlier), visit(film.moved), visit(film.block_rays);
   visit(pixels);
-  visit(made.sums), visit(made.weights), visit(made.aovs), visit(made.rays), visit(made.done);
+  visit_samples(visit, made), visit(made.done);
 }
 
 constexpr std::size_t sample_bytes = sizeof(float4) + sizeof(float) + 1;  // sums, weight, done flag

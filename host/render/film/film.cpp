@@ -42,8 +42,9 @@ std::size_t offset(const Film& film, int x, int y) {
 }
 
 template <class T>
-void copy_rows(const Film& film, const Tile& tile, std::size_t per_pixel, std::span<const T> from,
-               std::vector<T>& to) {
+void copy_rows(const Film& film, const Tile& tile, const std::vector<T>& from, std::vector<T>& to) {
+  if (from.empty()) return;
+  const std::size_t per_pixel = to.size() / film.pixels();
   const std::size_t row = static_cast<std::size_t>(tile.width) * per_pixel;
   for (int y = 0; y < tile.height; ++y)
     std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row), row,
@@ -137,13 +138,8 @@ bool Film::is_done(const Tile& tile) const {
   return true;
 }
 
-std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
-                        std::span<const float> tile_weights, std::span<const float4> tile_aovs,
-                        std::span<const u32> tile_rays) {
-  copy_rows(*this, tile, 1, tile_sums, sums);
-  copy_rows(*this, tile, 1, tile_weights, weights);
-  if (!tile_aovs.empty()) copy_rows(*this, tile, layout.vectors(), tile_aovs, aovs);
-  if (!tile_rays.empty()) copy_rows(*this, tile, 1, tile_rays, rays);
+std::uint64_t Film::put(const Tile& tile, const Samples& made) {
+  visit_samples([&](const auto& from, auto& to) { copy_rows(*this, tile, from, to); }, made, *this);
   std::uint64_t fresh = 0;
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     const auto row = done.begin() + static_cast<std::ptrdiff_t>(offset(*this, tile.x, y));
@@ -156,10 +152,9 @@ std::uint64_t Film::put(const Tile& tile, std::span<const float4> tile_sums,
 Film Film::cut(const Tile& area) const {
   Film part(area.width, area.height, *this);
   part.grows = part.keeps_earlier = false;
-  part.sums = cut_pixels(sums, width, area);
-  part.weights = cut_pixels(weights, width, area);
-  part.aovs = cut_pixels(aovs, width, area, layout.vectors());
-  part.rays = cut_pixels(rays, width, area);
+  visit_samples(
+      [&](const auto& from, auto& to) { to = cut_pixels(from, width, area, from.size() / pixels()); }, *this,
+      part);
   part.done = cut_pixels(done, width, area);
   part.taken = cut_pixels(taken, width, area);
   part.stage = stage, part.surfaces_seen = surfaces_seen;

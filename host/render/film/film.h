@@ -86,14 +86,24 @@ struct FilmNeeds {
   bool keeps_earlier = false;  // a growing film keeps earlier sums for pixel_errors() and the AOV variance
 };
 
-/// width * height pixels, row 0 at the top, of a frame or of one pass. Arrays that are not needed are empty;
-/// before the first pass all are.
-struct Film : FilmNeeds {
+/// The samples of a film's or a tile's pixels. Arrays that are not needed are empty.
+struct Samples {
+  std::vector<float4> sums;    // rgb and coverage
+  std::vector<float> weights;  // samples that count
+  std::vector<float4> aovs;    // AovLayout::vectors() per pixel
+  std::vector<u32> rays;       // rays per pixel
+};
+
+/// Calls visit(array of each of `all`) for each array.
+template <class Visit, class... SamplesOf>
+void visit_samples(const Visit& visit, SamplesOf&... all) {
+  visit(all.sums...), visit(all.weights...), visit(all.aovs...), visit(all.rays...);
+}
+
+/// width * height pixels, row 0 at the top, of a frame or of one pass. Before the first pass all arrays are
+/// empty.
+struct Film : FilmNeeds, Samples {
   int width = 0, height = 0;
-  std::vector<float4> sums;        // rgb and coverage
-  std::vector<float> weights;      // samples that count
-  std::vector<float4> aovs;        // layout.vectors() per pixel
-  std::vector<u32> rays;           // rays per pixel
   std::vector<std::uint8_t> done;  // 1: the pixel has a sample; in a pass, all samples of the pass
   // Only in a growing film:
   std::vector<u32> taken;          // samples per pixel; 0 if interpolated
@@ -119,11 +129,8 @@ struct Film : FilmNeeds {
   void allocate();
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   bool is_done(const Tile& tile) const;
-  /// Copies a finished tile into the film, row by row. The spans cover the tile (`tile_aovs`:
-  /// layout.vectors() per pixel; AOVs and rays may be empty). Returns how many of its pixels were not done
-  /// before.
-  std::uint64_t put(const Tile& tile, std::span<const float4> tile_sums, std::span<const float> tile_weights,
-                    std::span<const float4> tile_aovs, std::span<const u32> tile_rays = {});
+  /// Copies a finished tile into the film, row by row. Returns how many of its pixels were not done before.
+  std::uint64_t put(const Tile& tile, const Samples& made);
   /// The pixels of `area`, which lies in the film, as a film that does not grow.
   Film cut(const Tile& area) const;
   /// The mean of the samples; with 4 channels, alpha is coverage. Pixels that are not done are 0.

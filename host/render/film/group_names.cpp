@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "render/film/film.h"
 
 namespace sundog {
@@ -24,6 +25,16 @@ void add(std::vector<std::string>& all, const std::string& aov) {
 }  // namespace
 
 bool is_light_group(const std::string& aov) { return aov.starts_with(prefix) && aov != "light_parts"; }
+
+bool is_aov(const std::string& name) {
+  return std::ranges::count(aov_names(), name) > 0 || (is_light_group(name) && name.find('@') != name.npos);
+}
+
+void check_aov(const std::string& name, const std::string& option) {
+  if (is_aov(name)) return;
+  const std::string list = fmt::format("wanted one of {}", fmt::join(aov_names(), ", "));
+  throw UsageError(fmt::format("{}{}: {}", option, name, did_you_mean(name, aov_names(), list, "")));
+}
 
 std::size_t number_of_group(const std::string& aov) {
   const std::size_t at = aov.rfind('@');

@@ -14,6 +14,12 @@ inline constexpr const char *light_groups_aov = "light_groups", *rest_aov = "lig
 /// Whether `aov` belongs to a light group, with or without a number.
 bool is_light_group(const std::string& aov);
 
+/// Whether a film can have the AOV: one of aov_names(), or of a group, with its number.
+bool is_aov(const std::string& name);
+
+/// Throws UsageError unless is_aov(). The message begins with `option`.
+void check_aov(const std::string& name, const std::string& option = "AOV ");
+
 /// The number of an AOV's group; 0 without a number.
 std::size_t number_of_group(const std::string& aov);
 

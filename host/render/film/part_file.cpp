@@ -65,10 +65,7 @@ std::optional<int> whole(const json& head, const char* key, int least, int most)
 
 /// Whether the values are distinct names of AOVs.
 bool are_aovs(const std::vector<std::string>& names) {
-  const auto known = [](const std::string& name) {
-    return std::ranges::count(aov_names(), name) == 1 || is_light_group(name);
-  };
-  return std::ranges::all_of(names, known) &&
+  return std::ranges::all_of(names, is_aov) &&
          std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
@@ -187,9 +184,9 @@ bool read_film(const std::string& bytes, std::size_t at, const std::vector<std::
   std::memcpy(film.done.data(), bytes.data() + at, pixels);
   at += pixels;
   if (!all_flags(film.done)) return false;
-  return take_done(bytes, at, film.sums, film.done) && take_done(bytes, at, film.weights, film.done) &&
-         take_done(bytes, at, film.aovs, film.done) && take_done(bytes, at, film.rays, film.done) &&
-         at == bytes.size();
+  bool whole = true;
+  visit_samples([&](auto& array) { whole = whole && take_done(bytes, at, array, film.done); }, film);
+  return whole && at == bytes.size();
 }
 
 }  // namespace
@@ -213,10 +210,7 @@ void write_part(const std::filesystem::path& path, const PartHeader& header, con
   bytes.reserve(bytes.size() + film.done.size() +
                 done * (20 + (film.aovs.empty() ? 0 : 16 * film.layout.vectors())) + checksum_digits);
   bytes.append(reinterpret_cast<const char*>(film.done.data()), film.done.size());
-  append_done(bytes, film.sums, film.done);
-  append_done(bytes, film.weights, film.done);
-  append_done(bytes, film.aovs, film.done);
-  append_done(bytes, film.rays, film.done);
+  visit_samples([&](const auto& array) { append_done(bytes, array, film.done); }, film);
   bytes += checksum(bytes);
   write_file(path, bytes, faults);
 }

@@ -14,27 +14,20 @@
 
 namespace sundog {
 
-/// A tile of a pass to be rendered.
-struct TileRequest {
+/// A tile of a pass to be rendered, and its pixels' earlier samples, to which more are added; empty: none.
+/// The AOVs are there if `surfaces` includes sums over samples.
+struct TileRequest : Samples {
   Tile tile;
   std::vector<u32> pixels;  // image pixel of each tile pixel (Pass::pixels); empty: the tile's own
-  u32 first_sample = 0, sample_count = 0;  // samples to add to the sums below
+  u32 first_sample = 0, sample_count = 0;  // samples to add
   bool surfaces = false;                   // also render AOVs
   bool costs = false;                      // count rays, at least per work-item
-  std::vector<float4> sums;                // each pixel's earlier samples; empty: none
-  std::vector<float> weights;
-  std::vector<u32> rays;     // rays per pixel so far, if counted
-  std::vector<float4> aovs;  // per pixel so far, if `surfaces` includes sums over samples
 };
 
 /// A tile's pixels and ray counts. `tile` is the finished part: fewer rows than requested if rendering was
-/// stopped.
-struct TileResult {
+/// stopped. With `costs`, `rays` may have all of a group's rays at one pixel.
+struct TileResult : Samples {
   Tile tile;
-  std::vector<float4> sums;
-  std::vector<float> weights;
-  std::vector<float4> aovs;
-  std::vector<u32> rays;  // per pixel if counted; with `costs`, perhaps all of a group's at one pixel
   RayCounts counts{};
 };
 
@@ -43,15 +36,6 @@ struct StopFlags {
   const std::atomic<bool>* stop = nullptr;       // the frame is over
   const std::atomic<bool>* cancelled = nullptr;  // another device has finished the tile
   bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
-};
-
-/// A worker's statistics so far.
-struct WorkerFigures {
-  std::map<std::string, KernelTimes> kernels;
-  double readback_seconds = 0;
-  std::vector<std::string> notes;  // problems that did not stop it: smaller launches, an unusable cache
-  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
-  std::uint64_t kernels_built = 0;  // programs compiled by the driver
 };
 
 /// A worker is used by one thread; overdue() and compiles() may be called by any.

@@ -57,7 +57,7 @@ namespace {
 /// Copies a tile, or its finished rows, into the film. The caller holds the frame's mutex.
 void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
   if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.pass_film.put(made.tile, made.sums, made.weights, made.aovs, made.rays);
+  frame.pixels_done += frame.pass_film.put(made.tile, made);
   for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
   frame.workers[i].report.pixels += pixel_count(made.tile);
   if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long

@@ -20,20 +20,6 @@ bool may_end(const Frame& frame) {
          });
 }
 
-std::vector<DeviceReport> reports(const Frame& frame) {
-  std::vector<DeviceReport> result;
-  std::uint64_t pixels = 0;
-  for (const Frame::Worker& worker : frame.workers) pixels += worker.report.pixels;
-  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
-    DeviceReport report = frame.workers[i].report;
-    report.busy_seconds = frame.queue.work(i).busy_seconds;
-    report.share =
-        static_cast<double>(report.pixels) / static_cast<double>(std::max<std::uint64_t>(1, pixels));
-    result.push_back(std::move(report));
-  }
-  return result;
-}
-
 double frame_efficiency(const Frame& frame) {
   std::vector<DeviceWork> work;
   for (std::size_t i = 0; i < frame.workers.size(); ++i) work.push_back(frame.queue.work(i));
@@ -90,6 +76,20 @@ void note_end(const Frame& frame, RenderResult& result) {
   result.time_limited = frame.limited && !result.complete;
   result.checkpoint_left = frame.checkpoint_left;
   if (!result.complete && !stopped) result.failure = frame.last_error;
+}
+
+std::vector<DeviceReport> reports(const Frame& frame) {
+  std::vector<DeviceReport> result;
+  std::uint64_t pixels = 0;
+  for (const Frame::Worker& worker : frame.workers) pixels += worker.report.pixels;
+  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
+    DeviceReport report = frame.workers[i].report;
+    report.busy_seconds = frame.queue.work(i).busy_seconds;
+    report.share =
+        static_cast<double>(report.pixels) / static_cast<double>(std::max<std::uint64_t>(1, pixels));
+    result.push_back(std::move(report));
+  }
+  return result;
 }
 
 void note_figures(const Frame& frame, RenderResult& result) {

@@ -10,6 +10,9 @@ void note_end(const Frame& frame, RenderResult& result);
 /// Develops the film into image and AOVs; crops them all to the frame's region.
 void develop(const Frame& frame, RenderResult& result);
 
+/// The workers' reports, with their shares of the work. The caller holds the frame's mutex.
+std::vector<DeviceReport> reports(const Frame& frame);
+
 /// Records times, ray counts, and each worker's share.
 void note_figures(const Frame& frame, RenderResult& result);
 

@@ -136,4 +136,11 @@ void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
   loop->end();
 }
 
+RenderResult render_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& workers,
+                          const RenderOptions& options, bool wait) {
+  const std::shared_ptr<Frame> frame = begin_frame(scene, workers, options);
+  run_frame(frame, wait);
+  return finish_frame(*frame);
+}
+
 }  // namespace sundog

@@ -10,17 +10,11 @@
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/frame/frame_tiles.h"
+#include "render/plan/tiles.h"
 #include "scene/integrators.h"
 
 namespace sundog {
 namespace {
-
-void check_aovs(const std::vector<std::string>& names) {
-  for (const std::string& name : names)
-    if (!is_light_group(name) && std::ranges::count(aov_names(), name) == 0)
-      throw UsageError(
-          fmt::format("no AOV is called '{}'; there are {}", name, fmt::join(aov_names(), ", ")));
-}
 
 /// The variance is known only if samples are doubled in passes.
 void check_variance(const std::vector<std::string>& names, const Sampling& sampling) {
@@ -85,6 +79,11 @@ FilmNeeds needs_of(const CompiledScene& scene, const RenderOptions& options) {
   return needs;
 }
 
+double tile_seconds_of(const DeviceInfo& device, const RenderOptions& options) {
+  if (options.tile_seconds > 0) return options.tile_seconds;
+  return options.tuning ? 1e-3 * options.tuning(device).tile_ms : 0;
+}
+
 std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const RenderOptions& options) {
   std::vector<DeviceSpeed> speeds;
   for (const WorkerPlan& device : devices)
@@ -92,7 +91,7 @@ std::vector<DeviceSpeed> speeds_of(const std::vector<WorkerPlan>& devices, const
                       .sample = device.measured_pixels,
                       .estimate = device.info.estimate,
                       .processor = device.processor,
-                      .tile_seconds = options.tuning ? 1e-3 * options.tuning(device.info).tile_ms : 0});
+                      .tile_seconds = tile_seconds_of(device.info, options)});
   return speeds;
 }
 
@@ -111,7 +110,7 @@ Frame::Frame(RenderOptions options_, SamplingPlan plan_, Film film_, const std::
 
 void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                  const RenderOptions& options) {
-  check_aovs(options.aovs);
+  for (const std::string& name : options.aovs) check_aov(name);
   check_variance(options.aovs, scene.sampling);
   check_light(options.aovs, scene);
   if (devices.empty()) throw DeviceError("no device to render on");
@@ -133,7 +132,7 @@ std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<
                                        Film(area.width, area.height, needs_of(scene, options)),
                                        speeds_of(devices, options));
   for (const WorkerPlan& device : devices)
-    frame->workers.push_back({.device = device.make(frame->options), .report = {.info = device.info}});
+    frame->workers.emplace_back(device.make(frame->options)).report.info = device.info;
   frame->area = area;
   frame->inner = options.region.value_or(area);
   frame->inner.x -= area.x, frame->inner.y -= area.y;

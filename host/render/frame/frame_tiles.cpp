@@ -1,11 +1,8 @@
-// Makes lists of unfinished tiles from region, split, part and device speeds.
+// Makes lists of unfinished tiles from tile size, split, part and device speeds.
 #include "render/frame/frame_tiles.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "render/film/part.h"
 #include "render/film/rows.h"
 
@@ -32,24 +29,6 @@ std::vector<Tile> unfinished_rows(const Film& film, const RowRange& range, const
 }
 
 }  // namespace
-
-void check_region(const std::optional<Tile>& region, int width, int height) {
-  if (!region) return;
-  const auto fits = [](int first, int count, int size) {
-    return first >= 0 && count > 0 && count <= size && first <= size - count;
-  };
-  if (!fits(region->x, region->width, width) || !fits(region->y, region->height, height))
-    throw UsageError(fmt::format("the region {},{},{}x{} is not within the picture of {}x{} pixels",
-                                 region->x, region->y, region->width, region->height, width, height));
-}
-
-Tile frame_area(const std::optional<Tile>& region, int width, int height) {
-  if (!region) return {0, 0, width, height};
-  const auto down = [](int at) { return at / tile_align * tile_align; };
-  const auto up = [&](int at, int most) { return std::min(down(at + tile_align - 1), most); };
-  const int x = down(region->x), y = down(region->y);
-  return {x, y, up(region->x + region->width, width) - x, up(region->y + region->height, height) - y};
-}
 
 TilePlan plan_tiles(const RenderOptions& options, const Film& film, std::span<const double> estimates) {
   TilePlan plan;

@@ -122,15 +122,11 @@ TileResult render_in_picture(const Frame& frame, DeviceWorker& worker, TileReque
 }
 
 void take_figures(Frame& frame, std::size_t i) {
-  const WorkerFigures figures = frame.workers[i].device->figures();
+  WorkerFigures figures = frame.workers[i].device->figures();
   const std::lock_guard lock(frame.mutex);
   DeviceReport& report = frame.workers[i].report;
-  report.kernels = figures.kernels;
-  report.notes = figures.notes;
-  report.tables_uploaded = figures.tables_uploaded;
-  report.bytes_uploaded = figures.bytes_uploaded;
-  report.kernels_built = figures.kernels_built;
   frame.readback = std::max(frame.readback, figures.readback_seconds);
+  static_cast<WorkerFigures&>(report) = std::move(figures);
 }
 
 bool recover(Frame& frame, std::size_t i, const TileJob& job, const DeviceError& error) {

@@ -1,8 +1,12 @@
 // Finds runs of unfinished blocks, hands tiles out, and sizes launches by time.
 #include "render/plan/tiles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "base/error.h"
 
 namespace sundog {
 namespace {
@@ -26,6 +30,24 @@ std::vector<Tile> unfinished_in_row(const Film& film, const Tile& row) {
 }
 
 }  // namespace
+
+void check_region(const std::optional<Tile>& region, int width, int height) {
+  if (!region) return;
+  const auto fits = [](int first, int count, int size) {
+    return first >= 0 && count > 0 && count <= size && first <= size - count;
+  };
+  if (!fits(region->x, region->width, width) || !fits(region->y, region->height, height))
+    throw UsageError(fmt::format("the region {},{},{}x{} is not within the picture of {}x{} pixels",
+                                 region->x, region->y, region->width, region->height, width, height));
+}
+
+Tile frame_area(const std::optional<Tile>& region, int width, int height) {
+  if (!region) return {0, 0, width, height};
+  const auto down = [](int at) { return at / tile_align * tile_align; };
+  const auto up = [&](int at, int most) { return std::min(down(at + tile_align - 1), most); };
+  const int x = down(region->x), y = down(region->y);
+  return {x, y, up(region->x + region->width, width) - x, up(region->y + region->height, height) - y};
+}
 
 std::vector<Tile> cut_tiles(int width, int height, int edge) {
   const int step = std::max(tile_align, (edge + tile_align - 1) / tile_align * tile_align);

@@ -19,6 +19,13 @@ std::vector<Tile> cut_tiles(int width, int height, int edge);
 /// tile_align. `area` is aligned to tile_align.
 std::vector<Tile> unfinished_tiles(const Film& film, const Tile& area);
 
+/// Throws UsageError unless the region lies within a picture of this size.
+void check_region(const std::optional<Tile>& region, int width, int height);
+
+/// The pixels of the picture that a frame renders: the region grown to whole blocks of tile_align, so that
+/// its pixels have the same bits as in the whole picture; without a region, the whole picture.
+Tile frame_area(const std::optional<Tile>& region, int width, int height);
+
 inline std::uint64_t pixel_count(const Tile& tile) {
   return static_cast<std::uint64_t>(tile.width) * static_cast<std::uint64_t>(tile.height);
 }

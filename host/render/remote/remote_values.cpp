@@ -56,10 +56,7 @@ PackedTile pack_request(const TileRequest& request) {
                            {"first", request.first_sample},   {"count", request.sample_count},
                            {"surfaces", request.surfaces},    {"costs", request.costs}};
   append(packed.data, request.pixels, request.pixels.size());
-  append(packed.data, request.sums, request.sums.size());
-  append(packed.data, request.weights, request.weights.size());
-  append(packed.data, request.rays, request.rays.size());
-  append(packed.data, request.aovs, request.aovs.size());
+  visit_samples([&](const auto& array) { append(packed.data, array, array.size()); }, request);
   return packed;
 }
 
@@ -82,8 +79,8 @@ TileRequest unpack_request(const nlohmann::json& values, const std::string& data
   request.pixels = take<u32>(data, at, pixels);
   request.sums = take<float4>(data, at, sums);
   request.weights = take<float>(data, at, sums);
-  request.rays = take<u32>(data, at, rays);
   request.aovs = take<float4>(data, at, aovs);
+  request.rays = take<u32>(data, at, rays);
   return request;
 }
 

@@ -6,7 +6,6 @@
 #include "render/frame/frame_watch.h"
 #include "render/session/live_session.h"
 #include "scene/integrators.h"
-#include "scene/light_groups.h"
 
 namespace sundog {
 namespace {
@@ -191,7 +190,7 @@ std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers w
       before && before->features == made->flat->features && before->field_source == made->flat->field_source;
   FrameOrder frame_order{made->flat, settings, std::move(workers), known ? speed : 0};
   if (settings.light_groups && keeps_groups(*made->flat))
-    frame_order.aovs = with_group_numbers({light_groups_aov}, light_groups(*order.scene));
+    frame_order.aovs = with_group_numbers({light_groups_aov}, made->flat->light_groups);
   made->frame = make_session_frame(frame_order, [session, frame](const RenderProgress&) {
     const auto self = session.lock();
     const auto mine = frame.lock();

@@ -178,10 +178,12 @@ RenderResult RenderSession::render(const std::shared_ptr<const CompiledScene>& s
   }
   // A single device makes no other wait, so an outdated speed does no harm.
   const bool comparable = threads.size() == 1 || live_->rated == scene.get();
-  for (const auto& thread : threads)
-    plans.push_back({thread->worker->info(), thread->worker->processor(),
-                     [worker = thread->worker](const RenderOptions&) { return worker; },
-                     comparable ? thread->pixels_a_second : 0, comparable ? thread->measured_pixels : 0});
+  for (const auto& thread : threads) {
+    plans.push_back(plan_kept(thread->worker));
+    if (!comparable) continue;
+    plans.back().pixels_a_second = thread->pixels_a_second;
+    plans.back().measured_pixels = thread->measured_pixels;
+  }
   const auto mine = std::make_shared<SessionFrame>();
   mine->flat = scene;
   mine->frame = begin_frame(*scene, plans, options);

@@ -54,15 +54,8 @@ enum class SessionState {
 std::string state_text(SessionState state);
 
 /// One device's work on the generation shown.
-struct DeviceActivity {
-  DeviceInfo info;
+struct DeviceActivity : DeviceReport {
   std::string doing;  // "drawing", "building a kernel", "waiting", "out: ..." with the reason
-  std::uint64_t tiles = 0, pixels = 0;         // rendered for this generation; every pass counts
-  double share = 0;                            // share of all devices' pixels, 0..1
-  double busy_seconds = 0;                     // rendering tiles
-  std::map<std::string, KernelTimes> kernels;  // for this generation
-  std::vector<std::string> messages;           // its failures
-  std::vector<std::string> notes;              // warnings
 };
 
 /// The cost of an edit, for this generation. A camera edit recompiles no BVH or geometry.

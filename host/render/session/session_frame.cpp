@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "render/frame/frame_end.h"
+#include "render/frame/frame_plan.h"
+
 namespace sundog {
 namespace {
 
@@ -17,25 +20,9 @@ RenderOptions options_of(const SessionSettings& settings) {
   options.split = settings.split;
   options.tile = settings.tile;
   options.kernels = settings.general_kernels ? KernelChoice::own_when_built : KernelChoice::own;
+  options.passes = true;
+  options.tile_seconds = tile_seconds;
   return options;
-}
-
-/// If the scene is not rendered in passes, its samples double from pass to pass. The sums are added in the
-/// same order as in one pass, so the final bits are equal.
-SamplingPlan sampling_of(const CompiledScene& scene, const std::vector<std::string>& aovs) {
-  SamplingPlan plan = plan_sampling(scene);
-  plan.surfaces = plan.sums = !aovs.empty();
-  if (!in_passes(scene.sampling)) plan.settings.progressive = true;
-  return plan;
-}
-
-std::vector<DeviceSpeed> speeds_of(const std::vector<std::shared_ptr<SceneWorker>>& workers) {
-  std::vector<DeviceSpeed> speeds;
-  for (const auto& worker : workers)
-    speeds.push_back({.estimate = worker->info().estimate,
-                      .processor = worker->processor(),
-                      .tile_seconds = tile_seconds});
-  return speeds;
 }
 
 void set_pixel(float* pixel, const float4& sum, float weight) {
@@ -90,24 +77,21 @@ std::string doing_of(const Frame::Worker& worker, bool over) {
 
 }  // namespace
 
+WorkerPlan plan_kept(const std::shared_ptr<DeviceWorker>& worker) {
+  return {worker->info(), worker->processor(), [worker](const RenderOptions&) { return worker; }};
+}
+
 std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,
                                           std::function<void(const RenderProgress&)> on_progress) {
   RenderOptions options = options_of(order.settings);
   options.on_progress = std::move(on_progress);
   options.aovs = order.aovs;
-  const SceneInfo& info = order.scene->info;
-  Film film(static_cast<int>(info.width), static_cast<int>(info.height),
-            {.layout = aov_layout(order.aovs),
-             .shows_surfaces = !order.aovs.empty() || needs_surfaces(order.scene->sampling),
-             .grows = true});
-  const std::size_t pixels = film.pixels();
-  auto frame = std::make_shared<Frame>(options, sampling_of(*order.scene, order.aovs), std::move(film),
-                                       speeds_of(order.workers));
-  for (const auto& worker : order.workers)
-    frame->workers.push_back({.device = worker, .report = {.info = worker->info()}});
+  std::vector<WorkerPlan> workers;
+  for (const auto& worker : order.workers) workers.push_back(plan_kept(worker));
+  auto frame = plan_frame(*order.scene, workers, options);
   frame->live = true;
   frame->coarse.pixel_seconds = order.pixel_seconds;
-  begin_coarse(*frame, order.settings.coarse ? first_block(order.pixel_seconds, pixels) : 0);
+  begin_coarse(*frame, order.settings.coarse ? first_block(order.pixel_seconds, frame->film.pixels()) : 0);
   return frame;
 }
 
@@ -150,22 +134,8 @@ Image picture_of(const Frame& frame, std::span<const glm::vec3> balance) {
 
 std::vector<DeviceActivity> activity_of(const Frame& frame, bool over) {
   std::vector<DeviceActivity> list;
-  std::uint64_t all = 0;
-  for (const Frame::Worker& worker : frame.workers) all += worker.report.pixels;
-  for (std::size_t i = 0; i < frame.workers.size(); ++i) {
-    const Frame::Worker& worker = frame.workers[i];
-    const DeviceReport& report = worker.report;
-    DeviceActivity activity;
-    activity.info = report.info;
-    activity.doing = doing_of(worker, over);
-    activity.tiles = report.tiles, activity.pixels = report.pixels;
-    activity.share = all > 0 ? static_cast<double>(report.pixels) / static_cast<double>(all) : 0;
-    activity.busy_seconds = frame.queue.work(i).busy_seconds;
-    activity.kernels = report.kernels;
-    activity.messages = report.messages;
-    activity.notes = report.notes;
-    list.push_back(std::move(activity));
-  }
+  for (DeviceReport& report : reports(frame))
+    list.push_back({std::move(report), doing_of(frame.workers[list.size()], over)});
   return list;
 }
 

@@ -29,6 +29,9 @@ struct FrameOrder {
   std::vector<std::string> aovs = {};  // AOVs of light groups in the film
 };
 
+/// Plans a frame with a worker that stays open.
+WorkerPlan plan_kept(const std::shared_ptr<DeviceWorker>& worker);
+
 /// Makes a frame in passes: coarse passes, then the scene's own, or else passes that double the samples.
 /// Opens no device.
 std::shared_ptr<Frame> make_session_frame(const FrameOrder& order,

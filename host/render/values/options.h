@@ -43,7 +43,8 @@ struct RenderOptions {
   WorkGroup work_group;
   std::function<Tuning(const DeviceInfo&)> tuning;  // per device; empty: the defaults
   KernelChoice kernels = KernelChoice::own;
-  int tile = 0;  // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
+  int tile = 0;             // tile edge in pixels, rounded up to a multiple of 4; 0: chosen by measured speed
+  double tile_seconds = 0;  // a tile takes at most this long; 0: as tuned
   Split split;
   PartOfFrame part;               // the part of the frame to render
   std::optional<Tile> region;     // renders only this region of the picture; none: all of it

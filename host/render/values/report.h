@@ -15,7 +15,16 @@ namespace sundog {
 /// Totals of the frame, in the order of the COUNT_* constants.
 using RayCounts = std::array<std::uint64_t, COUNTERS>;
 
-struct DeviceReport {
+/// A worker's statistics so far.
+struct WorkerFigures {
+  std::map<std::string, KernelTimes> kernels;
+  double readback_seconds = 0;
+  std::vector<std::string> notes;  // problems that did not stop it: smaller launches, an unusable cache
+  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
+  std::uint64_t kernels_built = 0;  // programs compiled by the driver
+};
+
+struct DeviceReport : WorkerFigures {
   DeviceInfo info;
   std::uint64_t tiles = 0, failures = 0;
   std::uint64_t pixels = 0;                // kept in the image
@@ -26,11 +35,7 @@ struct DeviceReport {
   bool retired = false;                    // it failed too often, or hangs
   bool abandoned = false;                  // its driver had not returned at the end
   std::vector<std::string> messages = {};  // its failures
-  std::vector<std::string> notes = {};     // warnings
-  std::map<std::string, KernelTimes> kernels = {};
   bool kernels_cached = false;
-  std::uint64_t tables_uploaded = 0, bytes_uploaded = 0;
-  std::uint64_t kernels_built = 0;  // programs compiled by the driver
 };
 
 /// Wall-clock seconds of the frame; overlapping work is counted once. build_kernels includes drivers'

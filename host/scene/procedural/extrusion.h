@@ -10,8 +10,8 @@ namespace sundog {
 struct Extrusion {
   std::vector<procedural::ProfilePoint> outline;  // (x, -z): y is up on the page; closes itself
   procedural::ProfileCurve curve = procedural::ProfileCurve::lines;
-  double height = 1;  // from y = 0, above 0
-  int facets = 64;    // per full turn of the outline, 3..4096
+  double height = 1;  // from y = 0
+  int facets = 64;    // per full turn of the outline
 };
 
 /// A closed solid with flat ends and, on its sides, the outline's exact normals. Throws GenerateError for an

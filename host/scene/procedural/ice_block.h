@@ -16,16 +16,16 @@ namespace sundog {
 struct IceSurface {
   glm::dvec3 size{2, 2, 2};    // size of the original box, > 0
   glm::dvec3 offset{0, 0, 0};  // from the block's origin to its centre; the origin must stay well inside
-  int chips = 12;              // planes that cut off edges and corners, 0..1000
-  int dents = 6;               // shallow hollows, 0..1000
+  int chips = 12;              // planes that cut off edges and corners
+  int dents = 6;               // shallow hollows
   int softness = 1;            // softness of the edges, 0 (sharp) .. 4 (a pebble)
-  double tilt = 0.1;           // maximum slope of the sides, 0..0.5
-  double roughness = 0.02;     // height of ripples relative to the distance from the origin, 0..0.2
+  double tilt = 0.1;           // maximum slope of the sides
+  double roughness = 0.02;     // height of ripples relative to the distance from the origin
 };
 
 struct IceBlock {
   std::uint64_t seed = 1;
-  int subdivision = 64;  // grid cells per side, 4..1024: 12 * subdivision^2 triangles per surface
+  int subdivision = 64;  // grid cells per side: 12 * subdivision^2 triangles per surface
   IceSurface outer;
   bool hollow = false;
   IceSurface cavity;

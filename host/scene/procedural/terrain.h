@@ -15,8 +15,8 @@ struct Terrain {
   double height = 2;        // height of the highest point above the lowest, which is at y = 0
   double feature = 4;       // width of the largest hills
   double ridges = 0.7;      // 0: rolling hills, 1: sharp ridges over flat valleys
-  int octaves = 9;          // 1..16; each half the size of the previous
-  int cells = 256;          // along the longer side, 1..4096: up to 2 cells^2 triangles
+  int octaves = 9;          // each half the size of the previous
+  int cells = 256;          // along the longer side: up to 2 cells^2 triangles
   /// Replaces the noise: the mean of red, green and blue times `height` above y = 0, with the top towards -z.
   std::optional<Image> picture{};
   /// Replaces the noise: y at the point p of the rectangle, unscaled; yields one value.

@@ -24,14 +24,13 @@ int find_name(const JsonValue& name, const NameTable& table, std::string_view wh
 /// if it lies outside the folder and that is not allowed.
 std::filesystem::path find_file(const JsonValue& value);
 
-/// Reads the camera. `position` and `target` must both be given or both be missing; `placed` returns whether
-/// they are given. Focal lengths are in millimetres, so `unit` is needed: metres per scene unit.
-Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed);
+/// Returns a section of the document, if present.
+using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
+
+/// Reads image, render, camera and lights, for the scene's unit. Returns whether the camera has a place.
+bool read_view_sections(const FindSection& find, SceneDescription& scene);
+
 ToneMap read_tone_map(const JsonValue& value);
-ImageSettings read_image(const JsonValue& value);
-RenderSettings read_render(const JsonValue& value);
-/// `unit`: metres per scene unit, for the power of lamps.
-LightDescription read_light(const JsonValue& value, double unit);
 /// Refuses more groups of lights than a film has sums for.
 void check_light_groups(const SceneDescription& scene, const JsonValue& root);
 

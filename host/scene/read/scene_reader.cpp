@@ -57,21 +57,15 @@ class SceneReader {
  private:
   void read_root(JsonObject& object) {
     object.check("$schema");
-    if (const auto image = object.find("image")) scene_.image = read_image(*image);
-    if (const auto render = object.find("render")) scene_.render = read_render(*render);
     const auto animate = object.find("animate");
     if (animate) read_tracks(*animate);  // only a check: animate.cpp has already applied them
     object.read("frames_per_second", scene_.frames_per_second, "unit", scene_.unit);
-    bool placed = false;
-    if (const auto camera = object.find("camera"))
-      scene_.camera = read_camera(*camera, scene_.image, scene_.unit, placed);
-    if (const auto lights = object.find("lights"))
-      for (const JsonValue& light : lights->items("lights"))
-        scene_.lights.push_back(read_light(light, scene_.unit));
+    const auto find = [&](std::string_view key) { return object.find(key); };
+    const bool placed = read_view_sections(find, scene_);
     if (const auto environment = object.find("environment"))
       scene_.environment =
           read_environment(*environment, [&](const JsonValue& file) { return read_picture(file); });
-    read_tables(object);
+    read_tables(object, find);
     for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, Placement{});
     if (const bool* plays = root_.context().plays) scene_.plays = scene_.plays || *plays;
     if (root_.context().seconds && !animate && !scene_.plays)
@@ -85,8 +79,8 @@ class SceneReader {
     warn_of_dark_world(scene_);
   }
 
-  void read_tables(JsonObject& object) {
-    names_ = read_surfaces(root_, [&](std::string_view key) { return object.find(key); }, scene_, textures_);
+  void read_tables(JsonObject& object, const FindSection& find) {
+    names_ = read_surfaces(root_, find, scene_, textures_);
     mesh_table_ = object.find("meshes");
     if (mesh_table_)
       for (const auto& [name, value] : mesh_table_->members("meshes"))

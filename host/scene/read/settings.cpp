@@ -134,7 +134,9 @@ void read_sampling(JsonObject& object, RenderSettings& render) {
 
 }  // namespace
 
-Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed) {
+/// `position` and `target` must both be given or both be missing; `placed` returns whether they are given.
+/// Focal lengths are in millimetres, so `unit` is needed: metres per scene unit.
+static Camera read_camera(const JsonValue& value, const ImageSettings& image, double unit, bool& placed) {
   return value.object("camera", [&](JsonObject& object) {
     Camera camera;
     placed = object.has("position") || object.has("target");
@@ -178,7 +180,7 @@ ToneMap read_tone_map(const JsonValue& value) {
   });
 }
 
-ImageSettings read_image(const JsonValue& value) {
+static ImageSettings read_image(const JsonValue& value) {
   return value.object("image", [](JsonObject& object) {
     ImageSettings image;
     read_members(object, image);
@@ -196,7 +198,7 @@ ImageSettings read_image(const JsonValue& value) {
   });
 }
 
-RenderSettings read_render(const JsonValue& value) {
+static RenderSettings read_render(const JsonValue& value) {
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
     read_members(object, render, {"max_depth", "sampler", "seed"});
@@ -256,7 +258,8 @@ EnvironmentDescription read_environment(const JsonValue& value,
   });
 }
 
-LightDescription read_light(const JsonValue& value, double unit) {
+/// `unit`: metres per scene unit, for the power of lamps.
+static LightDescription read_light(const JsonValue& value, double unit) {
   const std::string type = value.type();
   return value.object(type + "_light", [&](JsonObject& object) {
     LightDescription light;
@@ -274,6 +277,19 @@ LightDescription read_light(const JsonValue& value, double unit) {
     if (object.knows("watts")) read_power(object, unit, light);
     return light;
   });
+}
+
+bool read_view_sections(const FindSection& find, SceneDescription& scene) {
+  bool placed = false;
+  const auto image = find("image"), render = find("render"), camera = find("camera"), lights = find("lights");
+  scene.image = image ? read_image(*image) : ImageSettings{};
+  scene.render = render ? read_render(*render) : RenderSettings{};
+  scene.camera = camera ? read_camera(*camera, scene.image, scene.unit, placed) : Camera{};
+  scene.lights.clear();
+  if (lights)
+    for (const JsonValue& light : lights->items("lights"))
+      scene.lights.push_back(read_light(light, scene.unit));
+  return placed;
 }
 
 void check_light_groups(const SceneDescription& scene, const JsonValue& root) {

@@ -15,9 +15,6 @@ struct SurfaceNames {
   NameTable media, materials;
 };
 
-/// Returns a section of the document, if present.
-using FindSection = std::function<std::optional<JsonValue>(std::string_view key)>;
-
 /// Reads these sections, and the presets that the document `root` uses, into `scene`, whose only medium so
 /// far is the world's. `textures` adds to the same scene. Throws SceneError.
 SurfaceNames read_surfaces(const JsonValue& root, const FindSection& find, SceneDescription& scene,

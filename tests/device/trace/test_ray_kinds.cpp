@@ -1,11 +1,11 @@
 // A lane's path and shadow rays wait on one stack and are traced by one loop (the compact tracer): the
 // picture is the wide tracer's, whatever its lights, and has the same bits however lanes are grouped.
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "bench/plain/whitted.h"
 #include "catch.h"
 #include "devices.h"
+#include "same_bits.h"
 #include "scenes.h"
 
 using namespace sundog;
@@ -58,9 +58,7 @@ TEST_CASE(
   on_picture_devices([&](const DeviceInfo& device) {
     const Image reference = scenes::render_on(device, scene).image;
     const auto check = [&](const RenderOptions& options) {
-      const Image image = scenes::render_on(device, scene, options).image;
-      REQUIRE(image.data.size() == reference.data.size());
-      CHECK(std::memcmp(image.data.data(), reference.data.data(), image.data.size() * sizeof(float)) == 0);
+      CHECK(same_bits(scenes::render_on(device, scene, options).image, reference));
     };
     RenderOptions options;
     for (const WorkGroup& group : {WorkGroup{WorkGroup::Kind::fixed, 1, 1},

@@ -37,7 +37,8 @@ struct MadeUpWorker : DeviceWorker {
   TileResult render(const TileRequest& request, const StopFlags& flags) override {
     const Tile& tile = request.tile;
     before(++tiles);
-    TileResult made{tile, {}, {}, {}, {}};
+    TileResult made;
+    made.tile = tile;
     if (flags.set()) made.tile.height = 0;
     for (int y = 0; y < made.tile.height; ++y)
       for (int x = 0; x < tile.width; ++x) {

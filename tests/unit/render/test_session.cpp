@@ -54,7 +54,8 @@ struct MadeUpWorker : SceneWorker {
     if (fails) throw DeviceError("a made-up failure");
     if (pause_us > 0) std::this_thread::sleep_for(std::chrono::microseconds(pause_us));
     const Tile& tile = request.tile;
-    TileResult made{tile, {}, {}, {}, {}};
+    TileResult made;
+    made.tile = tile;
     if (flags.set()) made.tile.height = 0;
     const float light = scene->lights.empty() ? 0 : scene->lights[0].color.x;
     for (int y = 0; y < made.tile.height; ++y)
@@ -233,11 +234,11 @@ TEST_CASE("errors of a scene and of a device are the session's state, and the ne
   RenderSession session(given(made));
   SECTION("a scene that does not compile") {
     auto broken = std::make_shared<SceneDescription>(*scene_of(1));
-    broken->objects[0].material = 5;
+    broken->objects[0].world_from_object = glm::dmat4(0);
     session.start(broken);
     session.wait();
     CHECK(session.snapshot().state == SessionState::failed);
-    CHECK(session.snapshot().error.find("material") != std::string::npos);
+    CHECK(session.snapshot().error.find("its transform") != std::string::npos);
   }
   SECTION("kernels that do not build") {
     made[0]->does_not_build = true;

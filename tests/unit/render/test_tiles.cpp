@@ -68,7 +68,7 @@ TEST_CASE("what is unfinished is covered once, and blocks that are done are left
   const auto finish = [&](Tile tile) {
     const std::vector<float4> sums(pixel_count(tile));
     const std::vector<float> weights(pixel_count(tile));
-    film.put(tile, sums, weights, {});
+    film.put(tile, {.sums = sums, .weights = weights, .aovs = {}, .rays = {}});
   };
   CHECK(unfinished_tiles(film, {0, 0, 37, 29}) == std::vector<Tile>{{0, 0, 37, 29}});
   finish({0, 0, 37, 8});

@@ -1,5 +1,5 @@
 // Compares files by device and inode and by resolved path. Outputs may share a pipe or device.
-#include "app/options/output_files.h"
+#include "app/render/output_files.h"
 
 #include <fmt/format.h>
 

@@ -5,9 +5,9 @@
 
 #include "app/options/command.h"
 #include "app/options/option_values.h"
-#include "app/options/output_files.h"
 #include "app/options/picture_options.h"
 #include "app/process/standard_streams.h"
+#include "app/render/output_files.h"
 #include "app/render/save_image.h"
 #include "base/arguments.h"
 #include "base/file.h"

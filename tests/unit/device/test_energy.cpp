@@ -1,5 +1,5 @@
 // Joules by counters of the system's files, as they lie on machines that have them.
-#include "bench/runs/energy.h"
+#include "device/energy.h"
 
 #include <dlfcn.h>
 

@@ -1,6 +1,6 @@
 // Sums counters of RAPL, or else of hwmon, and of NVML, which is loaded at run time; if one device has none,
 // the sum is unknown.
-#include "bench/runs/energy.h"
+#include "device/energy.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
