@@ -14,6 +14,9 @@
 using namespace sundog;
 using WithoutLock = nb::call_guard<Unlocked>;
 
+// Arrays of other numbers are converted, so a checker of types must let them pass.
+#define ANY_NUMBERS "numpy.typing.NDArray[numpy.floating | numpy.integer]"
+
 namespace {
 
 constexpr const char* kinds[] = {"usage", "scene", "device", "build", "io", "internal"};
@@ -166,7 +169,8 @@ void add_images(nb::module_& m) {
   nb::class_<Image>(m, "Image", "Linear floats that copies share.")
       .def(
           "__init__", [](Image* self, const PixelsIn& pixels) { new (self) Image(image_of(pixels)); },
-          nb::arg("pixels"), "A copy of an array of (height, width, channels) or (height, width).")
+          nb::arg("pixels"), nb::sig("def __init__(self, pixels: " ANY_NUMBERS ") -> None"),
+          "A copy of an array of (height, width, channels) or (height, width).")
       .def_prop_ro("width", &Image::width)
       .def_prop_ro("height", &Image::height)
       .def_prop_ro("channels", &Image::channels)
@@ -258,6 +262,9 @@ void add_scene(nb::module_& m) {
       .def("copy", [](const OwnScene& scene) { return OwnScene(scene); })
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
            nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
+           nb::sig("def add_mesh(self, name: str, positions: " ANY_NUMBERS ", triangles: " ANY_NUMBERS
+                   ", normals: " ANY_NUMBERS " | None = None, uvs: " ANY_NUMBERS
+                   " | None = None, colors: " ANY_NUMBERS " | None = None) -> None"),
            "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. "
            "Arrays of float32 and uint32 in C order are held, not copied: leave them as they are.")
       .def(
