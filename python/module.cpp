@@ -197,6 +197,11 @@ void add_images(nb::module_& m) {
       .def(
           "save", [](const Image& image, const std::filesystem::path& file) { image.save(file); },
           nb::arg("file"), WithoutLock(), "Writes .png .jpg .exr .hdr or .pfm.")
+      .def("__getstate__", &pixels_of)
+      .def("__setstate__",
+           [](Image& image, const PixelsIn& pixels) {
+             new (&image) Image(pixels.size() > 0 ? image_of(pixels) : Image());
+           })
       .def("_repr_png_", &png_of);
   nb::class_<Film>(m, "Film", "A finished or stopped render.")
       .def_prop_ro("width", &Film::width)
@@ -230,17 +235,16 @@ void add_scene(nb::module_& m) {
             if (source.is_none())
               new (self) OwnScene();
             else
-              new (self) OwnScene(SceneInUse(source).scene());
+              new (self) OwnScene(scene_of(source));
           },
           nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
       .def_static(
           "load",
           [](const std::filesystem::path& file, std::optional<double> frame, bool native_code,
              bool outside_files, std::array<int, 2> size) {
-            const Unlocked unlocked;
-            return OwnScene(Scene::load(
+            return load_scene(
                 file,
-                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size}));
+                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size});
           },
           nb::arg("file"), nb::arg("frame") = nb::none(), nb::arg("native_code") = false,
           nb::arg("outside_files") = false, nb::arg("size") = std::array{0, 0},
@@ -260,6 +264,9 @@ void add_scene(nb::module_& m) {
       .def("__copy__", [](const OwnScene& scene) { return OwnScene(scene); })
       .def("__deepcopy__", [](const OwnScene& scene, nb::handle) { return OwnScene(scene); })
       .def("copy", [](const OwnScene& scene) { return OwnScene(scene); })
+      .def("__getstate__", &state_of)
+      .def("__setstate__",
+           [](OwnScene& scene, const nb::tuple& state) { new (&scene) OwnScene(scene_of_state(state)); })
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
            nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
            nb::sig("def add_mesh(self, name: str, positions: " ANY_NUMBERS ", triangles: " ANY_NUMBERS
