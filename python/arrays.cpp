@@ -2,9 +2,14 @@
 #include "values.h"
 
 #include <dlfcn.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 
+#include <tuple>
 #include <utility>
 
 namespace {
@@ -14,15 +19,6 @@ auto groups(const Array& array) {
   using Number = std::remove_cv_t<std::remove_pointer_t<decltype(array.data())>>;
   return std::span(reinterpret_cast<const std::array<Number, count>*>(array.data()), array.shape(0));
 }
-
-struct HeldArrays {
-  Floats3 positions;
-  Indices triangles;
-  std::optional<Floats3> normals;
-  std::optional<Floats2> uvs;
-  std::optional<Floats3> colors;
-  const HeldArrays* next;
-};
 
 /// Arrays that nobody reads any more, to be freed.
 std::atomic<const HeldArrays*> let_go_of{nullptr};
@@ -45,9 +41,8 @@ bool has_interpreter() {
 /// later.
 void let_go(const HeldArrays* held) {
   if (!Py_IsInitialized()) return;
-  auto* mine = const_cast<HeldArrays*>(held);
-  mine->next = let_go_of;
-  while (!let_go_of.compare_exchange_weak(mine->next, mine)) {
+  held->next = let_go_of;
+  while (!let_go_of.compare_exchange_weak(held->next, held)) {
   }
   if (has_interpreter())
     free_let_go(nullptr);
@@ -81,9 +76,11 @@ void add_mesh(OwnScene& scene, const std::string& name, const Floats3& positions
   if (uvs) mesh.uvs = groups<2>(*uvs);
   if (colors) mesh.colors = groups<3>(*colors);
   // The scene reads the arrays in place.
-  mesh.owner = std::shared_ptr<const HeldArrays>(
-      new HeldArrays{positions, triangles, normals, uvs, colors, nullptr}, let_go);
+  const std::shared_ptr<const HeldArrays> held(new HeldArrays{positions, triangles, normals, uvs, colors},
+                                               let_go);
+  mesh.owner = held;
   scene.add_mesh(name, mesh);
+  scene.arrays[name] = held;
   ++scene.edits;
   free_let_go(nullptr);
 }
@@ -98,21 +95,50 @@ std::string json_of(nb::handle value) {
 
 nb::object value_of(const std::string& json) { return nb::module_::import_("json").attr("loads")(json); }
 
-namespace {
+OwnScene load_scene(const std::filesystem::path& file, const sundog::LoadOptions& options) {
+  const Unlocked unlocked;
+  return {sundog::Scene::load(file, options), std::filesystem::absolute(file).parent_path(), options};
+}
 
-sundog::Scene scene_of(nb::handle value) {
+OwnScene scene_of(nb::handle value) {
   if (nb::isinstance<OwnScene>(value)) {
     if (!nb::inst_ready(value)) throw nb::type_error("sundog.Scene: its __init__() was not called");
     return nb::cast<OwnScene&>(value);
   }
   if (nb::isinstance<nb::dict>(value)) return sundog::Scene::from_json(json_of(value));
   const nb::bytes file(nb::module_::import_("os").attr("fsencode")(value));
-  const std::string name(file.c_str(), file.size());
-  const Unlocked unlocked;
-  return sundog::Scene::load(name);
+  return load_scene(std::string(file.c_str(), file.size()), {});
 }
 
+namespace {
+
+using Meshes = std::map<std::string, std::tuple<Floats3, Indices, std::optional<Floats3>,
+                                                std::optional<Floats2>, std::optional<Floats3>>>;
+
 }  // namespace
+
+nb::tuple state_of(const OwnScene& scene) {
+  Meshes meshes;
+  for (const auto& [name, held] : scene.arrays)
+    meshes.try_emplace(name, held->positions, held->triangles, held->normals, held->uvs, held->colors);
+  const sundog::LoadOptions& options = scene.options;
+  return nb::make_tuple(scene.to_json(), scene.folder, options.frame, options.native_code,
+                        options.outside_files, options.size, meshes);
+}
+
+OwnScene scene_of_state(const nb::tuple& state) {
+  const auto folder = nb::cast<std::filesystem::path>(state[1]);
+  const sundog::LoadOptions options{.frame = nb::cast<std::optional<double>>(state[2]),
+                                    .native_code = nb::cast<bool>(state[3]),
+                                    .outside_files = nb::cast<bool>(state[4]),
+                                    .size = nb::cast<std::array<int, 2>>(state[5])};
+  OwnScene scene(sundog::Scene::from_json(nb::cast<std::string>(state[0]), folder, options), folder, options);
+  for (const auto& [name, mesh] : nb::cast<Meshes>(state[6])) {
+    const auto& [positions, triangles, normals, uvs, colors] = mesh;
+    add_mesh(scene, name, positions, triangles, normals, uvs, colors);
+  }
+  return scene;
+}
 
 SceneInUse::SceneInUse(nb::handle value) : copy_(scene_of(value)) {
   if (!nb::isinstance<OwnScene>(value)) return;

@@ -14,6 +14,9 @@
 using namespace sundog;
 using WithoutLock = nb::call_guard<Unlocked>;
 
+// Arrays of other numbers are converted, so a checker of types must let them pass.
+#define ANY_NUMBERS "numpy.typing.NDArray[numpy.floating | numpy.integer]"
+
 namespace {
 
 constexpr const char* kinds[] = {"usage", "scene", "device", "build", "io", "internal"};
@@ -166,7 +169,8 @@ void add_images(nb::module_& m) {
   nb::class_<Image>(m, "Image", "Linear floats that copies share.")
       .def(
           "__init__", [](Image* self, const PixelsIn& pixels) { new (self) Image(image_of(pixels)); },
-          nb::arg("pixels"), "A copy of an array of (height, width, channels) or (height, width).")
+          nb::arg("pixels"), nb::sig("def __init__(self, pixels: " ANY_NUMBERS ") -> None"),
+          "A copy of an array of (height, width, channels) or (height, width).")
       .def_prop_ro("width", &Image::width)
       .def_prop_ro("height", &Image::height)
       .def_prop_ro("channels", &Image::channels)
@@ -193,6 +197,11 @@ void add_images(nb::module_& m) {
       .def(
           "save", [](const Image& image, const std::filesystem::path& file) { image.save(file); },
           nb::arg("file"), WithoutLock(), "Writes .png .jpg .exr .hdr or .pfm.")
+      .def("__getstate__", &pixels_of)
+      .def("__setstate__",
+           [](Image& image, const PixelsIn& pixels) {
+             new (&image) Image(pixels.size() > 0 ? image_of(pixels) : Image());
+           })
       .def("_repr_png_", &png_of);
   nb::class_<Film>(m, "Film", "A finished or stopped render.")
       .def_prop_ro("width", &Film::width)
@@ -226,17 +235,16 @@ void add_scene(nb::module_& m) {
             if (source.is_none())
               new (self) OwnScene();
             else
-              new (self) OwnScene(SceneInUse(source).scene());
+              new (self) OwnScene(scene_of(source));
           },
           nb::arg("source").none() = nb::none(), "Of a dict, a file or another Scene; empty without.")
       .def_static(
           "load",
           [](const std::filesystem::path& file, std::optional<double> frame, bool native_code,
              bool outside_files, std::array<int, 2> size) {
-            const Unlocked unlocked;
-            return OwnScene(Scene::load(
+            return load_scene(
                 file,
-                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size}));
+                {.frame = frame, .native_code = native_code, .outside_files = outside_files, .size = size});
           },
           nb::arg("file"), nb::arg("frame") = nb::none(), nb::arg("native_code") = false,
           nb::arg("outside_files") = false, nb::arg("size") = std::array{0, 0},
@@ -256,8 +264,14 @@ void add_scene(nb::module_& m) {
       .def("__copy__", [](const OwnScene& scene) { return OwnScene(scene); })
       .def("__deepcopy__", [](const OwnScene& scene, nb::handle) { return OwnScene(scene); })
       .def("copy", [](const OwnScene& scene) { return OwnScene(scene); })
+      .def("__getstate__", &state_of)
+      .def("__setstate__",
+           [](OwnScene& scene, const nb::tuple& state) { new (&scene) OwnScene(scene_of_state(state)); })
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
            nb::arg("normals") = nb::none(), nb::arg("uvs") = nb::none(), nb::arg("colors") = nb::none(),
+           nb::sig("def add_mesh(self, name: str, positions: " ANY_NUMBERS ", triangles: " ANY_NUMBERS
+                   ", normals: " ANY_NUMBERS " | None = None, uvs: " ANY_NUMBERS
+                   " | None = None, colors: " ANY_NUMBERS " | None = None) -> None"),
            "A mesh of arrays (n, 3), indices (m, 3), for objects {\"type\": \"mesh\", \"mesh\": name}. "
            "Arrays of float32 and uint32 in C order are held, not copied: leave them as they are.")
       .def(

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <future>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -16,21 +19,41 @@
 namespace nb = nanobind;
 
 using Pixels = nb::ndarray<nb::numpy, const float>;
-using Floats3 = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Floats2 = nb::ndarray<const float, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Floats3 = nb::ndarray<nb::numpy, const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Floats2 = nb::ndarray<nb::numpy, const float, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<nb::numpy, const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using PixelsIn = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 
-/// Python's Scene, which counts its edits.
+/// A mesh's arrays, which the scenes that read them share.
+struct HeldArrays {
+  Floats3 positions;
+  Indices triangles;
+  std::optional<Floats3> normals;
+  std::optional<Floats2> uvs;
+  std::optional<Floats3> colors;
+  mutable const HeldArrays* next = nullptr;
+};
+
+/// Python's Scene, which counts its edits and keeps what a pickle of it needs.
 struct OwnScene : sundog::Scene {
   OwnScene() = default;
-  OwnScene(sundog::Scene scene) : Scene(std::move(scene)) {}
+  OwnScene(sundog::Scene scene, std::filesystem::path files = ".", sundog::LoadOptions reading = {})
+      : Scene(std::move(scene)), folder(std::move(files)), options(reading) {}
   std::uint64_t edits = 0;
+  std::filesystem::path folder = ".";  // of the files in the document
+  sundog::LoadOptions options{};
+  std::map<std::string, std::shared_ptr<const HeldArrays>> arrays{};
 };
 
 /// The image's own memory, read-only: (height, width, channels), or (height, width) for one channel.
 Pixels pixels_of(const sundog::Image& image);
 sundog::Image image_of(const PixelsIn& pixels);
+/// A copy of a Scene, or a scene from a file's path or a dict.
+OwnScene scene_of(nb::handle value);
+OwnScene load_scene(const std::filesystem::path& file, const sundog::LoadOptions& options);
+/// The scene as a tuple to pickle, and the scene of such a tuple.
+nb::tuple state_of(const OwnScene& scene);
+OwnScene scene_of_state(const nb::tuple& state);
 void add_mesh(OwnScene& scene, const std::string& name, const Floats3& positions, const Indices& triangles,
               const std::optional<Floats3>& normals, const std::optional<Floats2>& uvs,
               const std::optional<Floats3>& colors);

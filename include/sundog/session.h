@@ -68,7 +68,7 @@ class SUNDOG_API Session {
   /// read; snapshot() then gives the picture. Only changed parts are compiled again. Throws Error (scene;
   /// internal for a frame that exceeds the memory); the previous scene then stays.
   std::uint64_t start(const Scene& scene, const SessionOptions& options = {});
-  /// Stops drawing; the picture so far remains.
+  /// Stops drawing and ends calls of pick(); the picture so far remains.
   void cancel();
   /// Takes effect at the next start(). Throws Error (device).
   void use_devices(const std::vector<Device>& devices);
@@ -85,8 +85,9 @@ class SUNDOG_API Session {
   /// drawing.
   Image finish() const;
 
-  /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene, or
-  /// when a newer scene arrives. The first call may build a kernel (seconds). Throws Error: device, build.
+  /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene that
+  /// the devices have opened, or when cancel() is called or a newer scene arrives. The first call may build a
+  /// kernel (seconds). Throws Error: device, build.
   std::optional<Pick> pick(int x, int y);
 
  private:

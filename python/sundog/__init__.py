@@ -42,12 +42,12 @@ from ._sundog import (  # noqa: E402
 _scenes = _pathlib.Path(__file__).parent / "scenes"
 
 
-def examples():
+def examples() -> list[str]:
     """The names of the scenes that come with the package."""
     return sorted(file.stem for file in _scenes.glob("*.json") if not file.stem.endswith(".schema"))
 
 
-def example(name):
+def example(name: str) -> Scene:
     """A scene that comes with the package, such as "hollow_ice"."""
     if name not in examples():
         raise ValueError(f"sundog.example: {name!r} is none of {', '.join(examples())}")

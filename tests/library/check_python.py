@@ -4,6 +4,7 @@ import copy
 import faulthandler
 import os
 import pathlib
+import pickle
 import random
 import signal
 import subprocess
@@ -87,6 +88,26 @@ del other["/image/width"]
 assert "/image/width" not in other
 other["/image/width"] = None
 assert other["/image/width"] is None
+
+# Images and scenes travel between processes, a scene with its meshes and the folder of its files.
+travelled = lambda value: pickle.loads(pickle.dumps(value))
+assert np.array_equal(travelled(sundog.Image(pixels)).pixels, pixels)
+assert np.array_equal(travelled(sundog.Image(pixels[:, :, 0])).pixels, pixels[:, :, 0])
+assert travelled(sundog.Session(device).snapshot().image).width == 0
+sent, one = small(), np.array([[0, 0, 1.0]] * 3)
+sent.add_mesh("shaded", corners, faces, normals=one, uvs=one[:, :2], colors=one)
+sent.add({"type": "mesh", "mesh": "shaded", "material": "red"})
+of_sent = sundog.render(sent, devices=device).image.pixels
+for copied in (travelled(sent), travelled(sundog.Scene(copy.copy(sent)))):
+    assert np.array_equal(sundog.render(copied, devices=device).image.pixels, of_sent)
+with tempfile.TemporaryDirectory() as folder:
+    pathlib.Path(folder, "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    moved = '{"value": "/image/width", "type": "step", "keys": [{"frame": 0, "value": 9}]}'
+    document = f'{{"objects": [{{"type": "model", "file": "one.obj"}}], "animate": [{moved}]}}'
+    pathlib.Path(folder, "scene.json").write_text(document)
+    at_frame = travelled(sundog.Scene.load(pathlib.Path(folder, "scene.json"), frame=3))
+    assert sundog.render(at_frame, devices=device).width == 9
+del sent, copied  # which hold the arrays
 
 # Errors have facts.
 error = error_of(lambda: sundog.Scene({"objects": [{"type": "sphre"}]}).check())

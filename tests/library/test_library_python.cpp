@@ -45,7 +45,7 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   patient.environment["CCACHE_NOHASHDIR"] = "1";
   const CommandResult fetched = run_command(
       joined(pip, {"install", "--quiet", "--retries", "1", "--no-compile", "scikit-build-core", "nanobind",
-                   "ninja", "numpy", "matplotlib", "anywidget", "nbclient", "ipykernel"}),
+                   "ninja", "numpy", "matplotlib", "anywidget", "nbclient", "ipykernel", "mypy"}),
       patient);
   if (fetched.status != 0) {
     WARN("pip cannot fetch what builds the package, so it is not tried: " << fetched.err);
@@ -109,5 +109,10 @@ TEST_CASE("pip installs the Python package, which renders, stops for Ctrl-C and 
   CAPTURE(live.out, live.err);
   CHECK(live.status == 0);
   CHECK(file_bytes(folder / "view.png").starts_with("\x89PNG"));
-  CHECK(fs::exists(find_below(environment, "_sundog.pyi")));
+  const CommandResult typed =
+      run_command({python, "-m", "mypy", "--strict", "--cache-dir=" + (folder / "mypy").string(),
+                   SUNDOG_SOURCE_DIR "/tests/library/typed_python.py"},
+                  patient);
+  CAPTURE(typed.out, typed.err);
+  CHECK(typed.status == 0);
 }

@@ -267,7 +267,7 @@ void Studio::balance(ClientId client, const json& message) {
 void Studio::pick(ClientId client, const json& message) {
   const int x = pixel_of(message, "x"), y = pixel_of(message, "y");
   const json id = message.value("id", json(nullptr));
-  asks_.post([this, client, x, y, id] {
+  const bool taken = asks_.post([this, client, x, y, id] {
     json answer = {{"is", "picked"}, {"object", nullptr}};
     try {
       if (const std::optional<Picked> picked = session_.pick(x, y)) answer = picked_message(*picked);
@@ -277,6 +277,7 @@ void Studio::pick(ClientId client, const json& message) {
     answer["id"] = id;
     server_.send(client, message_text(answer));
   });
+  if (!taken) throw UsageError("too much is waiting");
 }
 
 }  // namespace sundog

@@ -113,6 +113,7 @@ void FrameLoop::work_on_current(std::unique_lock<std::mutex>& lock, DeviceThread
   if (mine->final) leave_frame(frame, index, mine->closes);
   lock.lock();
   thread.opening = false;
+  thread.opened = thread.of_scenes && thread.of_scenes->is_open();
   thread.closed = mine->closes;
   note();
   if (!mine->final) after_frame(lock, thread, mine);

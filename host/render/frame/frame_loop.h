@@ -28,6 +28,7 @@ struct DeviceThread {
   DriverThread driver;
   std::shared_ptr<FrameTask> seen;  // the last frame that it worked on
   bool opening = false;             // it may be in a driver's compiler
+  bool opened = false;              // since it left `seen`: its worker has that frame's scene
   bool closed = false;              // the worker was closed after a frame
   bool leave = false, gone = false;
   bool abandoned = false;  // a frame did not wait for it, and nobody will
@@ -72,10 +73,12 @@ class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
   virtual void run_errand(std::unique_lock<std::mutex>&, DeviceThread&) {}
   virtual void after_frame(std::unique_lock<std::mutex>&, DeviceThread&, const std::shared_ptr<FrameTask>&) {}
 
+  /// The thread's worker in the current frame.
+  std::optional<std::size_t> index_of(const DeviceThread& thread) const;
+
  private:
   void run_thread(DeviceThread& thread);
   void work_on_current(std::unique_lock<std::mutex>& lock, DeviceThread& thread, std::size_t index);
-  std::optional<std::size_t> index_of(const DeviceThread& thread) const;
 };
 
 /// Renders a frame's passes in threads of its workers, and closes the workers. With `wait`, every thread has

@@ -95,9 +95,21 @@ void LiveSession::run_final(const std::shared_ptr<SessionFrame>& mine) {
   note();  // start() may have been called meanwhile
 }
 
+std::shared_ptr<LiveSession::Pick> LiveSession::next_pick() const {
+  const auto next = std::ranges::find_if(picks, [](const auto& pick) { return !pick->taken; });
+  return next == picks.end() ? nullptr : *next;
+}
+
 void LiveSession::drop_picks() {
-  for (Pick& pick : picks) pick.answer.set_value(std::nullopt);
+  for (const auto& pick : picks) pick->answer.set_value(std::nullopt);
   picks.clear();
+}
+
+void LiveSession::drop_lost_picks() {
+  const auto may_answer = [&](const auto& thread) {
+    return index_of(*thread) && (thread->seen != current || thread->opening || thread->opened);
+  };
+  if (std::ranges::none_of(threads, may_answer)) drop_picks();
 }
 
 // The control thread: compiles the newest scene and watches the current frame.
@@ -209,7 +221,7 @@ std::shared_ptr<SessionFrame> LiveSession::prepare(const Order& order, Workers w
 /// Called by workers between two tiles.
 void LiveSession::answer_picks(const std::shared_ptr<DeviceWorker>& worker) {
   std::unique_lock lock(mutex);
-  if (picks.empty()) return;
+  if (!next_pick()) return;
   const auto found =
       std::ranges::find_if(threads, [&](const auto& thread) { return thread->worker == worker; });
   if (found == threads.end()) return;
@@ -245,6 +257,7 @@ void LiveSession::look_at(std::unique_lock<std::mutex>& lock) {
 void LiveSession::after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
                               const std::shared_ptr<FrameTask>& task) {
   const auto mine = std::static_pointer_cast<SessionFrame>(task);
+  drop_lost_picks();
   lock.unlock();
   Frame& frame = *mine->frame;
   const bool draft = thread.of_scenes->draws_draft();
@@ -286,15 +299,22 @@ void LiveSession::end_draft(std::unique_lock<std::mutex>& lock, const DeviceThre
 }
 
 void LiveSession::run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) {
-  Pick pick = std::move(picks.front());
-  picks.pop_front();
+  const std::shared_ptr<Pick> pick = next_pick();
+  pick->taken = true;
   lock.unlock();
+  std::optional<Picked> picked;
+  std::exception_ptr thrown;
   try {
-    pick.answer.set_value(pick_on(*thread.of_scenes, pick.x, pick.y));
+    picked = pick_on(*thread.of_scenes, pick->x, pick->y);
   } catch (const std::exception&) {
-    pick.answer.set_exception(std::current_exception());
+    thrown = std::current_exception();
   }
   lock.lock();
+  if (std::erase(picks, pick) == 0) return;  // dropped meanwhile
+  if (thrown)
+    pick->answer.set_exception(thrown);
+  else
+    pick->answer.set_value(std::move(picked));
 }
 
 /// Called by a thread that has added a tile to the frame and holds its mutex.

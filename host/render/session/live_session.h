@@ -28,8 +28,8 @@ struct LiveSession : FrameLoop {
     std::shared_ptr<const SessionFrame> draft{};  // the draft that this order redraws
   };
   struct Pick {
-    Generation generation = 0;
     int x = 0, y = 0;
+    bool taken = false;  // by a device's thread
     std::promise<std::optional<Picked>> answer;
   };
 
@@ -39,7 +39,7 @@ struct LiveSession : FrameLoop {
   std::exception_ptr cause;  // of the error
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> shown;
-  std::deque<Pick> picks;
+  std::deque<std::shared_ptr<Pick>> picks;  // those not answered
   std::vector<glm::vec3> balance;  // per light group
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
@@ -91,7 +91,7 @@ struct LiveSession : FrameLoop {
                                         const std::shared_ptr<const CompiledScene>& before, double speed);
   void look_at(std::unique_lock<std::mutex>& lock);
   bool has_errand(const DeviceThread& thread) const override {
-    return !picks.empty() && thread.of_scenes && thread.seen == current && thread.of_scenes->is_open();
+    return next_pick() && thread.of_scenes && thread.seen == current && thread.of_scenes->is_open();
   }
   void run_errand(std::unique_lock<std::mutex>& lock, DeviceThread& thread) override;
   void after_frame(std::unique_lock<std::mutex>& lock, DeviceThread& thread,
@@ -109,7 +109,10 @@ struct LiveSession : FrameLoop {
   /// Whether the current frame is rendered to its end; then its caller releases it.
   bool is_held() const { return current && current->final; }
   void answer_picks(const std::shared_ptr<DeviceWorker>& worker);
+  std::shared_ptr<Pick> next_pick() const;
   void drop_picks();
+  /// Drops the picks if no thread has opened the current scene, or will. The caller holds the mutex.
+  void drop_lost_picks();
   std::shared_ptr<const Image> picture_so_far(const Frame& frame, const std::vector<glm::vec3>& with) const;
 };
 

@@ -85,9 +85,9 @@ void RenderSession::cancel() {
   LiveSession& s = *live_;
   const std::lock_guard lock(s.mutex);
   s.set_pending(std::nullopt);
+  s.drop_picks();
   if (s.state == SessionState::idle || is_at_rest(s.state)) return;
   s.drop_frame();
-  s.drop_picks();
   s.set_state(SessionState::stopped);
 }
 
@@ -110,6 +110,7 @@ void RenderSession::use_devices(const std::vector<DeviceInfo>& devices) {
       thread->leave = true;
       s.leaving.push_back(thread);
     }
+  s.drop_lost_picks();
   s.note();
 }
 
@@ -234,9 +235,11 @@ std::optional<Picked> RenderSession::pick(int x, int y) {
     const SceneInfo& info = s.current->flat->info;
     if (x < 0 || y < 0 || x >= static_cast<int>(info.width) || y >= static_cast<int>(info.height))
       return std::nullopt;
-    s.picks.push_back({mine, x, y, {}});
-    answer = s.picks.back().answer.get_future();
+    s.picks.push_back(std::make_shared<LiveSession::Pick>());
+    s.picks.back()->x = x, s.picks.back()->y = y;
+    answer = s.picks.back()->answer.get_future();
     scene = s.drawn()->scene;
+    s.drop_lost_picks();
     s.note();
   }
   std::optional<Picked> picked = answer.get();

@@ -143,7 +143,7 @@ class RenderSession {
   /// with SessionSettings::light_groups, from their first full picture on.
   void set_balance(std::vector<glm::vec3> factors);
 
-  /// Stops drawing at once. The picture so far remains.
+  /// Stops drawing and ends picks at once. The picture so far remains.
   void cancel();
 
   /// Stops drawing for good. Waits for launches (about 50 ms), but not for a driver that hangs or compiles.
@@ -164,8 +164,9 @@ class RenderSession {
   bool wait_for_change(std::uint64_t revision, double seconds) const;
 
   /// Waits for the surface that the newest generation shows at a pixel, found by one ray between two
-  /// launches. Returns nothing outside the frame, without a scene, or if a newer scene replaces this one. The
-  /// first pick in a kind of scene builds a kernel (seconds). Throws DeviceError, BuildError.
+  /// launches. Returns nothing outside the frame, without a scene that the devices have opened, or if cancel()
+  /// or a newer scene ends it. The first pick in a kind of scene builds a kernel (seconds). Throws DeviceError,
+  /// BuildError.
   std::optional<Picked> pick(int x, int y);
 
  private:

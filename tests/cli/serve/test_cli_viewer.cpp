@@ -142,6 +142,18 @@ TEST_CASE("a click picks an object; a double click looks there") {
   changes_picture([&] { v.browser.double_click(at(0.4, 0.45).first, at(0.4, 0.45).second); });
 }
 
+TEST_CASE("the page waits for no pick that the server has refused, or a lost connection has lost") {
+  Viewer& v = viewer();
+  v.run("store.pick(NaN, 1).then((picked) => { window.refusedPick = picked; })");
+  v.wait("return window.refusedPick !== undefined");
+  CHECK_THAT(v.run("return window.refusedPick.error").get<std::string>(), ContainsSubstring("wanted a pixel"));
+  v.run(
+      "const {client, mostUpload, models} = store.state;"
+      "store.asked.set(-1, (picked) => { window.lostPick = picked; });"
+      "store.take({is: 'welcome', client, most_upload_bytes: mostUpload, models: models.join(' ')})");
+  CHECK(v.run("return window.lostPick.object") == nullptr);
+}
+
 TEST_CASE("lights and the interval's box are dragged in the picture") {
   Viewer& v = viewer();
   const auto drag_handle = [&](const std::string& which) {

@@ -3,6 +3,7 @@
 #include "render/session/render_session.h"
 
 #include <atomic>
+#include <future>
 #include <random>
 #include <thread>
 
@@ -25,6 +26,7 @@ struct MadeUpWorker : SceneWorker {
   std::shared_ptr<const CompiledScene> scene;
   std::atomic<int> opened{0}, tiles{0}, pause_us{0};
   std::atomic<bool> fails{false}, does_not_build{false};
+  std::atomic<bool> opens_never{false}, surfaces_build{false}, is_building{false}, hurried{false};
   bool open_ = false;
   DeviceInfo device;
 
@@ -39,12 +41,21 @@ struct MadeUpWorker : SceneWorker {
   }
   RenderTimes open() override {
     if (does_not_build) throw BuildError("the kernel does not build", "");
+    if (opens_never) {
+      is_building = true;
+      while (!hurried) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      throw DeviceError("not wanted any more");
+    }
     ++opened;
     open_ = true;
     return {};
   }
   bool is_open() const override { return open_; }
-  void prepare_surfaces() override {}
+  void hurry() override { hurried = true; }
+  void prepare_surfaces() override {
+    is_building = true;
+    while (surfaces_build) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   WorkerFigures figures() const override { return {}; }
   void close() override { open_ = false; }
   int processor() const override { return -1; }
@@ -282,6 +293,50 @@ TEST_CASE("a pick is of the newest scene, and nothing outside the frame") {
   CHECK(picked->normal.y == 5);
   CHECK_FALSE(session.pick(width, 0));
   CHECK_FALSE(session.pick(0, -1));
+}
+
+/// What a pick in another thread gives within five seconds, after act(). The session ends with it.
+template <class Act>
+std::optional<Picked> pick_during(RenderSession& session, const Act& act) {
+  auto asked = std::async(std::launch::async, [&] { return session.pick(7, 5); });
+  act();
+  const bool answered = asked.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  CHECK(answered);
+  if (!answered) session.close();
+  return asked.get();
+}
+
+TEST_CASE("a pick that nobody can answer ends") {
+  const Made made = workers(1);
+  RenderSession session(given(made));
+  SECTION("because other devices are chosen, before it or meanwhile") {
+    session.start(scene_of(9));
+    session.wait();
+    session.use_devices({DeviceInfo{}});
+    CHECK_FALSE(pick_during(session, [] {}));
+  }
+  SECTION("because no device has opened the scene") {
+    made[0]->opens_never = true;
+    session.start(scene_of(9));
+    while (!made[0]->is_building) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    session.cancel();
+    CHECK_FALSE(pick_during(session, [] {}));
+  }
+}
+
+TEST_CASE("cancel ends a pick that waits for its kernel, and the next one is answered") {
+  const Made made = workers(1);
+  RenderSession session(given(made));
+  session.start(scene_of(9));
+  session.wait();
+  made[0]->surfaces_build = true;
+  CHECK_FALSE(pick_during(session, [&] {
+    while (!made[0]->is_building) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    session.cancel();
+  }));
+  CHECK(session.snapshot().state == SessionState::settled);
+  made[0]->surfaces_build = false;
+  CHECK(session.pick(7, 5));
 }
 
 TEST_CASE("a session ends in the middle of anything") {

@@ -135,7 +135,10 @@ class Store {
 
   take(message) {
     const takers = {
-      welcome: () => this.update({client: message.client, mostUpload: message.most_upload_bytes, models: message.models.split(' ')}),
+      welcome: () => {
+        for (const id of [...this.asked.keys()]) this.takePicked({id, object: null});  // asked of a lost connection
+        this.update({client: message.client, mostUpload: message.most_upload_bytes, models: message.models.split(' ')});
+      },
       devices: () => this.update({devices: message.devices}),
       options: () => this.update({options: message}),
       balance: () => message.client !== this.state.client && this.update({lights: message.lights}),
@@ -143,10 +146,7 @@ class Store {
       changed: () => this.takeChanged(message),
       refused: () => this.takeRefused(message),
       status: () => this.takeStatus(message),
-      picked: () => {
-        this.asked.get(message.id)?.(message);
-        this.asked.delete(message.id);
-      },
+      picked: () => this.takePicked(message),
     };
     takers[message.is]?.();
   }
@@ -175,7 +175,12 @@ class Store {
     this.edits.take(message.changes, own);
     this.shows(before, message);
   }
+  takePicked(picked) {
+    this.asked.get(picked.id)?.(picked);
+    this.asked.delete(picked.id);
+  }
   takeRefused(message) {
+    if (this.asked.has(message.id)) return this.takePicked({id: message.id, object: null, error: message.reason});
     const error = {at: message.at ?? '', reason: message.reason};
     if (message.id !== undefined && message.id === this.edits.sent?.id) {
       const {changes = []} = this.edits.refuse(), undone = this.edits.waiting[0]?.step === 'undo';
