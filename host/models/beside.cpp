@@ -1,4 +1,4 @@
-// Tries a file's name as written, with / for \, and without its folders.
+// Tries a file's name as written, with / for \, and without its folders; then these in any case of letters.
 #include "models/beside.h"
 
 #include <fmt/format.h>
@@ -29,17 +29,40 @@ bool may_be_read(const Source& model, const fs::path& path) {
   return model.outside_files || !leads_outside(model.path, path);
 }
 
+/// The file `name` below `folder` as the disk spells it, of those that differ in case the first by name.
+fs::path in_any_case(const fs::path& folder, const fs::path& name) {
+  fs::path path = folder;
+  for (const fs::path& part : name) {
+    std::error_code ignored;
+    fs::path spelled = part;
+    if (!fs::exists(path / part, ignored))
+      for (const auto& entry : fs::directory_iterator(path.empty() ? "." : path, ignored))
+        if (const fs::path found = entry.path().filename();
+            lower_case(found.string()) == lower_case(part.string()) && (spelled == part || found < spelled))
+          spelled = found;
+    path /= spelled;
+  }
+  return path;
+}
+
 }  // namespace
 
-std::optional<fs::path> find_beside(const Source& model, const fs::path& folder, std::string_view name) {
-  for (const std::string_view spelled : {name, before_comment(name)}) {
-    const std::string plain(without_quotes(spelled)), turned = with_slashes(plain);
-    for (const std::string& each : {plain, turned, turned.substr(turned.rfind('/') + 1)}) {
-      const fs::path path = folder / fs::path(each);
-      std::error_code ignored;
-      if (!each.empty() && may_be_read(model, path) && fs::is_regular_file(path, ignored)) return path;
+std::optional<fs::path> find_beside(const Source& model, const fs::path& folder, std::string_view name,
+                                    std::vector<std::string>& warnings) {
+  for (const bool any_case : {false, true})
+    for (const std::string_view spelled : {name, before_comment(name)}) {
+      const std::string plain(without_quotes(spelled)), turned = with_slashes(plain);
+      for (const std::string& each : {plain, turned, turned.substr(turned.rfind('/') + 1)}) {
+        if (each.empty() || !may_be_read(model, folder / each)) continue;
+        fs::path path = any_case ? in_any_case(folder, each) : folder / each;
+        std::error_code ignored;
+        if (!may_be_read(model, path) || !fs::is_regular_file(path, ignored)) continue;
+        const std::string text = fmt::format(
+            "'{}' is read as {}: rename the file for programs that heed upper case", each, path.string());
+        if (any_case && std::ranges::count(warnings, text) == 0) warnings.push_back(text);
+        return path;
+      }
     }
-  }
   return std::nullopt;
 }
 

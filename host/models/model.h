@@ -41,6 +41,7 @@ struct Model {
   /// sqrt(n) / (2 n).
   std::vector<LightDescription> lights;
   std::optional<Camera> camera;         // glTF: the first of the default scene; NFF: the view
+  std::optional<double> aspect;         // glTF: the camera's width over height
   std::optional<ImageSettings> image;   // NFF: resolution and background
   std::size_t dropped_polygons = 0;     // faces with fewer than three corners
   std::vector<std::string> unread;      // unsupported features, each once

@@ -79,12 +79,7 @@ std::string_view TextReader::word() {
   return word;
 }
 
-std::string TextReader::keyword() {
-  std::string key(word());
-  for (char& c : key)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 'a' - 'A');
-  return key;
-}
+std::string TextReader::keyword() { return lower_case(word()); }
 
 std::string_view TextReader::rest() {
   text_.remove_prefix(std::min(text_.find_first_not_of(blanks), text_.size()));
@@ -138,6 +133,13 @@ std::uint64_t TextReader::count(std::string_view what) {
 
 void TextReader::expect_line_end(std::string_view what) {
   if (!at_line_end()) fail(fmt::format("{} ends before '{}'", what, shown(word())));
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 'a' - 'A');
+  return lower;
 }
 
 std::string_view before_comment(std::string_view name) {

@@ -137,6 +137,13 @@ void add_ground(json& document, const SceneBounds& bounds, const Camera& camera,
                                  {"material", "ground"}});
 }
 
+/// Gives the image these proportions; its longer edge stays.
+void fit(ImageSettings& image, double aspect) {
+  const int longer = std::max(image.width, image.height);
+  image.width = std::max(1, static_cast<int>(std::lround(longer * std::min(aspect, 1.0))));
+  image.height = std::max(1, static_cast<int>(std::lround(longer / std::max(aspect, 1.0))));
+}
+
 SceneBounds bounds_of_motion(const std::filesystem::path& file, const Model& model) {
   constexpr int poses = 16;
   SceneBounds bounds;
@@ -156,6 +163,7 @@ json make_model_scene(const std::filesystem::path& file, const Model& model, std
                       bool plays) {
   ImageSettings image;
   image.background_bottom = {0.75, 0.75, 0.75}, image.background_top = {0.35, 0.42, 0.5};
+  if (model.aspect) fit(image, *model.aspect);
   image = model.image.value_or(image);
   const double fitted = aspect.value_or(static_cast<double>(image.width) / image.height);
   const SceneBounds bounds = plays && model.pose && !model.camera ? bounds_of_motion(file, model)

@@ -1,12 +1,14 @@
 // Validates an EXR header before OpenEXR reads it, because OpenEXR allocates the memory that a header
-// requests, however short the file. Layout (OpenEXR's documentation): attributes of a name, a type, a size of
-// 4 bytes, and the value.
+// requests, however short the file; chooses the picture among a file's channels. Layout (OpenEXR's
+// documentation): attributes of a name, a type, a size of 4 bytes, and the value.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 
 #include "base/limits.h"
@@ -145,6 +147,28 @@ void check_exr_header(std::string_view bytes) {
     refuse(fmt::format("says {} MiB for each {} lines in {} bytes", block >> 20, shape.lines, bytes.size()));
   if (shape.tile_pixels > std::max(tile_pixels, most_pixels_here))
     refuse(fmt::format("says tiles of {} pixels in {} bytes", shape.tile_pixels, bytes.size()));
+}
+
+std::vector<std::string> exr_picture_channels(const std::vector<std::string>& names) {
+  const auto has = [&](const std::string& name) { return std::ranges::count(names, name) > 0; };
+  std::set<std::string> layers{""};  // those that may hold a picture, each with its dot
+  for (const std::string& name : names)
+    if (const std::size_t dot = name.rfind('.'); dot != name.npos) layers.insert(name.substr(0, dot + 1));
+  std::vector<std::vector<std::string>> pictures;
+  for (const std::string& layer : layers) {
+    const std::string red = layer + "R", green = layer + "G", blue = layer + "B", grey = layer + "Y";
+    if (has(red) || has(green) || has(blue))
+      pictures.push_back({red, green, blue, layer + "A"});
+    else if (has(grey))
+      pictures.push_back({grey, layer + "A"});
+    if (layer.empty() && !pictures.empty()) return pictures[0];
+  }
+  if (pictures.size() == 1) return pictures[0];
+  if (names.size() == 1) return {names[0], "A"};
+  throw std::runtime_error(fmt::format(
+      "the EXR file has no channels R, G, B or Y, and not one layer alone of these, but {}: write "
+      "the picture's channels without a layer's name",
+      fmt::join(names, ", ")));
 }
 
 }  // namespace sundog

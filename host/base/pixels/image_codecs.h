@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/image_io.h"
 
@@ -33,6 +34,10 @@ Image decode_pfm(std::string_view bytes);
 /// Throws for a multi-part or deep EXR file, and for a header that requests more memory than a file of this
 /// length can fill. Call before decoding, which allocates that memory.
 void check_exr_header(std::string_view bytes);
+/// The names of the channels that are an EXR file's picture, with its alpha, which may be missing: R, G, B or
+/// Y, else those of the only layer that has these, else the only channel. Throws if there are several or
+/// none.
+std::vector<std::string> exr_picture_channels(const std::vector<std::string>& names);
 /// Encodes any image; throws only IoError.
 std::string encode_exr(const Image& image, const AovImages& aovs, const FileOptions& options);
 /// `colors`: converts to sRGB primaries by the file's chromaticities and clips colours outside sRGB.

@@ -150,9 +150,8 @@ class Reader {
  public:
   explicit Reader(std::string_view bytes) : stream_(bytes), file_(stream_) {
     const Imath::Box2i window = file_.header().dataWindow();
-    const std::int64_t width = width_of(window), height = height_of(window);
-    width_ = static_cast<int>(width);
-    height_ = static_cast<int>(height);
+    width_ = static_cast<int>(width_of(window));
+    height_ = static_cast<int>(height_of(window));
     origin_ = window.min;
     shown_ = file_.header().displayWindow();
     const std::int64_t columns = width_of(shown_), rows = height_of(shown_);
@@ -168,8 +167,10 @@ class Reader {
 
   /// The channels of the picture itself; the others are layers.
   Suffixes color_channels() const {
-    if (has("R") || has("G") || has("B")) return {"R", "G", "B", "A"};
-    return {"Y", "A"};
+    Suffixes names;
+    for (auto channel = channels().begin(); channel != channels().end(); ++channel)
+      names.emplace_back(channel.name());
+    return exr_picture_channels(names);
   }
 
   /// Reads the named channels into one image, in that order; absent channels are filled with `fill`.
@@ -360,7 +361,6 @@ Image decode_exr(std::string_view bytes, bool colors) {
     if (colors) convert_to_srgb(image, reader.header());
     return image;
   }
-  if (!reader.has("Y")) throw std::runtime_error("the EXR file has no channels R, G, B or Y");
   const Image grey = reader.read(names, {0, 1});
   Image image(grey.width, grey.height, 4);
   for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = grey.data[i / 4 * 2 + (i % 4 == 3)];

@@ -332,6 +332,7 @@ class GltfReader {
     camera.near = from.near;
     camera.far = from.far;
     model_->camera = camera;
+    if (from.aspect > 0) model_->aspect = from.aspect;
   }
 
   void add_light(const Node& node, const dmat4& world) {

@@ -165,12 +165,12 @@ std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& u
   }
 }
 
-std::string read_image_uri(const Source& source, const JsonAt& uri) {
+std::string read_image_uri(const Source& source, const JsonAt& uri, std::vector<std::string>& warnings) {
   const std::string text = uri.text();
   if (text.starts_with("data:")) return read_data_uri(text, uri, false);
   const fs::path folder = source.path.parent_path();
   for (const std::string& name : {percent_decoded(text), text})
-    if (const auto path = find_beside(source, folder, name)) return read_source(*path).bytes;
+    if (const auto path = find_beside(source, folder, name, warnings)) return read_source(*path).bytes;
   uri.fail("the image " + why_not_beside(source, folder, percent_decoded(text)));
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "models/gltf/gltf_json.h"
 
@@ -23,7 +24,7 @@ void note_files(const Source& source, const JsonAt& root);
 /// fetched. Throws SceneError at `uri`.
 std::optional<std::string> read_buffer_uri(const Source& source, const JsonAt& uri);
 
-/// Reads an image's URI. Throws SceneError at `uri` if the file is missing.
-std::string read_image_uri(const Source& source, const JsonAt& uri);
+/// Reads an image's URI (find_beside()). Throws SceneError at `uri` if the file is missing.
+std::string read_image_uri(const Source& source, const JsonAt& uri, std::vector<std::string>& warnings);
 
 }  // namespace sundog::models

@@ -84,13 +84,11 @@ TextureDescription GltfTextures::read(const JsonAt& info) const {
     texture.uv = read_uv_transform(*transform);
     set = transform->integer_or("texCoord", set);
   }
-  if (set >= most_uv_sets)
-    info.fail(fmt::format("texture coordinates of set {}; {} sets are read", set, most_uv_sets));
-  texture.uv_set = static_cast<int>(set);
+  texture.uv_set = static_cast<int>(std::min(set, most_uv_sets));
   return texture;
 }
 
-ImageDescription GltfTextures::load(std::size_t index) const {
+ImageDescription GltfTextures::load(std::size_t index, std::vector<std::string>& warnings) const {
   const JsonAt& at = images_[index];
   const Source& source = accessors_.source();
   ImageDescription image;
@@ -103,7 +101,7 @@ ImageDescription GltfTextures::load(std::size_t index) const {
   if (view) {
     image.encoded = accessors_.view_bytes(*view);
   } else if (uri) {
-    image.encoded = read_image_uri(source, *uri);
+    image.encoded = read_image_uri(source, *uri, warnings);
     const std::string text = uri->text();
     if (image.name.empty() && !text.starts_with("data:")) image.name = text;
   } else {
@@ -118,7 +116,7 @@ int GltfTextures::use_image(std::size_t index, bool srgb, Model& model) {
   const auto [found, added] = used_.try_emplace({index, srgb}, -1);
   if (!added) return found->second;
   try {
-    ImageDescription image = load(index);
+    ImageDescription image = load(index, model.warnings);
     image.srgb = srgb;
     found->second = static_cast<int>(model.images.size());
     model.images.push_back(std::move(image));
@@ -132,6 +130,10 @@ int GltfTextures::use_image(std::size_t index, bool srgb, Model& model) {
 int GltfTextures::use(const TextureDescription& texture, bool srgb, Model& model) {
   if (texture.image < 0) {
     leave_unread(model, "images of other formats than PNG, JPEG and WebP");
+    return -1;
+  }
+  if (texture.uv_set >= static_cast<int>(most_uv_sets)) {
+    leave_unread(model, "textures with coordinates beyond four sets");
     return -1;
   }
   const int image = use_image(static_cast<std::size_t>(texture.image), srgb, model);

@@ -45,7 +45,7 @@ class GltfTextures final : public TextureSource {
     bool usable = false;         // its image has a supported format
   };
   Entry read_texture(const JsonAt& at) const;
-  ImageDescription load(std::size_t index) const;
+  ImageDescription load(std::size_t index, std::vector<std::string>& warnings) const;
   int use_image(std::size_t index, bool srgb, Model& model);
 
   const GltfAccessors& accessors_;

@@ -116,7 +116,6 @@ void find_in_mesh(const json& mesh, Model& model) {
     const json& attributes = member(primitive, "attributes");
     if (attributes.contains("JOINTS_1")) leave_unread(model, "joints of vertices beyond four");
     if (attributes.contains("COLOR_1")) leave_unread(model, "second colours of vertices");
-    if (attributes.contains("TEXCOORD_4")) leave_unread(model, "texture coordinates beyond four sets");
     for (const json& target : items(primitive, "targets"))
       if (target.is_object())
         for (const auto& [name, accessor] : target.items())
@@ -128,10 +127,31 @@ void find_in_mesh(const json& mesh, Model& model) {
 }
 
 /// Extensions of materials and KHR_texture_basisu are reported where materials use them.
+constexpr std::array read_extensions{"KHR_lights_punctual",   "EXT_mesh_gpu_instancing",
+                                     "KHR_mesh_quantization", "KHR_texture_transform",
+                                     "EXT_texture_webp",      "KHR_texture_basisu"};
+
+/// Extensions that do not change the picture, even if the file requires them (Khronos' registry of glTF
+/// extensions; EXT_structural_metadata and its kin are those of 3D Tiles): metadata, what a user may point
+/// at, and coarser nodes in place of distant ones.
+constexpr std::array invisible_extensions{"KHR_xmp",
+                                          "KHR_xmp_json_ld",
+                                          "KHR_node_hoverability",
+                                          "KHR_node_selectability",
+                                          "AGI_stk_metadata",
+                                          "EXT_feature_metadata",
+                                          "EXT_instance_features",
+                                          "EXT_mesh_features",
+                                          "EXT_mesh_manifold",
+                                          "EXT_structural_metadata",
+                                          "FB_geometry_metadata",
+                                          "GODOT_single_root",
+                                          "GRIFFEL_bim_data",
+                                          "MSFT_lod"};
+
 bool is_known(const std::string& extension) {
-  constexpr std::array known{"KHR_lights_punctual",   "EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
-                             "KHR_texture_transform", "EXT_texture_webp",        "KHR_texture_basisu"};
-  return extension.starts_with("KHR_materials_") || std::ranges::count(known, extension) > 0;
+  return extension.starts_with("KHR_materials_") || std::ranges::count(read_extensions, extension) > 0 ||
+         std::ranges::count(invisible_extensions, extension) > 0;
 }
 
 }  // namespace

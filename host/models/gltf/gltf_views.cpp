@@ -21,13 +21,14 @@ GltfCamera read_gltf_camera(const JsonAt& at) {
     camera.fov = p.member("yfov").number(positive);
     camera.near = p.member("znear").number(positive);
     camera.far = p.number("zfar", infinity, positive);
-    p.number("aspectRatio", 1, positive);
+    if (const auto aspect = p.find("aspectRatio")) camera.aspect = aspect->number(positive);
     if (camera.far <= camera.near) p.fail("zfar must be beyond znear");
   } else if (type == "orthographic") {
     const JsonAt o = at.member("orthographic");
     for (const char* key : {"xmag", "ymag"})
       if (o.member(key).number() == 0) o.fail(fmt::format("{} must not be 0", key));
     camera.height = 2 * std::abs(o.member("ymag").number());
+    camera.aspect = std::abs(o.member("xmag").number() / o.member("ymag").number());
     camera.near = o.member("znear").number(not_negative);
     camera.far = o.member("zfar").number(positive);
     if (camera.far <= camera.near) o.fail("zfar must be beyond znear");

@@ -9,6 +9,7 @@ namespace sundog::models {
 struct GltfCamera {
   double fov = 0, height = 0;  // one of them is above 0: radians; of an orthographic camera's picture
   double near = 0, far = 0;    // along the view
+  double aspect = 0;           // width over height; 0: not given
 };
 
 GltfCamera read_gltf_camera(const JsonAt& at);

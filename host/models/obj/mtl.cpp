@@ -225,7 +225,7 @@ int add_pbr_material(const MtlStatements& m, const Source& obj, MtlTextures& tex
 std::vector<std::string> split_names(std::string_view names) {
   std::vector<std::string> parts;
   while (!names.empty()) {
-    const std::size_t end = names.find(".mtl ");
+    const std::size_t end = lower_case(names).find(".mtl ");
     parts.emplace_back(names.substr(0, end == names.npos ? end : end + 4));
     names.remove_prefix(end == names.npos ? names.size() : end + 5);
     names.remove_prefix(std::min(names.find_first_not_of(" \t"), names.size()));
@@ -240,9 +240,9 @@ MaterialLibrary::~MaterialLibrary() = default;
 
 void MaterialLibrary::load(const Source& obj, const TextReader& line, std::string_view names) {
   const fs::path folder = obj.path.parent_path();
-  if (const auto whole = find_beside(obj, folder, names)) return read(*whole);
+  if (const auto whole = find_beside(obj, folder, names, model_.warnings)) return read(*whole);
   for (const std::string& name : split_names(before_comment(names)))
-    if (const auto path = find_beside(obj, folder, name))
+    if (const auto path = find_beside(obj, folder, name, model_.warnings))
       read(*path);
     else
       model_.warnings.push_back(
@@ -313,6 +313,11 @@ int MaterialLibrary::add(const Source& obj, const MtlStatements& stated) {
     model_.warnings.push_back(
         fmt::format("{}: the material '{}' has d {:g} and Tr {:g}, which differ: d counts",
                     stated.library.string(), stated.name, *stated.opacity, *stated.transparency));
+  if (const dvec3 kd = stated.diffuse.value_or(dvec3(0)); std::max({kd.x, kd.y, kd.z}) > 1.001)
+    model_.warnings.push_back(fmt::format(
+        "{}: the material '{}' has Kd {:g} {:g} {:g}: a colour is three shares of 1; if these are "
+        "bytes, divide by 255",
+        stated.library.string(), stated.name, kd.x, kd.y, kd.z));
   if (has_pbr(stated)) return add_pbr_material(stated, obj, textures_, model_);
   MaterialDescription material = make_material(stated, model_);
   add_maps(stated, obj, textures_, material);

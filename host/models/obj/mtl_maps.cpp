@@ -75,7 +75,7 @@ std::optional<MtlMap> read_mtl_map(TextReader& text) {
 
 int MtlTextures::use(const MtlMap& map, bool srgb, const Source& obj, const fs::path& library) {
   const fs::path folder = library.parent_path();
-  const std::optional<fs::path> file = find_beside(obj, folder, map.file);
+  const std::optional<fs::path> file = find_beside(obj, folder, map.file, model_.warnings);
   if (!file) {
     const std::string text = fmt::format("{}: line {}: the image {}", library.string(), map.line,
                                          why_not_beside(obj, folder, map.file));

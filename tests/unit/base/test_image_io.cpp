@@ -4,6 +4,7 @@
 #include <base/error.h>
 #include <base/file.h>
 #include <base/image_io.h>
+#include <base/pixels/image_codecs.h>
 #include <base/pixels/stored_image.h>
 
 #include <algorithm>
@@ -140,6 +141,24 @@ TEST_CASE("an EXR in ACEScg says so, and is read as what was written") {
   CHECK(wide.data[0] == Approx(1.70505).margin(2e-3));
   CHECK(wide.data[1] == 0);
   CHECK(decode_stored(exr, false).data[0] == decode_stored(read_file(folder / "srgb.exr"), false).data[0]);
+}
+
+TEST_CASE(
+    "an EXR whose picture is its only layer or channel is read; the error names the channels of others") {
+  using Names = std::vector<std::string>;
+  CHECK(exr_picture_channels({"A", "B", "G", "R", "depth.Z"}) == Names{"R", "G", "B", "A"});
+  CHECK(exr_picture_channels({"Y", "beauty.R"}) == Names{"Y", "A"});
+  CHECK(exr_picture_channels({"View.Beauty.B", "View.Beauty.G", "View.Beauty.R", "Z", "normal.X"}) ==
+        Names{"View.Beauty.R", "View.Beauty.G", "View.Beauty.B", "View.Beauty.A"});
+  CHECK(exr_picture_channels({"Z"}) == Names{"Z", "A"});
+  CHECK_THROWS_WITH(exr_picture_channels({"a.R", "b.R"}), ContainsSubstring("a.R, b.R"));
+  const TemporaryFolder folder;
+  const Image other = ramp(3, 2, 3), layer = ramp(3, 2, 4);
+  write_image(other, folder / "a.exr", {{"albedo", layer}});
+  std::string exr = read_file(folder / "a.exr");
+  for (const auto& [name, number] : {std::pair("B", "1"), std::pair("G", "2"), std::pair("R", "3")})
+    exr.replace(exr.find(name + std::string("\0\1\0\0\0", 5), exr.find("chlist")), 1, number);
+  CHECK(read_image(folder.write("b.exr", exr)).data == layer.data);
 }
 
 TEST_CASE("row 0 is the top of every format") {

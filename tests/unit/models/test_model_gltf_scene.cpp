@@ -290,3 +290,24 @@ TEST_CASE("an orthographic camera of a glTF shows twice its ymag", "[models]") {
   CHECK(camera.position == dvec3(1, 2, 3));
   CHECK(camera.far == 9);
 }
+
+TEST_CASE("the picture of a glTF has its camera's proportions, unless a size is given") {
+  const TemporaryFolder folder;
+  const auto size = [&](const std::string& camera, const std::vector<std::string>& settings = {}) {
+    const auto file = folder.write("a.gltf", quad(R"("cameras":[{)" + camera + R"(}],"nodes":[{"mesh":0},
+      {"camera":0,"translation":[0,0,9]}])"));
+    const ImageSettings image = load_scene(file, settings).image;
+    return std::pair(image.width, image.height);
+  };
+  const auto perspective = [](const std::string& aspect) {
+    return R"("type":"perspective","perspective":{"yfov":1,"znear":0.5)" + aspect + "}";
+  };
+  const std::string wide = perspective(R"(,"aspectRatio":1.7777777)");
+  CHECK(size(perspective("")) == std::pair(640, 480));
+  CHECK(size(wide) == std::pair(640, 360));
+  CHECK(size(perspective(R"(,"aspectRatio":0.5)")) == std::pair(320, 640));
+  CHECK(size(perspective(R"(,"aspectRatio":1e9)")) == std::pair(640, 1));
+  CHECK(size(R"("type":"orthographic","orthographic":{"xmag":-2,"ymag":1,"znear":0,"zfar":9})") ==
+        std::pair(640, 320));
+  CHECK(size(wide, {"/image/width=100", "/image/height=90"}) == std::pair(100, 90));
+}

@@ -1,5 +1,6 @@
 // Wavefront OBJ and MTL, from small files written here.
 #include "catch.h"
+#include "gltf_text.h"
 #include "model_files.h"
 
 using namespace sundog;
@@ -139,6 +140,39 @@ TEST_CASE("material library names may hold blanks, lie in folders, and come seve
   CHECK(model.warnings.empty());
   REQUIRE(model.materials.size() == 1);
   CHECK(model.materials[0].name == "three of them");
+}
+
+TEST_CASE("files that differ in case from their names in OBJ, MTL and glTF are found, with a warning",
+          "[models]") {
+  const TemporaryFolder folder;
+  folder.write("Sub/C.mtl", "newmtl one\nmap_Kd Textures\\RED.PNG\nmap_Ke Textures\\RED.PNG\n");
+  folder.write("Sub/textures/Red.png", "x");
+  folder.write("Sub/red.png", "x");
+  folder.write("d.mtl", "newmtl two\n");
+  const Model model = load_model(
+      folder.write("a.obj", "mtllib sub/c.MTL D.MTL\nusemtl one\n" + triangle + "usemtl two\nf 1 2 3"));
+  REQUIRE(model.warnings.size() == 3);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("'sub/c.MTL'") && ContainsSubstring("Sub/C.mtl: rename"));
+  CHECK_THAT(model.warnings[1], ContainsSubstring("'D.MTL'"));
+  CHECK_THAT(model.warnings[2], ContainsSubstring("Sub/textures/Red.png: rename"));
+  CHECK(model.images.size() == 1);
+  const Model other =
+      load_model(folder.write("Sub/a.gltf", quad(R"("images":[{"uri":"RED.png"}],"textures":[{"source":0}],
+        "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],)" +
+                                                     one_node,
+                                                 R"(,"material":0)")));
+  REQUIRE(other.warnings.size() == 1);
+  CHECK_THAT(other.warnings[0], ContainsSubstring("RED.png"));
+}
+
+TEST_CASE("MTL colours above 1 are a warning, with the mend", "[models]") {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl a\nKd 255 128 0\nnewmtl b\nKd 1 1 1\nKs 2 2 2\nKe 50 50 50\n");
+  const Model model =
+      load_model(folder.write("a.obj", "mtllib m.mtl\nusemtl a\n" + triangle + "usemtl b\nf 1 2 3"));
+  REQUIRE(model.warnings.size() == 1);
+  CHECK_THAT(model.warnings[0], ContainsSubstring("m.mtl: the material 'a' has Kd 255 128 0") &&
+                                    ContainsSubstring("divide by 255"));
 }
 
 TEST_CASE("names of OBJ and MTL may hold '#' and quotes, and their keywords be of any case", "[models]") {

@@ -56,14 +56,37 @@ TEST_CASE("attributes of vertices that are not used are named once", "[models]")
                            R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":1,"COLOR_1":2,"JOINTS_1":2,
                   "TEXCOORD_4":2,"_OWN":2},"indices":0}]}],)" +
                            one_node))
-            .unread == Features{"joints of vertices beyond four", "second colours of vertices",
-                                "texture coordinates beyond four sets"});
+            .unread == Features{"joints of vertices beyond four", "second colours of vertices"});
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nproperty uchar alpha\nelement face 1\n"
       "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n";
   CHECK(load_text("a.ply", head + "0 0 0 255\n1 0 0 128\n0 1 0 255\n3 0 1 2 6 0 0 1 0 0 1\n").unread ==
         Features{"alpha of vertices"});
+}
+
+TEST_CASE("a glTF may require extensions that do not change its picture", "[models]") {
+  for (const std::string name :
+       {"KHR_xmp_json_ld", "EXT_structural_metadata", "MSFT_lod", "KHR_node_selectability"}) {
+    const std::string list = R"(["KHR_xmp_json_ld",")" + name + R"("],)";
+    const Model model = load_text(
+        "a.gltf", quad(R"("extensionsUsed":)" + list + R"("extensionsRequired":)" + list + one_node));
+    CHECK(model.unread == Features{});
+  }
+}
+
+TEST_CASE("a glTF's textures with a fifth set of coordinates are left out, and the rest is drawn",
+          "[models]") {
+  const Model model = load_text(
+      "a.gltf",
+      quad(R"("images":[{"uri":"data:image/png;base64,AAAA"}],"textures":[{"source":0}],"materials":[
+      {"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":4}},
+       "normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"texCoord":3}}}}],)" +
+               one_node,
+           R"(,"material":0)"));
+  CHECK(model.unread == Features{"textures with coordinates beyond four sets"});
+  CHECK(model.materials.at(0).textures.diffuse == -1);
+  CHECK(model.textures.at(static_cast<std::size_t>(model.materials[0].textures.normal)).uv_set == 3);
 }
 
 TEST_CASE("materials that are not defined are one warning", "[models]") {
