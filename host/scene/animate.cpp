@@ -17,10 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-bool is_point(const json& document, const std::string& pointer) {
-  const json::json_pointer place(pointer);
-  if (!document.contains(place) || !document[place].is_array() || document[place].size() != 3) return false;
-  return std::ranges::all_of(document[place], [](const json& item) { return item.is_number(); });
+bool is_point(const json& value) {
+  return value.is_array() && value.size() == 3 &&
+         std::ranges::all_of(value, [](const json& item) { return item.is_number(); });
 }
 
 /// Checks that a track does not undo an earlier one: keyed tracks replace the value, while a turning track
@@ -38,9 +37,9 @@ void check_alone(const std::vector<Track>& tracks, std::size_t i, const JsonValu
 void apply_track(json& document, const Track& track, double frame, const JsonValue& place) {
   json now;
   if (track.kind == Track::Kind::rotate) {
-    if (!is_point(document, track.pointer))
+    now = value_or_default(document, track.pointer);
+    if (!is_point(now))
       place.fail(fmt::format("wanted the pointer of an array of 3 numbers to turn, found {}", track.pointer));
-    now = document[json::json_pointer(track.pointer)];
   }
   try {
     set_value(document, track.pointer, value_at(track, frame, now), place.context().file,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ranges>
@@ -153,8 +154,9 @@ auto explained(const json& document, const Reading& reading, const Read& read) {
         throw SceneError(error.file, error.place,
                          fmt::format("{} (in frame {}, moved by {})", error.reason, *frame, track),
                          error.remedy);
+    std::map<std::string, std::size_t> later;                                  // settings behind, by pointer
     for (const std::string& setting : std::views::reverse(reading.overrides))  // the last one counts
-      if (overlap(pointer_of(document, setting), error.place))
+      if (overlap(pointer_of(document, setting, later[setting.substr(0, setting.find('='))]++), error.place))
         throw SettingError(error.file, error.place,
                            fmt::format("{} (changed by the setting {})", error.reason, setting),
                            error.remedy);

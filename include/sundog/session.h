@@ -85,9 +85,9 @@ class SUNDOG_API Session {
   /// drawing.
   Image finish() const;
 
-  /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene that
-  /// the devices have opened, or when cancel() is called or a newer scene arrives. The first call may build a
-  /// kernel (seconds). Throws Error: device, build.
+  /// Returns the surface that a pixel shows, by casting one ray. Empty outside the frame, without a scene
+  /// that the devices have opened, or when cancel() is called or a newer scene arrives. The first call may
+  /// build a kernel (seconds). Throws Error: device, build.
   std::optional<Pick> pick(int x, int y);
 
  private:

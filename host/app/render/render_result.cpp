@@ -38,7 +38,9 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
   std::map<std::string, std::string> settings;
   for (const std::string& setting : command.overrides) {
     const std::size_t equals = setting.find('=');
-    settings["--set " + setting.substr(0, equals)] = setting.substr(equals + 1);
+    std::string& value = settings["--set " + setting.substr(0, equals)];
+    const bool appends = !value.empty() && setting[equals - 1] == '-';
+    value = (appends ? value + ", " : "") + setting.substr(equals + 1);
   }
   for (const char* told_otherwise : {"/image/width", "/image/height", "/render/samples", "/render/max_depth"})
     settings.erase(std::string("--set ") + told_otherwise);

@@ -75,6 +75,7 @@ class EndsOnSignal {
 };
 
 int serve(const ServeOptions& options) {
+  if (options.port.empty() || options.token_file.empty()) require_standard_output();  // it gets the address
   const StopOnSignal signal;
   SceneDocument document = first_document(options);
   print_warnings(document.scene()->warnings);

@@ -40,7 +40,7 @@ struct LiveSession : FrameLoop {
   std::optional<Order> pending;
   std::shared_ptr<SessionFrame> shown;
   std::deque<std::shared_ptr<Pick>> picks;  // those not answered
-  std::vector<glm::vec3> balance;  // per light group
+  std::vector<glm::vec3> balance;           // per light group
   std::vector<std::shared_ptr<const void>> retired;
   double pixel_seconds = 0;
   Generation rested = 0;  // the last generation after which a worker prepared for later work

@@ -164,9 +164,9 @@ class RenderSession {
   bool wait_for_change(std::uint64_t revision, double seconds) const;
 
   /// Waits for the surface that the newest generation shows at a pixel, found by one ray between two
-  /// launches. Returns nothing outside the frame, without a scene that the devices have opened, or if cancel()
-  /// or a newer scene ends it. The first pick in a kind of scene builds a kernel (seconds). Throws DeviceError,
-  /// BuildError.
+  /// launches. Returns nothing outside the frame, without a scene that the devices have opened, or if
+  /// cancel() or a newer scene ends it. The first pick in a kind of scene builds a kernel (seconds). Throws
+  /// DeviceError, BuildError.
   std::optional<Picked> pick(int x, int y);
 
  private:

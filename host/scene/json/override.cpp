@@ -5,12 +5,14 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
 #include "base/names.h"
 #include "base/numbers.h"
 #include "scene/json/parse.h"
+#include "scene/json/schema.h"
 #include "scene/json/value.h"
 
 namespace sundog {
@@ -56,6 +58,36 @@ std::optional<std::size_t> item_index(const json& array, std::string_view token)
   return found;
 }
 
+/// The way to the only item of a group in `objects` with that name, as tokens; empty: none, or several.
+std::vector<std::string> way_to_member(const json& objects, std::string_view name) {
+  std::vector<std::string> way;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto inner = objects[i].is_object() ? objects[i].find("objects") : objects[i].end();
+    if (inner == objects[i].end() || !inner->is_array()) continue;
+    const std::optional<std::size_t> item = item_index(*inner, name);
+    std::vector<std::string> rest = item ? std::vector{std::to_string(*item)} : way_to_member(*inner, name);
+    if (rest.empty()) continue;
+    if (!way.empty()) return {};
+    way = {std::to_string(i), "objects"};
+    way.insert(way.end(), rest.begin(), rest.end());
+  }
+  return way;
+}
+
+/// split_pointer(), with "/objects/NAME" of a group's member as the way through its groups.
+std::vector<std::string> steps_of(const json& document, std::string_view pointer) {
+  std::vector<std::string> tokens = split_pointer(pointer);
+  const auto objects = document.find("objects");
+  if (tokens.size() < 2 || tokens[0] != "objects" || objects == document.end() || !objects->is_array() ||
+      tokens[1] == "-" || array_index(tokens[1]) || item_index(*objects, tokens[1]))
+    return tokens;
+  if (const std::vector<std::string> way = way_to_member(*objects, tokens[1]); !way.empty()) {
+    tokens.erase(tokens.begin() + 1);
+    tokens.insert(tokens.begin() + 1, way.begin(), way.end());
+  }
+  return tokens;
+}
+
 /// The child that a token identifies; null: none.
 const json* child_of(const json& parent, const std::string& token) {
   if (parent.is_array()) {
@@ -64,6 +96,32 @@ const json* child_of(const json& parent, const std::string& token) {
   }
   const auto found = parent.find(token);  // end() unless `parent` is an object
   return found == parent.end() ? nullptr : &*found;
+}
+
+/// The schema's default for the missing key that the tokens lead to; null: none.
+const json* standard_at(const json& document, std::span<const std::string> tokens) {
+  using Type = SchemaRule::Type;
+  const SchemaRule* rule = schema_rule("scene");
+  const json* place = &document;
+  for (std::size_t i = 0; rule; ++i) {
+    const SchemaRule* of = rule->as(place && place->is_array() ? Type::array : Type::object);
+    if (!of) break;
+    if (of->type == Type::array) {
+      rule = of->items;
+    } else {
+      const json* type = place ? child_of(*place, "type") : nullptr;
+      if (type && type->is_string())
+        if (const auto typed = of->of_type.find(type->get_ref<const std::string&>());
+            typed != of->of_type.end())
+          of = typed->second;
+      const auto key = of->keys.find(tokens[i]);
+      if (i + 1 == tokens.size()) return key == of->keys.end() ? nullptr : key->second.standard;
+      rule = key == of->keys.end() ? of->others : key->second.rule;
+    }
+    place = place ? child_of(*place, tokens[i]) : nullptr;
+    if (i + 1 == tokens.size()) break;
+  }
+  return nullptr;
 }
 
 json parse_value(std::string_view text, const fs::path& file) {
@@ -77,8 +135,9 @@ json parse_value(std::string_view text, const fs::path& file) {
 /// One step along a pointer: the child of `parent`, created if allowed.
 class Step {
  public:
-  Step(const std::vector<std::string>& tokens, std::string_view subject, const fs::path& file)
-      : tokens_(tokens), subject_(subject), file_(file) {}
+  Step(const json& document, const std::vector<std::string>& tokens, std::string_view subject,
+       const fs::path& file)
+      : document_(document), tokens_(tokens), subject_(subject), file_(file) {}
 
   json* go(json& parent, std::size_t depth) const {
     if (parent.is_array()) return item(parent, depth);
@@ -108,9 +167,15 @@ class Step {
     return &array[*index];
   }
 
-  /// Adds an object, unless the next token indexes an array or this token names a thing that must exist.
+  /// Adds an object, unless this token names a thing that must exist. Adds an array, which the next token
+  /// indexes, if it is the default.
   void may_add(json& parent, std::size_t depth) const {
     const std::string& token = tokens_[depth];
+    const json* standard = standard_at(document_, std::span(tokens_).first(depth + 1));
+    if (standard && standard->is_array()) {
+      parent[token] = *standard;
+      return;
+    }
     const bool named = depth == 1 && (tokens_[0] == "materials" || tokens_[0] == "media" ||
                                       tokens_[0] == "meshes" || tokens_[0] == "fields");
     if (named || tokens_[depth + 1] == "-" || array_index(tokens_[depth + 1])) {
@@ -122,6 +187,7 @@ class Step {
     parent[token] = json::object();
   }
 
+  const json& document_;
   const std::vector<std::string>& tokens_;
   std::string_view subject_;
   const fs::path& file_;
@@ -136,7 +202,7 @@ std::size_t end_of_pointer(const json& document, std::string_view setting) {
         fmt::format("the setting {}: wanted JSON_POINTER=VALUE, such as /camera/fov=30", setting));
   for (std::size_t at = first; at != std::string_view::npos; at = setting.find('=', at + 1)) {
     const json* place = &document;
-    for (const std::string& token : split_pointer(setting.substr(0, at))) {
+    for (const std::string& token : steps_of(document, setting.substr(0, at))) {
       if (!place) break;
       place = child_of(*place, token);
     }
@@ -155,15 +221,16 @@ bool overlap(std::string_view a, std::string_view b) { return leads_through(a, b
 
 namespace {
 
-/// `appends`: "-" is the last item.
-std::string resolved(const json& document, std::string_view pointer, bool appends) {
+/// With `later`, "-" is the last item but for so many.
+std::string resolved(const json& document, std::string_view pointer, std::optional<std::size_t> later) {
   std::string result;
   const json* place = &document;
-  for (const std::string& token : split_pointer(pointer)) {
-    auto index = place && place->is_array() ? item_index(*place, token) : std::nullopt;
-    if (appends && place && place->is_array() && !place->empty() && token == "-") index = place->size() - 1;
-    result = join_pointer(result, index ? std::to_string(*index) : token);
-    if (place) place = index ? &(*place)[*index] : child_of(*place, token);
+  for (const std::string& token : steps_of(document, pointer)) {
+    const bool appended = later && token == "-" && place && place->is_array() && place->size() > *later;
+    const std::string key = appended ? std::to_string(place->size() - 1 - *later) : token;
+    const auto index = place && place->is_array() ? item_index(*place, key) : std::nullopt;
+    result = join_pointer(result, index ? std::to_string(*index) : key);
+    if (place) place = child_of(*place, key);
   }
   return result;
 }
@@ -171,17 +238,25 @@ std::string resolved(const json& document, std::string_view pointer, bool append
 }  // namespace
 
 std::string resolve_names(const json& document, std::string_view pointer) {
-  return resolved(document, pointer, false);
+  return resolved(document, pointer, std::nullopt);
 }
 
-std::string pointer_of(const json& document, std::string_view setting) {
-  return resolved(document, setting.substr(0, end_of_pointer(document, setting)), true);
+json value_or_default(const json& document, std::string_view pointer) {
+  const std::vector<std::string> tokens = steps_of(document, pointer);
+  const json* place = &document;
+  for (std::size_t i = 0; place && i < tokens.size(); ++i) place = child_of(*place, tokens[i]);
+  if (!place) place = standard_at(document, tokens);
+  return place ? *place : json();
+}
+
+std::string pointer_of(const json& document, std::string_view setting, std::size_t later) {
+  return resolved(document, setting.substr(0, end_of_pointer(document, setting)), later);
 }
 
 void set_value(json& document, std::string_view pointer, json value, const fs::path& file,
                std::string_view subject) {
-  const std::vector<std::string> tokens = split_pointer(pointer);
-  const Step step(tokens, subject, file);
+  const std::vector<std::string> tokens = steps_of(document, pointer);
+  const Step step(document, tokens, subject, file);
   json* place = &document;
   for (std::size_t depth = 0; depth < tokens.size(); ++depth) place = step.go(*place, depth);
   *place = std::move(value);

@@ -8,8 +8,9 @@
 namespace sundog {
 
 /// Sets the value at a JSON pointer, in which an array item may also be given by its "name" if no other item
-/// has that name. Adds a missing last key and missing objects before it, except named things (there is no
-/// material "galss" to change); "-" appends to an array. Throws SceneError{file, pointer, what} for a pointer
+/// has that name; "/objects/NAME" may be in a group. Adds a missing last key and what is missing before it,
+/// arrays as the schema's defaults, except named things (there is no material "galss" to change); "-" appends
+/// to an array. Throws SceneError{file, pointer, what} for a pointer
 /// that leads nowhere: "`subject` leads nowhere: ...".
 void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::json value,
                const std::filesystem::path& file, std::string_view subject);
@@ -18,11 +19,15 @@ void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::jso
 /// UsageError for a malformed override.
 void apply_override(nlohmann::json& document, std::string_view setting, const std::filesystem::path& file);
 
+/// The value at a pointer as of set_value(), or the schema's default for it; null: none.
+nlohmann::json value_or_default(const nlohmann::json& document, std::string_view pointer);
+
 /// The pointer with indices in place of items' names.
 std::string resolve_names(const nlohmann::json& document, std::string_view pointer);
 
-/// resolve_names() of the pointer of an override that was applied: "-" is the last item.
-std::string pointer_of(const nlohmann::json& document, std::string_view setting);
+/// resolve_names() of the pointer of an override that was applied: "-" is the last item, but for `later` ones
+/// that further overrides have appended.
+std::string pointer_of(const nlohmann::json& document, std::string_view setting, std::size_t later = 0);
 
 /// Whether the value at `longer` is the value at `shorter` or a part of it.
 bool leads_through(std::string_view longer, std::string_view shorter);

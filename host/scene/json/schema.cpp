@@ -86,6 +86,10 @@ class Schema {
     if (node.contains("additionalProperties") && node["additionalProperties"].is_object())
       rule.others = compile(node["additionalProperties"]);
     compile_together(node, rule);
+    if (const auto types = node.find("allOf"); types != node.end())
+      for (const json& one : *types)
+        rule.of_type[one["if"]["properties"]["type"]["const"].get_ref<const std::string&>()] =
+            compile(one["then"]);
     const json required = node.value("required", json::array());
     if (node.contains("properties"))
       for (const auto& [name, of] : node["properties"].items()) {

@@ -46,7 +46,8 @@ struct SchemaRule {
     const nlohmann::json* standard = nullptr;  // the default for a missing key
     bool required = false;
   };
-  std::map<std::string_view, Key> keys;  // for objects
+  std::map<std::string_view, Key> keys;                   // for objects
+  std::map<std::string_view, const SchemaRule*> of_type;  // an object's rule by the value of its key "type"
   std::vector<const SchemaRule*> options;
   using KeyPair = std::pair<std::string_view, std::string_view>;
   std::vector<KeyPair> clashes;          // keys that exclude each other

@@ -61,6 +61,14 @@ bool is_halved(const ImageDescription& image) {
   return image.pixels.width != image.file_width || image.pixels.height != image.file_height;
 }
 
+/// Whether a texture of a model has one of the document's own images, because decode_images() merged them.
+bool shares_images(const SceneDescription& scene, const SceneDescription& head) {
+  return std::any_of(scene.textures.begin() + static_cast<std::ptrdiff_t>(head.textures.size()),
+                     scene.textures.end(), [&](const TextureDescription& texture) {
+                       return texture.image >= 0 && texture.image < std::ssize(head.images);
+                     });
+}
+
 void shift(int& index, std::size_t from, std::size_t to) {
   if (index >= static_cast<int>(from)) index += static_cast<int>(to) - static_cast<int>(from);
 }
@@ -130,7 +138,7 @@ bool change_surfaces(SceneDescription& scene, const json& before, const json& af
   Head to = read_head(after, context, scene);
   if (from.lacks_images || to.lacks_images || from.warnings != to.warnings || displaces(to.scene))
     return false;
-  if (from.names.materials != to.names.materials) return false;
+  if (from.names.materials != to.names.materials || shares_images(scene, from.scene)) return false;
   shift_rest(scene, from.scene, to.scene);
   replace_head(scene.media, from.scene.media.size(), std::move(to.scene.media));
   replace_head(scene.images, from.scene.images.size(), std::move(to.scene.images));

@@ -189,7 +189,7 @@ TEST_CASE("standard streams that are closed are /dev/null, so that what is print
   CHECK(result.status == 0);
   CHECK(read_file(here / "a.pfm").starts_with("PF\n32 24\n"));
   for (const char* command : {"$0 render $1 -o - >&-", "$0 info $1 --json >&-", "$0 devices >&-",
-                              "$0 formulas >&-", "$0 --help >&-"}) {
+                              "$0 formulas >&-", "$0 --help >&-", "$0 serve $1 >&-"}) {
     INFO(command);
     result = here.run(command);
     CHECK(result.status == 2);

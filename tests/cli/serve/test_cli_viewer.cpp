@@ -146,7 +146,8 @@ TEST_CASE("the page waits for no pick that the server has refused, or a lost con
   Viewer& v = viewer();
   v.run("store.pick(NaN, 1).then((picked) => { window.refusedPick = picked; })");
   v.wait("return window.refusedPick !== undefined");
-  CHECK_THAT(v.run("return window.refusedPick.error").get<std::string>(), ContainsSubstring("wanted a pixel"));
+  CHECK_THAT(v.run("return window.refusedPick.error").get<std::string>(),
+             ContainsSubstring("wanted a pixel"));
   v.run(
       "const {client, mostUpload, models} = store.state;"
       "store.asked.set(-1, (picked) => { window.lostPick = picked; });"

@@ -45,6 +45,19 @@ TEST_CASE("a linear track goes straight from key to key and stands still outside
   CHECK(frame_of(fov_track("linear"), 99).camera.fov == 100);
 }
 
+TEST_CASE("tracks move members of groups, and parts of arrays that are defaults") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("scene.json", R"({"objects": [{"type": "group", "objects": [
+      {"type": "sphere", "name": "inner", "material": "m"}]}], "materials": {"m": {}},
+    "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+    "animate": [
+      {"type": "linear", "value": "/objects/inner/center/0", "keys": [{"frame": 0, "value": 1}, {"frame": 2, "value": 3}]},
+      {"type": "rotate", "value": "/camera/up", "first": 0, "last": 2, "degrees": 180, "axis": [0, 0, 1]}]})");
+  const SceneDescription scene = load_scene(file, {}, {.frame = 1});
+  CHECK(dvec3(scene.objects.at(0).world_from_object[3]) == dvec3(2, 0, 0));
+  CHECK(glm::length(scene.camera.up - dvec3(-1, 0, 0)) < 1e-12);
+}
+
 TEST_CASE("a smooth track goes through its keys without a kink") {
   const auto fov = [](double frame) { return frame_of(fov_track("smooth"), frame).camera.fov; };
   CHECK(fov(0) == Approx(20));

@@ -154,6 +154,26 @@ TEST_CASE(
   CHECK_FALSE(change_scene(scene, before, edited("/materials/more", {{"color", {1, 0, 0}}})));
 }
 
+TEST_CASE("a model keeps an image that it shares with the document's textures when these change") {
+  const TemporaryFolder folder;
+  folder.write("one.obj",
+               "mtllib one.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\n"
+               "f 1/1 2/2 3/3\n");
+  folder.write("one.mtl", "newmtl a\nmap_Kd dots.png\n");
+  write_image(Image(4, 4, 3), folder / "dots.png");
+  const auto file = folder / "scene.json";
+  const json before = json::parse(R"({
+    "textures": {"dots": {"type": "image", "file": "dots.png"}}, "materials": {"plain": {"color": "dots"}},
+    "objects": [{"type": "model", "file": "one.obj"}, {"type": "sphere", "material": "plain"}]})");
+  const SceneDescription scene = load_scene_document(before, file);
+  REQUIRE(scene.images.size() == 1);
+  json after = before;
+  after["materials"]["plain"]["color"] = {1, 0, 0};
+  const auto changed = change_scene(scene, before, after);
+  const auto shown = changed ? hash_of(*changed) : hash_of(load_scene_document(after, file));
+  CHECK(shown == hash_of(load_scene_document(after, file)));
+}
+
 TEST_CASE("a change of what is placed, or of the names of materials, is left to reading everything") {
   const auto file = scenes / "spheres.json";
   const json before = read_scene_document(file);

@@ -63,6 +63,30 @@ TEST_CASE("an override's value is JSON, or else a string") {
   CHECK_THAT(added.reason, ContainsSubstring("(changed by the setting /lights/-="));
 }
 
+TEST_CASE("overrides append in turn, and an error names the one at fault") {
+  const std::string ambient = R"(/lights/-={"type": "ambient"})", wrong = R"(/lights/-={"type": "lamp"})";
+  CHECK(with({ambient, ambient}).lights.size() == 4);
+  CHECK_THAT(error_of(scene, {wrong, ambient}).reason, ContainsSubstring("(changed by the setting " + wrong));
+}
+
+TEST_CASE("an override may set a part of an array that is the default") {
+  CHECK(glm::distance(with({"/camera/up/2=1"}).camera.up, glm::normalize(dvec3(0, 1, 1))) < 1e-12);
+  const auto objects = [](const std::string& setting) {
+    return with(
+               {R"(/objects/-={"type": "group", "objects": [{"type": "group", "material": "glass", "objects": [
+      {"type": "sphere", "name": "inner"}, {"type": "sphere", "name": "outer"}]}]})",
+                setting})
+        .objects;
+  };
+  const auto center = [&](const std::string& setting) {
+    return dvec3(objects(setting).back().world_from_object[3]);
+  };
+  CHECK(center("/objects/outer/center/1=3") == dvec3(0, 3, 0));
+  CHECK(center("/objects/outer/center=[1, 2, 3]") == dvec3(1, 2, 3));
+  CHECK_THROWS_AS(objects("/objects/nobody/center=[1, 2, 3]"), SceneError);
+  check_error("/camera/moves_to/1=3", "/camera/moves_to", "there is no /camera/moves_to");
+}
+
 TEST_CASE("escapes lead an override to keys with / and ~") {
   CHECK(with({"/materials/a~1b~0c/vertex_color=true"}).materials[0].vertex_color);
 }
