@@ -1,6 +1,7 @@
 // The table of integrators, selected by --integrator and /render/integrator.
 #pragma once
 #include <array>
+#include <stdexcept>
 #include <string_view>
 
 namespace sundog {
@@ -66,10 +67,10 @@ constexpr const Integrator* find_integrator(std::string_view name) {
   return nullptr;
 }
 
-/// The row with this name, or the first row.
+/// The row of a name that the scene reader has taken. Throws std::logic_error.
 constexpr const Integrator& integrator_of(std::string_view name) {
   const Integrator* row = find_integrator(name);
-  return row ? *row : integrators.front();
+  return row ? *row : throw std::logic_error("an integrator of the schema is not in the table");
 }
 
 }  // namespace sundog

@@ -95,7 +95,7 @@ KernelConfig choose_config(Device& device, const Integrator& integrator, KernelC
 /// Updates the kernels for the scene, keeping suitable ones.
 void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tuning, const WorkGroup& asked,
                    bool aovs, FrameKernels& kernels, RenderTimes& times, KernelUpdate& update) {
-  const Integrator& integrator = *find_integrator(scene.integrator);
+  const Integrator& integrator = integrator_of(scene.integrator);
   const auto config_of = kernels.choice == KernelChoice::general ? general_config
                          : kernels.choice == KernelChoice::draft ? drawing_draft_config
                                                                  : make_kernel_config;
@@ -130,7 +130,7 @@ void renew_kernels(Device& device, const CompiledScene& scene, const Tuning& tun
 
 /// Determines the media around the camera; none outside all solids.
 void renew_camera_media(Device& device, const CompiledScene& scene, FrameKernels& kernels) {
-  if (find_integrator(scene.integrator)->needs_camera_media && scene.features.camera_inside) {
+  if (integrator_of(scene.integrator).needs_camera_media && scene.features.camera_inside) {
     find_camera_media(device, kernels);
     kernels.camera_inside = true;
   } else if (std::exchange(kernels.camera_inside, false)) {
@@ -208,7 +208,7 @@ KernelUpdate update_frame_kernels(Device& device, const CompiledScene& scene, co
 bool has_only_draft(const DeviceInfo& info, const CompiledScene& scene, const Tuning& tuning) {
   Device device(info);
   device.build_with({.tuned = tuning.options});
-  const Integrator& integrator = *find_integrator(scene.integrator);
+  const Integrator& integrator = integrator_of(scene.integrator);
   const auto has = [&](const KernelConfig& config) {
     return device.has(integrator.entry, config.defines(), config.generated) &&
            (!scene.features.caustics || device.has(photon_entry, config.defines(), config.generated));

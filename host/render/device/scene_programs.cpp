@@ -7,7 +7,7 @@
 namespace sundog {
 
 std::vector<SceneProgram> scene_programs(const CompiledScene& scene, const DeviceInfo& device) {
-  const Integrator& integrator = *find_integrator(scene.integrator);
+  const Integrator& integrator = integrator_of(scene.integrator);
   const KernelConfig config = make_kernel_config(scene, device);
   std::vector<SceneProgram> programs;
   const auto add = [&](bool wanted, const char* entry) {

@@ -202,7 +202,7 @@ static RenderSettings read_render(const JsonValue& value) {
   return value.object("render", [](JsonObject& object) {
     RenderSettings render;
     read_members(object, render, {"max_depth", "sampler", "seed"});
-    const Integrator& integrator = *find_integrator(render.integrator);
+    const Integrator& integrator = integrator_of(render.integrator);
     render.max_depth = object.integer("max_depth", integrator.depth, 1, integrator.most_depth);
     if (const auto path = object.find("path"))
       path->object("path", [&](JsonObject& inner) { read_path(inner, render); });

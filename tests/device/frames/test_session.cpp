@@ -49,7 +49,7 @@ void wait_until_prepared(RenderSession& session) {
 }
 
 bool has_kernels(const DeviceInfo& info, const CompiledScene& scene, const KernelConfig& kernels) {
-  return Device(info).has(find_integrator(scene.integrator)->entry, kernels.defines(), kernels.generated);
+  return Device(info).has(integrator_of(scene.integrator).entry, kernels.defines(), kernels.generated);
 }
 
 /// Until the session has built these kernels of the scene.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "catch.h"
 #include "every_kind.h"
 #include "json_schema.h"
+#include "scene/integrators.h"
 #include "scene/json/parse.h"
 #include "scene/kinds.h"
 #include "scene/load.h"
@@ -182,6 +184,11 @@ void check_names(const char* kind, const char* key) {
     INFO(kind << "/" << key << ": " << name);
     CHECK_NOTHROW(enumerator_named<E>(name));
   }
+}
+
+TEST_CASE("integrators have the schema's names") {
+  const auto& names = schema_rule("render")->keys.at("integrator").rule->as(SchemaRule::Type::string)->names;
+  CHECK(std::ranges::equal(names, integrator_names));
 }
 
 TEST_CASE("enumerators have the schema's names") {
