@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "formula/evaluate.h"
 #include "formula/survey.h"
@@ -45,7 +46,8 @@ class FormulaJudge {
     for (const char* key : {"steps", "iterations", "bailout"}) is_changed |= escapes && json.contains(key);
     // A power's derivative bounds the distance; for a set that only scales, the distance also depends on its
     // size.
-    const auto scale = is_changed && escapes ? FormulaEvaluator(field_).scale() : std::nullopt;
+    std::optional<double> scale;
+    if (is_changed && escapes) scale = FormulaEvaluator(field_).scale();
     const bool closely = is_changed && (!escapes || scale);
     size_ = glm::length(upper - lower);
     if (last_value().json().contains("map") && scale && *scale > 1 &&

@@ -158,7 +158,7 @@ void read_interval(JsonObject& object, SdfDescription& field, bool required) {
 }
 
 /// Reads the field's shading effects; `size` is half its interval's diagonal.
-void read_light(JsonObject& object, SdfDescription& field, double size) {
+void read_effects(JsonObject& object, SdfDescription& field, double size) {
   field.occlusion = object.number("occlusion", 0, {.low = 0, .high = size});
   if (const auto glow = object.find("glow"))
     glow->object("glow", [&](JsonObject& o) {
@@ -194,7 +194,7 @@ void read_whole(JsonObject& object, SdfDescription& field, const JsonValue& root
   const bool has_limit = object.has("step_limit");
   read_members(object, field, {"name", "occlusion", "glow"});
   if (const auto coloring = object.find("coloring")) field.coloring = read_coloring(*coloring);
-  read_light(object, field, size);
+  read_effects(object, field, size);
   try {
     if (root.context().measures) {
       judge_field(field.root, root, field.lower, field.upper);

@@ -31,6 +31,8 @@ using FindSection = std::function<std::optional<JsonValue>(std::string_view key)
 bool read_view_sections(const FindSection& find, SceneDescription& scene);
 
 ToneMap read_tone_map(const JsonValue& value);
+/// `unit`: metres per scene unit, for the power of lamps.
+LightDescription read_light(const JsonValue& value, double unit);
 /// Refuses more groups of lights than a film has sums for.
 void check_light_groups(const SceneDescription& scene, const JsonValue& root);
 
