@@ -40,7 +40,7 @@ std::map<std::string, std::string> settings_of(const RenderCommand& command, con
     const std::size_t equals = setting.find('=');
     std::string& value = settings["--set " + setting.substr(0, equals)];
     const bool appends = !value.empty() && setting[equals - 1] == '-';
-    value = (appends ? value + ", " : "") + setting.substr(equals + 1);
+    value = fmt::format("{}{}{}", appends ? value : "", appends ? ", " : "", setting.substr(equals + 1));
   }
   for (const char* told_otherwise : {"/image/width", "/image/height", "/render/samples", "/render/max_depth"})
     settings.erase(std::string("--set ") + told_otherwise);
