@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "app/options/option_values.h"
@@ -108,7 +109,8 @@ BenchRun::BenchRun(const std::string& name, const std::string& title, const Benc
     take_known(options.continue_from);
     head_.facts.emplace_back("continues", options.continue_from);
   }
-  if (const fs::path kept = kept_for_next(); fs::exists(kept)) {
+  std::error_code none;
+  if (const fs::path kept = kept_for_next(); fs::exists(kept, none)) {
     const Table devices = known_devices_, scenes = known_scenes_;
     take_known(kept.string());
     known_devices_ = devices, known_scenes_ = scenes;  // checks only --continue's
