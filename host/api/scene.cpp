@@ -105,7 +105,9 @@ Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options)
     Scene scene;
     scene.impl_->options = options_of(options);
     scene.impl_->document = read_scene_document(file, scene.impl_->options);
-    scene.impl_->file = std::filesystem::absolute(file);  // the program may change its folder
+    std::error_code failed;
+    scene.impl_->file = std::filesystem::absolute(file, failed);  // the program may change its folder
+    if (failed) scene.impl_->file = file;
     return scene;
   });
 }
