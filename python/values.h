@@ -45,6 +45,12 @@ struct OwnScene : sundog::Scene {
   std::map<std::string, std::shared_ptr<const HeldArrays>> arrays{};
 };
 
+/// A Python str. Bytes of file names that are not UTF-8 become surrogate escapes, as in Python's own
+/// functions.
+nb::object text_of(const std::string& text);
+/// Adds sundog.Error, as which the library's errors are raised.
+void add_error(nb::module_& m);
+
 /// The image's own memory, read-only: (height, width, channels), or (height, width) for one channel.
 Pixels pixels_of(const sundog::Image& image);
 sundog::Image image_of(const PixelsIn& pixels);

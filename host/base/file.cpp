@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -23,6 +22,7 @@
 #include "base/error.h"
 #include "base/faults.h"
 #include "base/input.h"
+#include "base/names.h"
 
 namespace sundog {
 namespace fs = std::filesystem;
@@ -203,12 +203,7 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, failed);
 }
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
+std::string lower_extension(const fs::path& path) { return lower_case(path.extension().string()); }
 
 fs::path working_folder() {
   std::error_code failed;

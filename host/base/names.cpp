@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace sundog {
 namespace {
 
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c; }
 
 /// Minimum number of letters to add, drop or change, or neighbours to swap (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -30,6 +29,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), lower);
+  return result;
+}
 
 std::optional<std::string> nearest_name(std::string_view found, const std::vector<std::string>& names) {
   std::optional<std::string> best;

@@ -1,4 +1,4 @@
-// Suggests names from a list for a misspelt name.
+// Names in lower case, and suggestions from a list for a misspelt name.
 #pragma once
 #include <optional>
 #include <string>
@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace sundog {
+
+/// The text with ASCII letters in lower case.
+std::string lower_case(std::string_view text);
 
 /// The name closest to `found`, ignoring case; none if more than a third of its letters, or all of them,
 /// would have to be added, dropped, changed or swapped with a neighbour.

@@ -3,9 +3,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "base/numbers.h"
 #include "device/choice.h"
 #include "device/devices.h"
@@ -13,12 +13,6 @@
 
 namespace sundog {
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Numbers as patterns match no device, because they occur in many names.
 bool is_number(std::string_view text) {
@@ -35,7 +29,7 @@ struct Spec {
 
 /// A trailing "/digits" is the sub-device's size; other slashes belong to "platform/device".
 Spec parse_spec(const std::string& text) {
-  Spec spec{text, lower(text), text.starts_with('!')};
+  Spec spec{text, lower_case(text), text.starts_with('!')};
   if (spec.exclude) spec.pattern.erase(0, 1);
   spec.may_miss = spec.exclude && spec.pattern.ends_with('?');
   if (spec.may_miss) spec.pattern.pop_back();
@@ -63,7 +57,7 @@ Spec parse_spec(const std::string& text) {
 /// Common names that occur in no platform's or device's name.
 bool is_called(const std::string& name, const DeviceInfo& device) {
   if (name == "pocl") return is_pocl(device);
-  const std::string vendor = lower(device.vendor);
+  const std::string vendor = lower_case(device.vendor);
   if (name == "amd") return vendor.find("advanced micro devices") != std::string::npos;
   return (name == "nvidia" || name == "intel") && vendor.find(name) != std::string::npos;
 }
@@ -80,7 +74,7 @@ bool matches(const Spec& spec, const DeviceInfo& device) {
   }
   if (is_number(pattern)) return false;
   return is_called(pattern, device) ||
-         lower(device.platform_name + "/" + device.name).find(pattern) != std::string::npos;
+         lower_case(device.platform_name + "/" + device.name).find(pattern) != std::string::npos;
 }
 
 std::string candidates(std::span<const DeviceInfo> all) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/input.h"
+#include "base/names.h"
 #include "models/text.h"
 
 namespace sundog::models {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/names.h"
+
 namespace sundog::models {
 namespace {
 
@@ -133,13 +135,6 @@ std::uint64_t TextReader::count(std::string_view what) {
 
 void TextReader::expect_line_end(std::string_view what) {
   if (!at_line_end()) fail(fmt::format("{} ends before '{}'", what, shown(word())));
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 'a' - 'A');
-  return lower;
 }
 
 std::string_view before_comment(std::string_view name) {

@@ -61,9 +61,6 @@ class TextReader {
   std::string joined_;     // a line joined from several
 };
 
-/// The text with ASCII letters in lower case.
-std::string lower_case(std::string_view text);
-
 /// The name without a trailing comment, for when the full name does not exist.
 std::string_view before_comment(std::string_view name);
 

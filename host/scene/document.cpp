@@ -82,8 +82,10 @@ std::shared_ptr<const SceneDescription> change_scene(const SceneDescription& sce
   const bool same_surfaces = std::ranges::all_of(
       surface_sections(), [&](std::string_view key) { return same_section(before, after, key); });
   if (!same_surfaces && !change_surfaces(*changed, before, after, context)) return nullptr;
-  drop_lamps(*changed);
-  add_lamps(*changed);
+  if (!same_section(before, after, "lights")) {
+    drop_lamps(*changed);
+    add_lamps(*changed);
+  }
   check_light_groups(*changed, JsonValue(after, context));
   return changed;
 }

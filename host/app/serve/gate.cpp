@@ -10,12 +10,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/names.h"
 #include "base/numbers.h"
 
 namespace sundog {
@@ -61,12 +61,6 @@ namespace {
 
 constexpr int http_port = 80, https_port = 443;
 
-std::string in_lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 void admit(Gate& gate, const std::string& scheme, const std::string& name, int port) {
   std::vector<std::string> hosts = {fmt::format("{}:{}", name, port)};
   if (port == (scheme == "http" ? http_port : https_port)) hosts.push_back(name);
@@ -89,7 +83,7 @@ PublicName parse_public_name(const std::string& typed) {
       (with_port && *port == 0))
     throw UsageError(fmt::format(
         "--host {}: wanted NAME or NAME:PORT, without http://, as the browser's address line has it", typed));
-  return {in_lower_case(name), with_port ? std::vector{*port} : std::vector{http_port, https_port}};
+  return {lower_case(name), with_port ? std::vector{*port} : std::vector{http_port, https_port}};
 }
 
 Gate make_gate(int port, std::string token, const std::vector<PublicName>& further) {
@@ -111,7 +105,7 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
 
 Refusal check_request(const Gate& gate, const RequestHead& head) {
   const std::string* host = head.header("host");
-  if (!host || head.repeated_host || std::ranges::count(gate.hosts, in_lower_case(*host)) == 0)
+  if (!host || head.repeated_host || std::ranges::count(gate.hosts, lower_case(*host)) == 0)
     return {421,
             "this server does not answer to that Host; a tunnel or proxy wants sundog serve --host NAME "
             "or --host NAME:PORT, as the browser's address line has it"};

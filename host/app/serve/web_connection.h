@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/serve/web_socket.h"
+#include "base/names.h"
 #include "base/numbers.h"
 
 namespace sundog {
@@ -23,8 +24,7 @@ inline RequestHead head_of(const http::request<http::string_body>& request) {
   head.path = target.substr(0, mark);
   if (mark != std::string::npos) head.query = target.substr(mark + 1);
   for (const auto& field : request) {
-    std::string name(field.name_string());
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string name = lower_case(std::string(field.name_string()));
     const bool added = head.headers.emplace(name, std::string(field.value())).second;
     if (!added && (name == "host" || name == "origin" || name == token_header)) head.repeated_host = true;
   }

@@ -205,20 +205,6 @@ class Placer {
   std::vector<std::pair<std::size_t, std::size_t>> profiles_;  // first row and number of rows of each
 };
 
-/// Whether the camera may be inside this solid with a medium.
-bool may_contain(const Instance& instance, const Bounds& box, const dvec3& camera) {
-  if (!(instance.flags & INSTANCE_TRANSMITS)) return false;
-  if (instance.shape == SHAPE_PLANE) {
-    const float4& row = instance.object_from_world[1];
-    const dvec3 normal(row.x, row.y, row.z);
-    return glm::dot(normal, camera) + double(row.w) <=
-           1e-6 * (glm::length(normal) * glm::length(camera) + std::abs(double(row.w)));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if (camera[axis] < double(box.lower[axis]) || camera[axis] > double(box.upper[axis])) return false;
-  return true;
-}
-
 /// Moves meshes that share a BVH into `sharing` of the first of them.
 void join_sharing(std::vector<Placed> following, std::vector<Placed>& bounded) {
   std::unordered_map<u32, std::size_t> first;
@@ -391,13 +377,6 @@ Instances compile_instances(const InstanceInputs& in) {
   if (out.features.object_motion) out.moves = std::move(moves);
   out.features.unbounded = !unbounded.empty();
   return out;
-}
-
-bool is_camera_inside(const dvec3& camera, std::span<const Instance> instances,
-                      std::span<const Bounds> boxes) {
-  for (std::size_t i = 0; i < instances.size(); ++i)
-    if (may_contain(instances[i], boxes[i], camera)) return true;
-  return false;
 }
 
 }  // namespace sundog

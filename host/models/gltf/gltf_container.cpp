@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/input.h"
+#include "base/names.h"
 #include "base/numbers.h"
 #include "models/beside.h"
 
@@ -81,8 +82,7 @@ std::string decode_base64(std::string_view text, const JsonAt& uri) {
 std::string read_data_uri(std::string_view text, const JsonAt& uri, bool buffer) {
   const std::size_t comma = text.find(',');
   if (comma == text.npos) uri.fail("a data URI without a comma");
-  std::string head(text.substr(5, comma - 5));
-  std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::string head = lower_case(text.substr(5, comma - 5));
   const bool base64 = head.ends_with(";base64");
   if (base64) head.resize(head.size() - 7);
   // An image's type is recognised by its bytes.

@@ -126,7 +126,6 @@ void find_in_mesh(const json& mesh, Model& model) {
   }
 }
 
-/// Extensions of materials and KHR_texture_basisu are reported where materials use them.
 constexpr std::array read_extensions{"KHR_lights_punctual",   "EXT_mesh_gpu_instancing",
                                      "KHR_mesh_quantization", "KHR_texture_transform",
                                      "EXT_texture_webp",      "KHR_texture_basisu"};
@@ -149,6 +148,7 @@ constexpr std::array invisible_extensions{"KHR_xmp",
                                           "GRIFFEL_bim_data",
                                           "MSFT_lod"};
 
+/// Extensions of materials and KHR_texture_basisu are reported where materials use them.
 bool is_known(const std::string& extension) {
   return extension.starts_with("KHR_materials_") || std::ranges::count(read_extensions, extension) > 0 ||
          std::ranges::count(invisible_extensions, extension) > 0;

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "base/names.h"
 #include "models/beside.h"
 #include "models/obj/mtl_pbr.h"
 #include "models/readers.h"

@@ -10,8 +10,8 @@ namespace sundog {
 /// Sets the value at a JSON pointer, in which an array item may also be given by its "name" if no other item
 /// has that name; "/objects/NAME" may be in a group. Adds a missing last key and what is missing before it,
 /// arrays as the schema's defaults, except named things (there is no material "galss" to change); "-" appends
-/// to an array. Throws SceneError{file, pointer, what} for a pointer
-/// that leads nowhere: "`subject` leads nowhere: ...".
+/// to an array. Throws SceneError{file, pointer, what} for a pointer that leads nowhere: "`subject` leads
+/// nowhere: ...".
 void set_value(nlohmann::json& document, std::string_view pointer, nlohmann::json value,
                const std::filesystem::path& file, std::string_view subject);
 
