@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -43,6 +44,28 @@ class Validator {
     if (!good) errors.push_back(place + ": " + keyword);
   }
 
+  /// Adds the keys that the schema, and those that it applies to the same value, have rules for.
+  void list_evaluated(const json& schema, const json& value, std::set<std::string>& keys) const {
+    for (const auto& [keyword, rule] : schema.items()) {
+      if (keyword == "properties") {
+        for (const auto& [key, member] : rule.items()) keys.insert(key);
+      } else if (keyword == "additionalProperties") {
+        for (const auto& [key, member] : value.items()) keys.insert(key);
+      } else if (keyword == "$ref") {
+        list_evaluated(refer(rule), value, keys);
+      } else if (keyword == "allOf") {
+        for (const json& part : rule) list_evaluated(part, value, keys);
+      } else if (keyword == "if") {
+        const char* branch = holds(rule, value) ? "then" : "else";
+        if (schema.contains(branch)) list_evaluated(schema.at(branch), value, keys);
+      }
+    }
+  }
+
+  const json& refer(const json& pointer) const {
+    return root_.at(json::json_pointer(pointer.get<std::string>().substr(1)));
+  }
+
   /// Keywords that apply other schemas to the same value.
   bool follow(const std::string& keyword, const json& rule, const json& schema, const json& value,
               const std::string& place) {
@@ -52,7 +75,7 @@ class Validator {
       return count;
     };
     if (keyword == "$ref") {
-      check(root_.at(json::json_pointer(rule.get<std::string>().substr(1))), value, place);
+      check(refer(rule), value, place);
     } else if (keyword == "allOf") {
       for (const json& option : rule) check(option, value, place);
     } else if (keyword == "anyOf") {
@@ -74,10 +97,12 @@ class Validator {
   bool parts(const std::string& keyword, const json& rule, const json& schema, const json& value,
              const std::string& place) {
     static const std::vector<std::string> known{
-        "properties", "additionalProperties", "required", "dependentRequired", "items", "minItems",
+        "properties", "additionalProperties", "unevaluatedProperties", "required", "dependentRequired", "items", "minItems",
         "maxItems"};
     if (std::find(known.begin(), known.end(), keyword) == known.end()) return false;
     if (value.is_object()) {
+      std::set<std::string> evaluated;
+      if (keyword == "unevaluatedProperties") list_evaluated(schema, value, evaluated);
       for (const auto& [key, member] : value.items()) {
         if (keyword == "properties" && rule.contains(key)) check(rule[key], member, place + "/" + key);
         if (keyword == "additionalProperties" && !schema.value("properties", json::object()).contains(key)) {
@@ -86,6 +111,8 @@ class Validator {
           else
             check(rule, member, place + "/" + key);
         }
+        if (keyword == "unevaluatedProperties")
+          require(evaluated.contains(key) || rule.get<bool>(), place + "/" + key, keyword);
         if (keyword == "dependentRequired" && rule.contains(key))
           check({{"required", rule[key]}}, value, place);
       }

@@ -137,12 +137,18 @@ bool takes(const json& document, const fs::path& folder) {
   }
 }
 
-/// The $defs that say which keys an object may have.
+/// The keys of each kind of object that has no others: "camera", and by its type "light/point".
 std::map<std::string, std::set<std::string>, std::less<>> schema_keys() {
   std::map<std::string, std::set<std::string>, std::less<>> result;
-  for (const auto& [kind, schema] : scene_schema().at("$defs").items())
-    if (schema.contains("additionalProperties") && schema["additionalProperties"] == false)
-      for (const auto& [key, rule] : schema.at("properties").items()) result[kind].insert(key);
+  const auto add = [&](const std::string& kind, const SchemaRule& rule) {
+    for (const auto& [key, of] : rule.keys) result[kind].emplace(key);
+  };
+  for (const auto& [kind, schema] : scene_schema().at("$defs").items()) {
+    if (schema.value("additionalProperties", true) && schema.value("unevaluatedProperties", true)) continue;
+    const SchemaRule& rule = *schema_rule(kind);
+    for (const auto& [type, typed] : rule.of_type) add(fmt::format("{}/{}", kind, type), *typed);
+    if (rule.of_type.empty()) add(kind, rule);
+  }
   return result;
 }
 
