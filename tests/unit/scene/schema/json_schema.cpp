@@ -169,18 +169,21 @@ class Defaults {
  public:
   explicit Defaults(const json& root) : root_(root) {}
 
-  void fill(const json& schema, json& value) const {
-    if (schema.contains("$ref")) fill(refer(schema), value);
-    if (schema.contains("if"))
-      fill(schema.value(holds(schema["if"], value) ? "then" : "else", json::object()), value);
-    for (const char* keyword : {"allOf", "anyOf"})
-      for (const json& option : schema.value(keyword, json::array())) fill_option(option, value);
-    if (value.is_array() && schema.contains("items"))
-      for (json& item : value) fill(schema["items"], item);
-    if (value.is_object()) fill_object(schema, value);
-  }
+  void fill(const json& schema, json& value) const { fill(schema, value, schema); }
 
  private:
+  /// `whole`: the schema, of which `schema` is a part, that the value obeys then too.
+  void fill(const json& schema, json& value, const json& whole) const {
+    if (schema.contains("$ref")) fill(refer(schema), value, whole);
+    if (schema.contains("if"))
+      fill(schema.value(holds(schema["if"], value) ? "then" : "else", json::object()), value, whole);
+    for (const char* keyword : {"allOf", "anyOf"})
+      for (const json& option : schema.value(keyword, json::array())) fill_option(option, value, whole);
+    if (value.is_array() && schema.contains("items"))
+      for (json& item : value) fill(schema["items"], item);
+    if (value.is_object()) fill_object(schema, value, whole);
+  }
+
   const json& refer(const json& schema) const {
     return root_.at(json::json_pointer(schema.at("$ref").get<std::string>().substr(1)));
   }
@@ -191,13 +194,13 @@ class Defaults {
     return validator.errors.empty();
   }
 
-  void fill_option(const json& option, json& value) const {
+  void fill_option(const json& option, json& value, const json& whole) const {
     if (option.contains("if") && !holds(option["if"], value)) return;
     const json& chosen = option.contains("if") ? option["then"] : option;
-    if (holds(chosen, value)) fill(chosen, value);
+    if (holds(chosen, value)) fill(chosen, value, whole);
   }
 
-  void fill_object(const json& schema, json& value) const {
+  void fill_object(const json& schema, json& value, const json& whole) const {
     const json properties = schema.value("properties", json::object());
     for (auto& [key, member] : value.items()) {
       if (properties.contains(key))
@@ -211,7 +214,7 @@ class Defaults {
       if (value.contains(key) || !named->contains("default")) continue;
       json filled = value;
       filled[key] = (*named)["default"];
-      if (holds(schema, filled)) value = std::move(filled);
+      if (holds(whole, filled)) value = std::move(filled);
     }
   }
 

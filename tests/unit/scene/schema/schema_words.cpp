@@ -95,8 +95,8 @@ std::string link_to(const std::string& kind) {
 }
 
 bool has_keys(const ordered_json& kind) {
-  return kind.contains("properties") &&
-         !(kind.value("additionalProperties", true) && kind.value("unevaluatedProperties", true));
+  const auto closed = [&](const char* keyword) { return kind.contains(keyword) && kind[keyword] == false; };
+  return kind.contains("properties") && (closed("additionalProperties") || closed("unevaluatedProperties"));
 }
 
 const ordered_json& SchemaWords::target(const ordered_json& rule) const {
