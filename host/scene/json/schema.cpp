@@ -66,8 +66,7 @@ class Schema {
     if (!rule.names.empty()) rule.type = Type::string;
     if (node.contains("not") && node["not"].contains("enum")) rule.barred = &node["not"]["enum"];
     if (node.contains("pattern")) rule.pattern = node["pattern"].get_ref<const std::string&>();
-    if (node.contains("anyOf") && !node.contains("properties"))
-      compile_options(node["anyOf"], rule);
+    if (node.contains("anyOf") && !node.contains("properties")) compile_options(node["anyOf"], rule);
     rule.range = range_of(node);
     compile_array(node, rule);
     compile_object(node, rule);

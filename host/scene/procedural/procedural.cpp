@@ -149,8 +149,7 @@ ExactLathe follow_exactly(const JsonValue& recipe, const JsonValue& meshes) {
       object.at("vessel").fail("only what fills a lathe is a surface of revolution");
     double meniscus = 0;
     object.read("meniscus", meniscus);
-    return exact_lathe_liquid(vessel.object("generate", read_lathe), object.at("to").number(),
-                              meniscus);
+    return exact_lathe_liquid(vessel.object("generate", read_lathe), object.at("to").number(), meniscus);
   });
 }
 

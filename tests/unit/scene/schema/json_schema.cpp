@@ -96,9 +96,14 @@ class Validator {
   /// Keywords about an object's members and an array's items.
   bool parts(const std::string& keyword, const json& rule, const json& schema, const json& value,
              const std::string& place) {
-    static const std::vector<std::string> known{
-        "properties", "additionalProperties", "unevaluatedProperties", "required", "dependentRequired", "items", "minItems",
-        "maxItems"};
+    static const std::vector<std::string> known{"properties",
+                                                "additionalProperties",
+                                                "unevaluatedProperties",
+                                                "required",
+                                                "dependentRequired",
+                                                "items",
+                                                "minItems",
+                                                "maxItems"};
     if (std::find(known.begin(), known.end(), keyword) == known.end()) return false;
     if (value.is_object()) {
       std::set<std::string> evaluated;

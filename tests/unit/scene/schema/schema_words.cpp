@@ -18,14 +18,11 @@ namespace {
 
 /// The name of each choice by "type", with its link.
 const std::map<std::string, std::string>& choices() {
-  static const std::map<std::string, std::string> all{{"light", "[light](#lights)"},
-                                                      {"environment", "[environment](#environment)"},
-                                                      {"texture", "[texture](#textures)"},
-                                                      {"object", "[object](#objects)"},
-                                                      {"field", "[field](#distance-fields)"},
-                                                      {"step", "[step](#fractal-step)"},
-                                                      {"track", "[track](#animation)"},
-                                                      {"generate", "[ice block](#generate-ice-block)"}};
+  static const std::map<std::string, std::string> all{
+      {"light", "[light](#lights)"},          {"environment", "[environment](#environment)"},
+      {"texture", "[texture](#textures)"},    {"object", "[object](#objects)"},
+      {"field", "[field](#distance-fields)"}, {"step", "[step](#fractal-step)"},
+      {"track", "[track](#animation)"},       {"generate", "[ice block](#generate-ice-block)"}};
   return all;
 }
 

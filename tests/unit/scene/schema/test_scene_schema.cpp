@@ -149,7 +149,8 @@ std::map<std::string, std::set<std::string>, std::less<>> schema_keys() {
     for (const auto& [key, of] : rule.keys) result[kind].emplace(key);
   };
   for (const auto& [kind, schema] : scene_schema().at("$defs").items()) {
-    if (schema.value("additionalProperties", json()) != false && schema.value("unevaluatedProperties", json()) != false)
+    if (schema.value("additionalProperties", json()) != false &&
+        schema.value("unevaluatedProperties", json()) != false)
       continue;
     const SchemaRule& rule = *schema_rule(kind);
     for (const auto& [type, typed] : rule.of_type) add(fmt::format("{}/{}", kind, type), *typed);
