@@ -191,9 +191,9 @@ const SchemaRule* SchemaRule::as(Type wanted) const {
 }
 
 const SchemaRule& SchemaRule::typed(const json& object) const {
-  const auto type = object.find("type");
-  if (type == object.end() || !type->is_string()) return *this;
-  const auto found = of_type.find(type->get_ref<const std::string&>());
+  const auto name = object.find("type");
+  if (name == object.end() || !name->is_string()) return *this;
+  const auto found = of_type.find(name->get_ref<const std::string&>());
   return found == of_type.end() ? *this : *found->second;
 }
 
