@@ -99,6 +99,7 @@ class Schema {
     rule.most_items = node.value("maxItems", any_count);
   }
 
+  /// Compiles an object's keys, and those of each "type" if that chooses among them.
   void compile_object(const json& node, SchemaRule& rule) {
     const bool depends = take_in(node, "", rule);
     const auto types = rule.keys.find("type");
