@@ -44,10 +44,9 @@ void place(json& document, json object, const Placement& placement) {
 
 json light_json(const Light& light) {
   json value{{"type", light.type}, {"color", light.color}, {"intensity", light.intensity}};
-  const SchemaRule* rule = schema_rule(light.type + "_light");
-  if (!rule) return value;  // the scene reader reports the unknown type
+  const SchemaRule& rule = schema_rule("light")->typed(value);  // the scene reader reports an unknown type
   const auto put = [&](const char* key, const auto& member) {
-    if (rule->keys.contains(key)) value[key] = member;
+    if (rule.keys.contains(key)) value[key] = member;
   };
   put("position", light.position);
   put("direction", light.direction);
