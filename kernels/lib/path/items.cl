@@ -7,8 +7,8 @@
 #include "plain/path/lens.cl"
 #include "shared/launch.h"
 
-// Follows the camera's rays of `lanes`, pixel i in lane i, and adds what they see to tile->radiance[i]: rgb and
-// coverage, at first (0, 0, 0, 1).
+// Follows the camera's rays of `lanes`, pixel i in lane i, and adds what they see to tile->radiance[i]: rgb
+// and coverage, at first (0, 0, 0, 1).
 void follow_camera_rays(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes, u32* counts);
 
 // The camera's rays of one sample. Returns the lanes that have a pixel; signs[lane] is what a sample counts.
