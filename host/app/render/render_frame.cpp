@@ -161,13 +161,13 @@ void stop_loses_nothing(const RenderCommand& command, const Setup& setup) {
 }
 
 LoadOptions load_options(const RenderCommand& command) {
-  return with_streams({command.frame, command.native_code, command.outside_files});
+  return {command.frame, command.native_code, command.outside_files, {}, program_environment()};
 }
 
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
                              TimeLedger& times) {
   LoadedScene scene;
-  scene.description = timed(times.load, [&] { return load_and_check_outputs(output_files(command), load); });
+  scene.description = timed(times.load, load);
   scene.flat = timed(times.compile_scene, [&] {
     trace_halo(command, scene.description, setup);
     return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)
