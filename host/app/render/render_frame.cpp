@@ -21,12 +21,12 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "device/energy.h"
-#include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/frame/frame_loop.h"
+#include "render/frame/local_worker.h"
 #include "render/plan/passes.h"
 #include "render/plan/tiles.h"
 #include "scene/load.h"
@@ -90,11 +90,11 @@ std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const Loaded
   RenderCommand command = of_frame;
   command.moment = scene.moment;
   if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat, setup.workers);
-  const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
+  if (!command.isolate) return plan_local_workers(scene.flat, setup.devices);
+  const std::uint64_t hash = hash_scene(*scene.flat);
   std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : setup.devices)
-    plans.push_back(command.isolate ? plan_isolated(command, device, hash, setup.workers)
-                                    : plan_local(scene.flat, device));
+    plans.push_back(plan_isolated(command, device, hash, setup.workers));
   return plans;
 }
 
