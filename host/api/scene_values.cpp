@@ -4,7 +4,7 @@
 
 #include "api/impl.h"
 #include "base/json_text.h"
-#include "scene/kinds.h"
+#include "scene/json/schema.h"
 
 namespace sundog {
 inline namespace v0 {
@@ -44,14 +44,17 @@ void place(json& document, json object, const Placement& placement) {
 
 json light_json(const Light& light) {
   json value{{"type", light.type}, {"color", light.color}, {"intensity", light.intensity}};
-  const auto facts = std::ranges::find(sundog::light_types, light.type, &sundog::LightTypeFacts::name);
-  if (facts == sundog::light_types.end()) return value;  // the scene reader reports the unknown type
-  if (facts->placed) value["position"] = light.position;
-  if (facts->aimed) value["direction"] = light.direction;
-  if (facts->has_extent()) value["samples"] = light.samples;
-  if (light.type == "spot") value["outer_angle"] = light.angle;
-  if (light.type == "rectangle") value["size"] = light.size;
-  if (light.type == "disk" || light.type == "sphere") value["radius"] = light.radius;
+  const SchemaRule* rule = schema_rule(light.type + "_light");
+  if (!rule) return value;  // the scene reader reports the unknown type
+  const auto put = [&](const char* key, const auto& member) {
+    if (rule->keys.contains(key)) value[key] = member;
+  };
+  put("position", light.position);
+  put("direction", light.direction);
+  put("samples", light.samples);
+  put("outer_angle", light.angle);
+  put("size", light.size);
+  put("radius", light.radius);
   for (const auto& [key, number] : light.more) value[key] = number;
   return value;
 }

@@ -137,15 +137,16 @@ bool is_pocl(const DeviceInfo& device) { return device.platform_name == "Portabl
 
 DriverFolder::DriverFolder(const HostEnvironment& environment) noexcept : process_(::getpid()) {
   try {
-    if (environment.driver("POCL_CACHE_DIR").empty()) own_ = make_folder(environment);
+    if (environment.driver("POCL_CACHE_DIR").empty()) {
+      ::unsetenv("POCL_CACHE_DIR");  // PoCL aborts if it is empty
+      own_ = make_folder(environment);
+    }
     if (!own_.empty()) set_variable("POCL_CACHE_DIR", own_);
     const bool temporary = fs::path(own_).filename().string().starts_with(temporary_name);
     if (temporary) set_variable("MESA_SHADER_CACHE_DIR", own_);  // keep the user's
   } catch (const std::exception&) {
     // PoCL's own folder works too, while it is writable and undamaged.
   }
-  // PoCL aborts if POCL_CACHE_DIR is empty.
-  if (const char* left = std::getenv("POCL_CACHE_DIR"); left && !*left) ::unsetenv("POCL_CACHE_DIR");
 }
 
 void DriverFolder::remove() const noexcept {

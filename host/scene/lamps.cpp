@@ -1,5 +1,4 @@
-// Switches over the kinds of light: first the shapes of visible objects, then table rows, power and bounds,
-// finally the objects with their materials.
+// Kinds of light, one value each: the row in the lights table, power, bounds, and the object that rays meet.
 #include "scene/lamps.h"
 
 #include <fmt/format.h>
@@ -15,34 +14,15 @@
 namespace sundog {
 namespace {
 
-// Visible objects.
+constexpr double pi = std::numbers::pi;
 
-bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && !light.hidden; }
+double cosine(double degrees) { return std::cos(degrees * pi / 180); }
 
-/// The transform of an object with axis +y and its centre at the origin.
-dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
-  return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
-          glm::dvec4(-glm::normalize(axes.v), 0), glm::dvec4(middle, 1)};
+glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
+
+float luminance(const Light& row) {
+  return 0.2126f * row.color.x + 0.7152f * row.color.y + 0.0722f * row.color.z;
 }
-
-Shape lamp_shape(const LightDescription& light) {
-  switch (light.type) {
-    case LightType::sphere:
-      return SphereShape{light.radius};
-    case LightType::disk:
-      return DiskShape{light.radius, 0};
-    case LightType::rectangle:
-      return RectangleShape{light.size / 2.0};
-    case LightType::ambient:
-    case LightType::directional:
-    case LightType::point:
-    case LightType::spot:
-      break;
-  }
-  throw std::logic_error("a light without a shape that rays meet");
-}
-
-// Table rows.
 
 dvec3 unit_direction(const NamedLight& named) {
   const dvec3& direction = named.light.direction;
@@ -54,42 +34,126 @@ dvec3 unit_direction(const NamedLight& named) {
   return direction / length;
 }
 
-double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
-
-void pack_flat(const NamedLight& named, const LampAxes& axes, double area, Light& packed) {
+/// Packs a flat light, whose area is `part` of the parallelogram of its axes.
+LampAxes pack_flat(const NamedLight& named, double part, Light& row) {
   unit_direction(named);
-  packed.direction = pack(axes.normal, area);
-  packed.edge_u = pack(axes.u, glm::length(axes.u));
-  packed.edge_v = pack(axes.v, glm::length(axes.v));
-}
-
-void pack_rectangle(const NamedLight& named, const dvec3& origin, Light& packed) {
   const LampAxes axes = lamp_axes(named.light);
-  pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)), packed);
-  packed.position = pack(named.light.position - (axes.u + axes.v) / 2.0 - origin);
+  row.direction = pack(axes.normal, glm::length(glm::cross(axes.u, axes.v)) * part);
+  row.edge_u = pack(axes.u, glm::length(axes.u));
+  row.edge_v = pack(axes.v, glm::length(axes.v));
+  return axes;
 }
 
-void pack_disk(const NamedLight& named, Light& packed) {
-  const LampAxes axes = lamp_axes(named.light);
-  pack_flat(named, axes, glm::length(glm::cross(axes.u, axes.v)) * std::numbers::pi, packed);
+LampBounds flat_bounds(const Light& row, const glm::vec3& lower, const glm::vec3& upper) {
+  return {xyz(row.position) + lower, xyz(row.position) + upper, row.direction.w,
+          luminance(row) * row.direction.w};
 }
 
-/// Packs a sun of the given angular diameter with the directional light's irradiance: a surface facing it
+/// The code of one kind. A light without an extent has neither bounds nor a shape.
+struct Kind {
+  /// Adds to the row what is not common to all kinds.
+  void (*pack)(const NamedLight& named, const dvec3& origin, Light& row);
+  double (*power)(const LightDescription& light) = nullptr;  // power_of_intensity()
+  dvec2 (*axes)(const LightDescription& light) = nullptr;    // lengths of lamp_axes()
+  LampBounds (*bounds)(const Light& row) = nullptr;
+  Shape (*shape)(const LightDescription& light) = nullptr;  // what rays meet, with the axis +y
+};
+
+/// Packs a sun of the given angular diameter with the directional light's irradiance: a surface that faces it
 /// sees a projected solid angle of pi sin^2 of half the angle.
-void pack_sun(const LightDescription& light, Light& packed) {
-  const double half = light.angle * std::numbers::pi / 360, sine = std::sin(half);
+void pack_sun(const LightDescription& light, Light& row) {
+  const double half = light.angle * pi / 360, sine = std::sin(half);
   const double cap = 2 * std::sin(half / 2) * std::sin(half / 2);
-  packed.kind = LIGHT_SUN;
-  packed.color = pack(light.color * light.intensity / (sine * sine));
-  packed.direction.w = static_cast<float>(light.hidden ? -cap : cap);
-  packed.position.w = light.visible ? 0.0f : 1.0f;
+  row.kind = LIGHT_SUN;
+  row.color = pack(light.color * light.intensity / (sine * sine));
+  row.direction.w = static_cast<float>(light.hidden ? -cap : cap);
+  row.position.w = light.visible ? 0.0f : 1.0f;
+}
+void pack_directional(const NamedLight& named, const dvec3&, Light& row) {
+  row.direction = pack(unit_direction(named));
+  if (named.light.angle > 0) pack_sun(named.light, row);
+}
+constexpr Kind directional_light{.pack = pack_directional};
+
+void pack_point(const NamedLight& named, const dvec3&, Light& row) {
+  if (named.light.range > 0) row.edge_v.x = static_cast<float>(1 / named.light.range);
+}
+constexpr Kind point_light{.pack = pack_point, .power = [](const LightDescription&) { return 4 * pi * pi; }};
+
+void pack_spot(const NamedLight& named, const dvec3& origin, Light& row) {
+  const LightDescription& light = named.light;
+  row.direction = pack(unit_direction(named), cosine(light.outer_angle));
+  row.edge_u.z = static_cast<float>(cosine(light.inner_angle));
+  row.edge_u.x = light.square_edge ? 1.0f : 3.0f;
+  row.edge_u.y = light.square_edge ? 0.0f : 2.0f;
+  pack_point(named, origin, row);
+}
+/// Over the cosine, the soft edge has the mean 1/2, its square 1/3.
+double spot_power(const LightDescription& light) {
+  const double outer = cosine(light.outer_angle), inner = cosine(light.inner_angle);
+  return 2 * pi * pi * (1 - inner + (inner - outer) * (light.square_edge ? 1.0 / 3 : 0.5));
+}
+constexpr Kind spot_light{.pack = pack_spot, .power = spot_power};
+
+void pack_rectangle(const NamedLight& named, const dvec3& origin, Light& row) {
+  const LampAxes axes = pack_flat(named, 1, row);
+  row.position = pack(named.light.position - (axes.u + axes.v) / 2.0 - origin);
+}
+LampBounds rectangle_bounds(const Light& row) {
+  const glm::vec3 u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
+  return flat_bounds(row, glm::min(u, none) + glm::min(v, none), glm::max(u, none) + glm::max(v, none));
+}
+constexpr Kind rectangle_light{
+    .pack = pack_rectangle,
+    .power = [](const LightDescription& light) { return pi * light.size.x * light.size.y; },
+    .axes = [](const LightDescription& light) { return light.size; },
+    .bounds = rectangle_bounds,
+    .shape = [](const LightDescription& light) -> Shape { return RectangleShape{light.size / 2.0}; }};
+
+LampBounds disk_bounds(const Light& row) {
+  const glm::vec3 half = glm::abs(xyz(row.edge_u)) + glm::abs(xyz(row.edge_v));
+  return flat_bounds(row, -half, half);
+}
+constexpr Kind disk_light{
+    .pack = [](const NamedLight& named, const dvec3&, Light& row) { pack_flat(named, pi, row); },
+    .power = [](const LightDescription& light) { return pi * pi * light.radius * light.radius; },
+    .axes = [](const LightDescription& light) { return dvec2(light.radius); },
+    .bounds = disk_bounds,
+    .shape = [](const LightDescription& light) -> Shape { return DiskShape{light.radius, 0}; }};
+
+void pack_sphere(const NamedLight& named, const dvec3&, Light& row) {
+  row.edge_u.w = static_cast<float>(named.light.radius);
+}
+LampBounds sphere_bounds(const Light& row) {
+  const float radius = row.edge_u.w;
+  const glm::vec3 middle = xyz(row.position);
+  return {middle - radius, middle + radius, 4 * pi * double(radius) * double(radius),
+          luminance(row) * 4 * static_cast<float>(pi) * radius * radius};
+}
+constexpr Kind sphere_light{
+    .pack = pack_sphere,
+    .power = [](const LightDescription& light) { return 4 * pi * pi * light.radius * light.radius; },
+    .bounds = sphere_bounds,
+    .shape = [](const LightDescription& light) -> Shape { return SphereShape{light.radius}; }};
+
+#define KIND_OF_LIGHT_ROW(constant, name, placed, aimed, extent) name##_light,
+/// By LIGHT_* constant.
+constexpr std::array kinds{LIGHTS(KIND_OF_LIGHT_ROW)};
+#undef KIND_OF_LIGHT_ROW
+
+/// Throws std::logic_error for an ambient light, which has no row in the table.
+std::size_t row_kind(const LightDescription& light) {
+  if (light.type == LightType::ambient) throw std::logic_error("an ambient light has no place and no power");
+  return static_cast<std::size_t>(light.type) - 1;
 }
 
-void pack_range(const LightDescription& light, Light& packed) {
-  if (light.range > 0) packed.edge_v.x = static_cast<float>(1 / light.range);
-}
+bool is_met(const LightDescription& light) { return facts_of(light.type).can_be_met() && !light.hidden; }
 
-glm::vec3 xyz(const float4& v) { return {v.x, v.y, v.z}; }
+/// The transform of an object with axis +y and its centre at the origin.
+dmat4 placed_along(const LampAxes& axes, const dvec3& middle) {
+  return {glm::dvec4(glm::normalize(axes.u), 0), glm::dvec4(axes.normal, 0),
+          glm::dvec4(-glm::normalize(axes.v), 0), glm::dvec4(middle, 1)};
+}
 
 }  // namespace
 
@@ -101,101 +165,40 @@ LampAxes lamp_axes(const LightDescription& light) {
   if (glm::length(side) < 1e-6 * glm::length(light.up)) side = glm::cross(dvec3(0, 0, 1), axes.normal);
   if (glm::length(side) < 1e-6) side = glm::cross(dvec3(1, 0, 0), axes.normal);
   side = glm::normalize(side);
-  const bool round = light.type == LightType::disk;
-  axes.u = side * (round ? light.radius : light.size.x);
-  axes.v = glm::cross(axes.normal, side) * (round ? light.radius : light.size.y);
+  const dvec2 lengths = kinds.at(row_kind(light)).axes(light);
+  axes.u = side * lengths.x;
+  axes.v = glm::cross(axes.normal, side) * lengths.y;
   return axes;
 }
 
 double power_of_intensity(const LightDescription& light) {
-  constexpr double pi = std::numbers::pi;
-  const double outer = cosine(light.outer_angle), inner = cosine(light.inner_angle);
-  switch (light.type) {
-    case LightType::point:
-      return 4 * pi * pi;
-    case LightType::spot:  // over the cosine, the soft edge has the mean 1/2, its square 1/3
-      return 2 * pi * pi * (1 - inner + (inner - outer) * (light.square_edge ? 1.0 / 3 : 0.5));
-    case LightType::rectangle:
-      return pi * light.size.x * light.size.y;
-    case LightType::disk:
-      return pi * pi * light.radius * light.radius;
-    case LightType::sphere:
-      return 4 * pi * pi * light.radius * light.radius;
-    case LightType::ambient:
-    case LightType::directional:
-      break;
-  }
-  throw std::logic_error("a light from everywhere has no power");
+  const auto power = kinds.at(row_kind(light)).power;
+  if (!power) throw std::logic_error("a light from everywhere has no power");
+  return power(light);
 }
 
 Light pack_light(const NamedLight& named, const dvec3& origin) {
   const LightDescription& light = named.light;
-  Light packed{};
-  packed.position = pack(light.position - origin);
-  packed.color = pack(light.color * light.intensity);
-  packed.falloff_constant = static_cast<float>(light.falloff.x);
-  packed.falloff_linear = static_cast<float>(light.falloff.y);
-  packed.falloff_quadratic = static_cast<float>(light.falloff.z);
-  switch (light.type) {
-    case LightType::ambient:
-      throw std::logic_error("an ambient light is no entry of the table of lights");
-    case LightType::point:
-      packed.kind = LIGHT_POINT;
-      pack_range(light, packed);
-      break;
-    case LightType::directional:
-      packed.kind = LIGHT_DIRECTIONAL;
-      packed.direction = pack(unit_direction(named));
-      if (light.angle > 0) pack_sun(light, packed);
-      break;
-    case LightType::spot:
-      packed.kind = LIGHT_SPOT;
-      packed.direction = pack(unit_direction(named), cosine(light.outer_angle));
-      packed.edge_u.z = static_cast<float>(cosine(light.inner_angle));
-      packed.edge_u.x = light.square_edge ? 1.0f : 3.0f;
-      packed.edge_u.y = light.square_edge ? 0.0f : 2.0f;
-      pack_range(light, packed);
-      break;
-    case LightType::rectangle:
-      packed.kind = LIGHT_RECTANGLE;
-      pack_rectangle(named, origin, packed);
-      break;
-    case LightType::disk:
-      packed.kind = LIGHT_DISK;
-      pack_disk(named, packed);
-      break;
-    case LightType::sphere:
-      packed.kind = LIGHT_SPHERE;
-      packed.edge_u.w = static_cast<float>(light.radius);
-      break;
-  }
-  if (facts_of(light.type).has_extent()) packed.position.w = is_met(light) ? 0.0f : 1.0f;
-  return packed;
+  Light row{};
+  row.kind = static_cast<u32>(row_kind(light));
+  row.position = pack(light.position - origin);
+  row.color = pack(light.color * light.intensity);
+  row.falloff_constant = static_cast<float>(light.falloff.x);
+  row.falloff_linear = static_cast<float>(light.falloff.y);
+  row.falloff_quadratic = static_cast<float>(light.falloff.z);
+  kinds.at(row.kind).pack(named, origin, row);
+  if (facts_of(light.type).has_extent()) row.position.w = is_met(light) ? 0.0f : 1.0f;
+  return row;
 }
 
-LampBounds lamp_bounds(const Light& light) {
-  const glm::vec3 p = xyz(light.position), u = xyz(light.edge_u), v = xyz(light.edge_v), none(0);
-  const float luminance = 0.2126f * light.color.x + 0.7152f * light.color.y + 0.0722f * light.color.z;
-  const float radius = light.edge_u.w, area = light.direction.w, power = luminance * area;
-  switch (static_cast<LightKind>(light.kind)) {
-    case LIGHT_SPHERE:
-      return {p - radius, p + radius, 4 * std::numbers::pi * double(radius) * double(radius),
-              luminance * 4 * std::numbers::pi_v<float> * radius * radius};
-    case LIGHT_TRIANGLE:
-      return {p + glm::min(none, glm::min(u, v)), p + glm::max(none, glm::max(u, v)), area, power};
-    case LIGHT_DISK:
-      return {p - glm::abs(u) - glm::abs(v), p + glm::abs(u) + glm::abs(v), area, power};
-    case LIGHT_RECTANGLE:
-      return {p + glm::min(u, none) + glm::min(v, none), p + glm::max(u, none) + glm::max(v, none), area,
-              power};
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_POINT:
-    case LIGHT_SPOT:
-    case LIGHT_SUN:
-    case LIGHT_ENVIRONMENT:
-      break;
+LampBounds lamp_bounds(const Light& row) {
+  if (row.kind == LIGHT_TRIANGLE) {
+    const glm::vec3 u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
+    return flat_bounds(row, glm::min(none, glm::min(u, v)), glm::max(none, glm::max(u, v)));
   }
-  throw std::logic_error("a light without an extent has no bounds");
+  if (row.kind >= kinds.size() || !kinds.at(row.kind).bounds)
+    throw std::logic_error("a light without an extent has no bounds");
+  return kinds.at(row.kind).bounds(row);
 }
 
 void add_lamps(SceneDescription& scene) {
@@ -209,7 +212,7 @@ void add_lamps(SceneDescription& scene) {
     material.shadow_opaque = true;
     material.off_camera = !light.visible;
     material.group = light.group;
-    const Shape shape = lamp_shape(light);
+    const Shape shape = kinds.at(row_kind(light)).shape(light);
     const bool aimed = facts_of(light.type).aimed;
     const dmat4 place = aimed ? placed_along(lamp_axes(light), light.position)
                               : dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0),

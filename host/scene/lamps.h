@@ -36,7 +36,7 @@ struct LampBounds {
   double area;
   float power;
 };
-LampBounds lamp_bounds(const Light& light);
+LampBounds lamp_bounds(const Light& row);
 
 /// Adds an object with an emissive material for each visible area light.
 void add_lamps(SceneDescription& scene);

@@ -109,11 +109,7 @@ const json* standard_at(const json& document, std::span<const std::string> token
     if (of->type == Type::array) {
       rule = of->items;
     } else {
-      const json* type = place ? child_of(*place, "type") : nullptr;
-      if (type && type->is_string())
-        if (const auto typed = of->of_type.find(type->get_ref<const std::string&>());
-            typed != of->of_type.end())
-          of = typed->second;
+      if (place) of = &of->typed(*place);
       const auto key = of->keys.find(tokens[i]);
       if (i + 1 == tokens.size()) return key == of->keys.end() ? nullptr : key->second.standard;
       rule = key == of->keys.end() ? of->others : key->second.rule;

@@ -19,6 +19,13 @@ constexpr unsigned any_count = std::numeric_limits<unsigned>::max();
 constexpr std::array<std::string_view, 7> type_names{"",       "object",  "array",  "string",
                                                      "number", "integer", "boolean"};
 
+/// The value of a keyword; null if the node lacks it.
+const json& member(const json& node, const char* keyword) {
+  static const json none;
+  const auto found = node.find(keyword);
+  return found == node.end() ? none : *found;
+}
+
 /// The schema's text as rules, which may form cycles.
 class Schema {
  public:
@@ -59,12 +66,22 @@ class Schema {
     if (!rule.names.empty()) rule.type = Type::string;
     if (node.contains("not") && node["not"].contains("enum")) rule.barred = &node["not"]["enum"];
     if (node.contains("pattern")) rule.pattern = node["pattern"].get_ref<const std::string&>();
-    if (node.contains("anyOf") && !node.contains("properties"))
-      for (const json& option : node["anyOf"]) rule.options.push_back(compile(option));
+    if (node.contains("anyOf") && !node.contains("properties")) compile_options(node["anyOf"], rule);
     rule.range = range_of(node);
     compile_array(node, rule);
     compile_object(node, rule);
     return &rule;
+  }
+
+  /// Adds the options; those that are names alone as one list of names.
+  void compile_options(const json& options, SchemaRule& rule) {
+    for (const json& option : options) rule.options.push_back(compile(option));
+    if (std::ranges::any_of(rule.options, [](const SchemaRule* option) { return option->names.empty(); }))
+      return;
+    for (const SchemaRule* option : rule.options)
+      rule.names.insert(rule.names.end(), option->names.begin(), option->names.end());
+    rule.options.clear();
+    rule.type = Type::string;
   }
 
   static Range range_of(const json& node) {
@@ -82,41 +99,63 @@ class Schema {
     rule.most_items = node.value("maxItems", any_count);
   }
 
+  /// Compiles an object's keys, and those of each "type" if that chooses among them.
   void compile_object(const json& node, SchemaRule& rule) {
-    if (node.contains("additionalProperties") && node["additionalProperties"].is_object())
-      rule.others = compile(node["additionalProperties"]);
-    compile_together(node, rule);
-    if (const auto types = node.find("allOf"); types != node.end())
-      for (const json& one : *types)
-        rule.of_type[one["if"]["properties"]["type"]["const"].get_ref<const std::string&>()] =
-            compile(one["then"]);
-    const json required = node.value("required", json::array());
-    if (node.contains("properties"))
-      for (const auto& [name, of] : node["properties"].items()) {
-        SchemaRule::Key& key = rule.keys[name];
-        key.rule = compile(of);
-        key.standard = annotation(of, "default");
-        key.required = std::find(required.begin(), required.end(), name) != required.end();
-        if (const json* text = annotation(of, "description"))
-          key.description = text->get_ref<const std::string&>();
+    const bool depends = take_in(node, "", rule);
+    const auto types = rule.keys.find("type");
+    if (!depends || types == rule.keys.end()) return;
+    for (const std::string_view type : types->second.rule->names) {
+      SchemaRule& typed = rules_.emplace_back();
+      typed.type = Type::object;
+      take_in(node, type, typed);
+      rule.of_type[type] = &typed;
+    }
+  }
+
+  /// Adds a node's keys and those of the nodes that its "allOf" names, some of them only for a `type`. The
+  /// first rule for a key counts. Returns whether keys depend on the type.
+  bool take_in(const json& node, std::string_view type, SchemaRule& rule) {
+    add_keys(node, rule);
+    bool depends = node.contains("$ref") && take_in(target(node), type, rule);
+    for (const json& part : member(node, "allOf")) {
+      const json& condition = member(part, "if");
+      if (condition.is_null()) {
+        depends |= take_in(part, type, rule);
+      } else {
+        depends = true;
+        const auto& types = compile(condition["properties"]["type"])->names;
+        if (std::ranges::find(types, type) != types.end()) take_in(part["then"], type, rule);
       }
+    }
+    return depends;
+  }
+
+  void add_keys(const json& node, SchemaRule& rule) {
+    if (const json& others = member(node, "additionalProperties"); others.is_object())
+      rule.others = compile(others);
+    compile_together(node, rule);
+    for (const auto& [name, of] : member(node, "properties").items()) {
+      SchemaRule::Key& key = rule.keys[name];
+      if (key.rule) continue;
+      key.rule = compile(of);
+      key.standard = annotation(of, "default");
+      if (const json* text = annotation(of, "description"))
+        key.description = text->get_ref<const std::string&>();
+    }
+    for (const json& name : member(node, "required"))
+      rule.keys[name.get_ref<const std::string&>()].required = true;
   }
 
   /// Compiles rules about several keys: "not" any of some pairs (with no "required" beside),
   /// "dependentRequired", and "oneOf" several lists of keys.
   static void compile_together(const json& node, SchemaRule& rule) {
-    static const json none;
-    const auto part = [](const json& of, const char* keyword) -> const json& {
-      const auto found = of.find(keyword);
-      return found == of.end() ? none : *found;
-    };
     const auto text = [](const json& key) -> std::string_view { return key.get_ref<const std::string&>(); };
-    if (const json& no = part(node, "not"); !no.contains("required"))
-      for (const json& pair : part(no, "anyOf"))
+    if (const json& no = member(node, "not"); !no.contains("required"))
+      for (const json& pair : member(no, "anyOf"))
         rule.clashes.emplace_back(text(pair["required"][0]), text(pair["required"][1]));
-    for (const auto& [key, needed] : part(node, "dependentRequired").items())
+    for (const auto& [key, needed] : member(node, "dependentRequired").items())
       for (const json& other : needed) rule.needs.emplace_back(key, text(other));
-    const json& ways = part(node, "oneOf");
+    const json& ways = member(node, "oneOf");
     for (const json& way : ways) {
       const json& keys = way["required"];
       if (keys.size() == 1) rule.one_of.push_back(text(keys[0]));
@@ -150,6 +189,13 @@ const SchemaRule* SchemaRule::as(Type wanted) const {
   for (const SchemaRule* option : options)
     if (const SchemaRule* found = option->as(wanted)) return found;
   return nullptr;
+}
+
+const SchemaRule& SchemaRule::typed(const json& object) const {
+  const auto name = object.find("type");
+  if (name == object.end() || !name->is_string()) return *this;
+  const auto found = of_type.find(name->get_ref<const std::string&>());
+  return found == of_type.end() ? *this : *found->second;
 }
 
 std::string SchemaRule::count() const {

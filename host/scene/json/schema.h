@@ -47,7 +47,7 @@ struct SchemaRule {
     bool required = false;
   };
   std::map<std::string_view, Key> keys;                   // for objects
-  std::map<std::string_view, const SchemaRule*> of_type;  // an object's rule by the value of its key "type"
+  std::map<std::string_view, const SchemaRule*> of_type;  // for objects whose keys depend on their "type"
   std::vector<const SchemaRule*> options;
   using KeyPair = std::pair<std::string_view, std::string_view>;
   std::vector<KeyPair> clashes;          // keys that exclude each other
@@ -55,6 +55,8 @@ struct SchemaRule {
   std::vector<std::string_view> one_of;  // keys of single-key alternatives, of which exactly one is given
 
   bool bars(const nlohmann::json& value) const;
+  /// The rule for an object of this "type"; this rule if its keys do not depend on that.
+  const SchemaRule& typed(const nlohmann::json& object) const;
   /// This rule, or its first option, for values of this type; nullptr: none.
   const SchemaRule* as(Type wanted) const;
   /// Completes "wanted "; with or without a number's limits.

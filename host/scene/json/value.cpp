@@ -209,12 +209,15 @@ std::string JsonValue::type() const {
 JsonObject::JsonObject(const JsonValue& value, std::string_view kind)
     : value_(value), kind_(kind), rule_(schema_rule(kind)) {
   if (!value.json().is_object()) value.wanted_type("an object");
-  if (rule_) {
-    asked_.reserve(rule_->keys.size());
-    check_together();
-    for (const auto& [one, other] : rule_->clashes) asked_.insert(asked_.end(), {one, other});
-  }
-  if (knows("type") && rule_->keys.at("type").rule->names.size() == 1) find("type");
+  if (!rule_) return;
+  const SchemaRule* typed = &rule_->typed(value.json());
+  const bool by_type = typed != rule_;
+  if (by_type) kind_.append("/").append(value.json()["type"].get_ref<const std::string&>());
+  rule_ = typed;
+  asked_.reserve(rule_->keys.size());
+  check_together();
+  for (const auto& [one, other] : rule_->clashes) asked_.insert(asked_.end(), {one, other});
+  if (by_type || (knows("type") && rule_->keys.at("type").rule->names.size() == 1)) find("type");
 }
 
 const SchemaRule::Key* JsonObject::ask(std::string_view key) {

@@ -120,7 +120,7 @@ class JsonValue {
   std::string type() const;
 
   /// Passes this value, which must be an object, to `read(JsonObject&)`, then rejects unread keys. `kind` is
-  /// the object's name in the JSON Schema's $defs.
+  /// the object's name in the JSON Schema's $defs; its "type" may choose among the keys there.
   template <class Read>
   auto object(std::string_view kind, Read read) const;
 
@@ -177,8 +177,8 @@ class JsonItems {
   JsonValue array_;
 };
 
-/// A JSON object whose keys must all be read; a "type" with a single name counts as read. Created by
-/// JsonValue::object().
+/// A JSON object whose keys must all be read; a "type" by which the schema chooses its keys counts as read.
+/// Created by JsonValue::object().
 class JsonObject {
  public:
   const JsonValue& value() const { return value_; }

@@ -132,8 +132,8 @@ Mesh read_fill(JsonObject& object, const JsonValue& meshes, bool checks) {
   const bool ice = recipe.type() == "ice_block";
   if (ice && meniscus > 0) object.at("meniscus").fail("only the liquid in a lathe has a meniscus");
   if (checks) return {};
-  if (!ice) return make_lathe_liquid(recipe.object("generate_lathe", read_lathe), to.number(), meniscus);
-  const IceBlock block = recipe.object("generate_ice_block", [](JsonObject& vessel) {
+  if (!ice) return make_lathe_liquid(recipe.object("generate", read_lathe), to.number(), meniscus);
+  const IceBlock block = recipe.object("generate", [](JsonObject& vessel) {
     for (const char* key : {"part", "level", "wall"}) vessel.check(key);
     return read_block(vessel);
   });
@@ -142,15 +142,14 @@ Mesh read_fill(JsonObject& object, const JsonValue& meshes, bool checks) {
 
 /// The exact solid of a lathe's recipe, or of a recipe that fills a lathe.
 ExactLathe follow_exactly(const JsonValue& recipe, const JsonValue& meshes) {
-  if (recipe.type() == "lathe") return exact_lathe(recipe.object("generate_lathe", read_lathe));
-  return recipe.object("generate_fill", [&](JsonObject& object) {
+  if (recipe.type() == "lathe") return exact_lathe(recipe.object("generate", read_lathe));
+  return recipe.object("generate", [&](JsonObject& object) {
     const JsonValue vessel = find_vessel(object.at("vessel"), meshes);
     if (vessel.type() != "lathe")
       object.at("vessel").fail("only what fills a lathe is a surface of revolution");
     double meniscus = 0;
     object.read("meniscus", meniscus);
-    return exact_lathe_liquid(vessel.object("generate_lathe", read_lathe), object.at("to").number(),
-                              meniscus);
+    return exact_lathe_liquid(vessel.object("generate", read_lathe), object.at("to").number(), meniscus);
   });
 }
 
@@ -164,7 +163,7 @@ Mesh follow(const JsonValue& recipe, const JsonValue& meshes, const ReadPicture&
   const bool checks = !read_picture;
   const std::string type = recipe.type();
   try {
-    return recipe.object("generate_" + type, [&](JsonObject& object) {
+    return recipe.object("generate", [&](JsonObject& object) {
       if (type == "lathe") return made(read_lathe(object), make_lathe, checks);
       if (type == "extrusion") return made(read_extrusion(object), make_extrusion, checks);
       if (type == "sweep") return made(read_sweep(object), make_sweep, checks);

@@ -31,7 +31,7 @@ void read_halo(JsonObject& object, HaloDescription& halo) {
 EnvironmentDescription read_environment(const JsonValue& value,
                                         const std::function<Image(const JsonValue&)>& read_picture) {
   const std::string type = value.type();
-  return value.object(type + "_environment", [&](JsonObject& object) {
+  return value.object("environment", [&](JsonObject& object) {
     EnvironmentDescription e;
     e.type = enumerator_named<EnvironmentType>(type);
     read_members(object, e, {"type", "up"});

@@ -236,7 +236,7 @@ FormulaLeaf read_hybrid(JsonObject& object) {
   FormulaLeaf all{};
   for (const JsonValue& item : object.at("steps").items("formulas")) {
     const std::string type = item.type();
-    item.object(type + "_step", [&](JsonObject& step) {
+    item.object("step", [&](JsonObject& step) {
       FormulaDefinition d = type == "formula" ? read_definition(step) : read_listed(step);
       if (d.kind == FormulaKind::direct)
         item.fail(fmt::format("{} is no iteration and cannot be a step", d.name));

@@ -72,7 +72,7 @@ SdfNode read_child(const JsonValue& value, int depth, std::array<double, 6>* bou
   if (depth > deepest) value.fail(fmt::format("fields nested deeper than {} levels", deepest));
   const std::string type = value.type();
   const bool solid = std::find(types.begin(), types.end(), type) == types.end();
-  return value.object(solid ? type : type + "_field", [&](JsonObject& object) {
+  return value.object("field", [&](JsonObject& object) {
     return solid ? read_solid_field(object, type) : read_node(object, type, bounds, depth);
   });
 }

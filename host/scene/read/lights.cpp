@@ -56,7 +56,7 @@ void read_power(JsonObject& object, double unit, LightDescription& light) {
 
 LightDescription read_light(const JsonValue& value, double unit) {
   const std::string type = value.type();
-  return value.object(type + "_light", [&](JsonObject& object) {
+  return value.object("light", [&](JsonObject& object) {
     LightDescription light;
     light.type = std::ranges::find(light_types, type, &LightTypeFacts::name)->value;
     object.check("name");  // used only by pointers

@@ -164,10 +164,6 @@ class SceneReader {
     }
   }
 
-  static bool is_one_of(const std::string& type, Names names) {
-    return std::find(names.begin(), names.end(), type) != names.end();
-  }
-
   int add_field(JsonObject& object, const std::string& type) {
     scene_.fields.push_back(read_field(object, type));
     return static_cast<int>(scene_.fields.size()) - 1;
@@ -176,8 +172,7 @@ class SceneReader {
   void read_object(const JsonValue& value, const Placement& parent) {
     const std::string type = value.type(), &wanted = scene_.camera.lens.focus_on;
     const std::size_t first = scene_.objects.size();
-    const bool solid = is_one_of(type, solid_types()), field = is_one_of(type, field_types());
-    value.object(solid || field ? type : type + "_object", [&](JsonObject& object) {
+    value.object("object", [&](JsonObject& object) {
       const Placement placement = read_placement(object, parent);
       if (type == "group") {
         for (const JsonValue& item : object.at("objects").items("objects")) read_object(item, placement);
@@ -193,7 +188,7 @@ class SceneReader {
         library_.place(library_.load(object, file, find_model(file), model_options(), conserve), placement);
       } else if (type == "field") {
         place_field(object, find_name(object.at("field"), fields_, "field"), placement);
-      } else if (field) {
+      } else if (std::ranges::find(field_types(), type) != field_types().end()) {
         place_field(object, add_field(object, type), placement);
       } else {
         place_solid(object, type, placement);

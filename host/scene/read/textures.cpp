@@ -58,7 +58,7 @@ void read_wraps(JsonObject& object, TextureDescription& texture) {
 
 void TextureLibrary::read(const JsonValue& value, const std::string& name) {
   const std::string type = value.type();
-  Entry entry = value.object(type + "_texture", [&](JsonObject& object) {
+  Entry entry = value.object("texture", [&](JsonObject& object) {
     if (type == "image") return read_image_texture(object);
     if (type == "vertex_color") return read_vertex_color(object);
     if (type == "ramp") return read_ramp(object);

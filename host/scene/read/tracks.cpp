@@ -115,7 +115,7 @@ void read_turn(JsonObject& object, Track& track) {
 Track read_track(const JsonValue& value) {
   using Kind = Track::Kind;
   const bool turns = value.type() == "rotate";
-  return value.object(turns ? "rotate_track" : "keyed_track", [&](JsonObject& object) {
+  return value.object("track", [&](JsonObject& object) {
     Track track;
     if (turns)
       track.kind = Kind::rotate;

@@ -110,8 +110,8 @@ NEVER_INLINE void follow_batch(const Scene* scene, const TileSamples* tile, Scen
 }
 
 // The camera's rays of the lanes of `lanes`, pixel i in lane i, with all that comes of them.
-static inline void trace_whitted(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes,
-                                 u32* counts) {
+static inline void follow_camera_rays(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes,
+                                      u32* counts) {
   RayStack stack;
   ShadowStack shadows;
   stack.count = shadows.count = 0;

@@ -62,8 +62,8 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
 }
 
 // The camera's ray in `rays`, with all that comes of it.
-static inline void trace_whitted(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes,
-                                 u32* counts) {
+static inline void follow_camera_rays(const Scene* scene, TileSamples* tile, SceneRays* rays, MASK lanes,
+                                      u32* counts) {
   RayStack stack;
   stack.count = 0;
   tile->stack = tile->shadows = &stack;

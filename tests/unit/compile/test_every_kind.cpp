@@ -65,17 +65,21 @@ TEST_CASE("the schema has each solid and each light, and scene files have it by 
   const auto has = [&](const char* place, const std::string& name, const std::string& definition) {
     INFO(place << ": " << name);
     CHECK(definitions.contains(definition));
-    CHECK(is_listed(definitions.at(place).at("properties").at("type").at("enum"), name));
     const json wanted = {{"if", {{"properties", {{"type", {{"const", name}}}}}}},
                          {"then", {{"$ref", "#/$defs/" + definition}}}};
     CHECK(is_listed(definitions.at(place).at("allOf"), wanted));
   };
+  json solids, lights;
   for (const Shape& solid : every_solid()) {
-    has("object", name_of(solid), name_of(solid));
-    has("field", name_of(solid), name_of(solid));
+    solids.push_back(name_of(solid));
+    has("solid", name_of(solid), name_of(solid));
   }
-  for (const LightTypeFacts& facts : light_types)
+  for (const LightTypeFacts& facts : light_types) {
+    lights.push_back(facts.name);
     has("light", std::string(facts.name), std::string(facts.name) + "_light");
+  }
+  CHECK(std::ranges::is_permutation(definitions.at("solid_type").at("enum"), solids));
+  CHECK(std::ranges::is_permutation(definitions.at("/light/properties/type/enum"_json_pointer), lights));
 }
 
 TEST_CASE("a solid as a field has its inside where the solid has it") {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -16,12 +17,12 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// A section of the page: its heading, a line under it, and the kinds ($defs) that it describes.
+/// A section of the page: its heading, a line under it, and the kinds ($defs) that it describes. A choice by
+/// "type" stands for its kinds.
 struct Group {
   std::string title, about;
   std::vector<std::string> kinds;
-  std::string model{};                // a kind whose `common` keys stand for those of all
-  std::vector<std::string> common{};  // keys that are described once,
+  std::vector<std::string> common{};  // kinds that all take in, described once,
   std::string common_title{};         // under this heading
   std::string choice{};               // a choice by "type" that is described here
 };
@@ -33,54 +34,57 @@ const std::vector<Group>& groups() {
        "",
        {"camera", "lens", "view", "image", "tone_map", "gradient", "render", "path", "guide", "adaptive",
         "subsample", "world", "fog"}},
-      {"Lights",
-       "An entry of `lights` has one of these types.",
-       {"ambient_light", "directional_light", "point_light", "spot_light", "rectangle_light", "disk_light",
-        "sphere_light", "falloff"}},
+      {"Lights", "An entry of `lights` has one of these types.", {"light", "falloff"}},
       {"Environment",
        "`environment` has one of these types.",
-       {"image_environment", "gradient_environment", "sky_environment", "halo_environment", "crystals", "sun",
-        "halo_sun"}},
+       {"environment", "crystals", "sun", "halo_sun"}},
       {"Media and materials",
        "",
        {"medium", "absorption", "material", "openpbr_material", "normal_map", "bump_map", "parallax_map",
         "displacement_map", "checker", "term", "specular_term", "ray_term"}},
       {"Textures",
        "An entry of `textures` has one of these types.",
-       {"preset_texture", "image_texture", "vertex_color_texture", "checker_texture", "stripes_texture",
-        "gradient_texture", "brick_texture", "noise_texture", "cells_texture", "marble_texture",
-        "wood_texture", "formula_texture", "ramp_texture", "ramp_stop", "product_texture"}},
-      {"Meshes",
-       "",
-       {"mesh", "generate_lathe", "generate_fill", "generate_extrusion", "generate_terrain", "generate_sweep",
-        "generate_ice_block", "generate_ice_cavity"}},
+       {"preset_texture", "texture", "ramp_stop"}},
+      {"Meshes", "", {"mesh", "generate", "generate_ice_cavity"}},
       {"Objects",
        "An entry of `objects` is one of these or a [distance field](#distance-fields).",
-       {"sphere", "plane", "box", "round_box", "cylinder", "cone", "disk", "rectangle", "torus", "lathe",
-        "mesh_object", "model_object", "field_object", "group_object", "scatter_object", "transform_step",
-        "rotate", "turns_by"},
-       "sphere",
-       {"name", "material", "transform", "moves_by", "turns_by", "grows_to"},
+       {"solid", "object", "transform_step", "rotate", "turns_by"},
+       {"placed", "moving"},
        "Every object"},
       {"Distance fields",
        "Each is an object, or stands inside another field, with only the keys that say which field it is.",
-       {"fractal", "formula", "hybrid", "union", "intersection", "difference", "moved", "repeat", "thicken",
-        "shell", "native", "fractal_step", "formula_step", "formula_parameter", "field_entry", "interval",
-        "ball", "coloring", "glow"},
-       "fractal",
-       {"interval", "ball", "detail", "least_threshold", "greatest_threshold", "step_limit", "coloring",
-        "occlusion", "soft_shadow", "glow"},
+       {"any_field", "step", "formula_parameter", "field_entry", "interval", "ball", "coloring", "glow"},
+       {"marched"},
        "Every field",
        "field"},
-      {"Animation",
-       "An entry of `animate` has one of these types.",
-       {"keyed_track", "rotate_track", "track_key", "track_handle"}}};
+      {"Animation", "An entry of `animate` has one of these types.", {"track", "track_key", "track_handle"}}};
   return all;
 }
 
+/// The value of a keyword; null if the node lacks it.
+const ordered_json& member(const ordered_json& node, const char* keyword) {
+  static const ordered_json none;
+  const auto found = node.find(keyword);
+  return found == node.end() ? none : *found;
+}
+
+/// An object's keys.
+struct Keys {
+  std::vector<std::pair<std::string, ordered_json>> rules;
+  std::set<std::string> required;
+
+  const ordered_json* find(const std::string& key) const {
+    const auto found = std::ranges::find(rules, key, [](const auto& rule) { return rule.first; });
+    return found == rules.end() ? nullptr : &found->second;
+  }
+};
+
 class Page {
  public:
-  explicit Page(const ordered_json& schema) : kinds_(schema.at("$defs")), words_(kinds_) {}
+  explicit Page(const ordered_json& schema) : kinds_(schema.at("$defs")), words_(kinds_) {
+    for (const auto& [name, kind] : kinds_.items())
+      if (has_keys(kind)) find_choices(kind, name);
+  }
 
   std::string text() {
     check_places();
@@ -96,25 +100,92 @@ class Page {
   }
 
  private:
+  /// How an object comes to be of a kind: by its "type" among those of another kind.
+  struct Choice {
+    std::string among, type;
+    bool alone;  // no other type leads to the kind
+  };
+
+  void find_choices(const ordered_json& node, const std::string& among) {
+    for (const ordered_json& part : member(node, "allOf")) {
+      if (!part.contains("if")) {
+        find_choices(words_.target(part), among);
+      } else {
+        const auto types = types_of(part);
+        choices_.try_emplace(kind_of(part), Choice{among, types.front(), types.size() == 1});
+      }
+    }
+  }
+
+  std::vector<std::string> types_of(const ordered_json& part) const {
+    return words_.names(part["if"]["properties"]["type"]);
+  }
+  static std::string kind_of(const ordered_json& part) {
+    return part["then"]["$ref"].get<std::string>().substr(std::string_view("#/$defs/").size());
+  }
+
+  /// The kinds of a group, without those that stand in tables for all.
+  std::vector<std::string> kinds_of(const Group& group) const {
+    const auto is_common = [&](const std::string& kind) {
+      return std::ranges::any_of(groups(), [&](const Group& other) {
+        return std::ranges::find(other.common, kind) != other.common.end();
+      });
+    };
+    std::vector<std::string> kinds;
+    for (const std::string& name : group.kinds) {
+      if (!is_choice(kinds_.at(name))) kinds.push_back(name);
+      for (const ordered_json& part : member(kinds_.at(name), "allOf"))
+        if (part.contains("if") && !is_common(kind_of(part))) kinds.push_back(kind_of(part));
+    }
+    return kinds;
+  }
+
+  static bool is_choice(const ordered_json& kind) {
+    return std::ranges::any_of(member(kind, "allOf"), [](const auto& part) { return part.contains("if"); });
+  }
+
   void check_places() const {
     std::set<std::string> placed;
-    for (const Group& group : groups()) placed.insert(group.kinds.begin(), group.kinds.end());
+    for (const Group& group : groups())
+      for (const auto& kinds : {group.common, kinds_of(group)}) placed.insert(kinds.begin(), kinds.end());
     for (const auto& [name, kind] : kinds_.items())
-      if (has_keys(kind) && !placed.contains(name) && !is_inner(name))
+      if (!placed.contains(name) && (choices_.contains(name) || (has_keys(kind) && !is_choice(kind))))
         throw std::runtime_error("$defs/" + name +
                                  " of the schema needs a section in tests/unit/docs/scene_reference.cpp");
   }
 
-  /// A field inside another one, described with the object of the same name, of which it must be a part.
-  bool is_inner(const std::string& name) const {
-    if (!name.ends_with("_field")) return false;
-    const std::string outer = name.substr(0, name.size() - 6);
-    if (!kinds_.contains(outer)) return false;
-    for (const auto& [key, rule] : kinds_[name]["properties"].items())
-      if (kinds_[outer]["properties"].value(key, ordered_json()) != rule)
-        throw std::runtime_error("$defs/" + name + " and $defs/" + outer + " of the schema differ in \"" +
-                                 key + "\"");
-    return true;
+  /// Adds the keys of a node, and of those that its "allOf" names for this type; the first rule for a key
+  /// counts.
+  void take_in(const ordered_json& node, const std::string& type, Keys& keys) const {
+    if (node.contains("$ref")) take_in(words_.target(node), type, keys);
+    for (const auto& [key, rule] : member(node, "properties").items())
+      if (!keys.find(key)) keys.rules.emplace_back(key, rule);
+    for (const ordered_json& key : member(node, "required")) keys.required.insert(key.get<std::string>());
+    for (const ordered_json& part : member(node, "allOf")) {
+      if (!part.contains("if")) {
+        take_in(part, type, keys);
+      } else if (const auto types = types_of(part); std::ranges::find(types, type) != types.end()) {
+        take_in(part["then"], type, keys);
+      }
+    }
+  }
+
+  /// All keys of a kind, its own first.
+  Keys keys_of(const std::string& name) const {
+    Keys keys;
+    take_in(kinds_.at(name), "", keys);
+    if (const auto found = choices_.find(name); found != choices_.end()) {
+      const auto& [among, type, alone] = found->second;
+      if (alone) keys.rules.emplace_back("type", ordered_json{{"const", type}});
+      take_in(kinds_.at(among), type, keys);
+    }
+    return keys;
+  }
+
+  Keys common_keys(const Group& group) const {
+    Keys keys;
+    for (const std::string& name : group.common) take_in(kinds_.at(name), "", keys);
+    return keys;
   }
 
   /// A bar would end the cell of a table.
@@ -124,49 +195,12 @@ class Page {
     return escaped;
   }
 
-  void write_table(const std::string& name, const std::vector<std::string>& keys) {
-    const ordered_json& kind = kinds_.at(name);
+  void write_table(const Keys& keys) {
     out_ += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
-    for (const std::string& key : keys) {
-      const ordered_json& rule = kind.at("properties").at(key);
+    for (const auto& [key, rule] : keys.rules)
       out_ += fmt::format("| `{}` | {} | {} | {} |\n", key, words_.type(rule),
-                          is_required(kind, key) ? "**required**" : words_.default_value(rule),
+                          keys.required.contains(key) ? "**required**" : words_.default_value(rule),
                           in_cell(words_.meaning(rule)));
-    }
-  }
-
-  /// The kind's keys without "type", and without those that stand in `group`'s table already.
-  std::vector<std::string> own_keys(const std::string& name) const {
-    std::vector<std::string> keys;
-    const ordered_json& kind = kinds_.at(name);
-    for (const auto& [key, rule] : kind.at("properties").items())
-      if (!(key == "type" && rule.contains("const")) && !is_of_base(name, key, rule) &&
-          (!is_common(key, rule) || is_required(kind, key)))
-        keys.push_back(key);
-    return keys;
-  }
-
-  /// The formula that a step is one of: "formula" for "formula_step".
-  std::string base_of(const std::string& name) const {
-    const std::string base = name.ends_with("_step") ? name.substr(0, name.size() - 5) : "";
-    return kinds_.contains(base) && has_keys(kinds_[base]) ? base : "";
-  }
-
-  bool is_of_base(const std::string& name, const std::string& key, const ordered_json& rule) const {
-    const std::string base = base_of(name);
-    return !base.empty() && kinds_.at(base).at("properties").value(key, ordered_json()) == rule;
-  }
-
-  static bool is_required(const ordered_json& kind, const std::string& key) {
-    const ordered_json required = kind.value("required", ordered_json::array());
-    return std::find(required.begin(), required.end(), key) != required.end();
-  }
-
-  bool is_common(const std::string& key, const ordered_json& rule) const {
-    for (const Group& group : groups())
-      for (const std::string& common : group.common)
-        if (key == common && rule == kinds_.at(group.model).at("properties").at(key)) return true;
-    return false;
   }
 
   void write(const Group& group) {
@@ -175,44 +209,44 @@ class Page {
     if (!group.choice.empty()) out_ += "\n" + words_.meaning(kinds_.at(group.choice)) + "\n";
     if (!group.common.empty()) {
       out_ += "\n### " + group.common_title + "\n";
-      write_table(group.model, group.common);
+      write_table(common_keys(group));
     }
-    for (const std::string& name : group.kinds) write_kind(name);
+    for (const std::string& name : kinds_of(group)) write_kind(name);
   }
 
   void write_kind(const std::string& name) {
-    const ordered_json& kind = kinds_.at(name);
+    Keys keys = keys_of(name);
     out_ += "\n### " + spaced(name) + "\n\n";
-    const auto& keys = kind.at("properties");
-    if (keys.contains("type") && keys["type"].contains("const"))
-      out_ += fmt::format("`\"type\": {}`. ", keys["type"]["const"].dump());
-    out_ += kind.value("description", "") + "\n";
-    const auto own = own_keys(name);
-    if (!own.empty()) write_table(name, own);
-    write_shared(name);
+    if (const ordered_json* type = keys.find("type"); type && type->contains("const")) {
+      out_ += fmt::format("`\"type\": {}`. ", (*type)["const"].dump());
+      std::erase_if(keys.rules, [](const auto& row) { return row.first == "type"; });
+    }
+    out_ += kinds_.at(name).value("description", "") + "\n";
+    const std::string shared = take_out_common(keys);
+    if (!keys.rules.empty()) write_table(keys);
+    out_ += shared;
   }
 
-  /// Where the kind's other keys are described.
-  void write_shared(const std::string& name) {
+  /// Takes out the keys that stand in a group's table. Returns the line that says where they are.
+  std::string take_out_common(Keys& keys) const {
     std::vector<std::string> links;
-    const auto& keys = kinds_.at(name).at("properties");
-    for (const Group& group : groups())
-      for (const std::string& key : group.common)
-        if (keys.contains(key) && is_common(key, keys.at(key))) {
-          links.push_back(link_to(group.common_title));
-          break;
-        }
-    std::vector<std::string> of_base;
-    for (const auto& [key, rule] : keys.items())
-      if (is_of_base(name, key, rule) && !rule.contains("const") && !is_common(key, rule))
-        of_base.push_back("`" + key + "`");
-    if (!of_base.empty())
-      links.push_back(fmt::format("{}: {}", link_to(base_of(name)), fmt::join(of_base, ", ")));
-    if (!links.empty()) out_ += fmt::format("\nAlso the keys of {}.\n", fmt::join(links, " and "));
+    for (const Group& group : groups()) {
+      const Keys common = common_keys(group);
+      if (common.rules.empty() ||
+          !std::ranges::all_of(common.rules, [&](const auto& row) { return keys.find(row.first); }))
+        continue;
+      links.push_back(link_to(group.common_title));
+      std::erase_if(keys.rules, [&](const auto& row) {
+        const ordered_json* rule = common.find(row.first);
+        return rule && *rule == row.second && !keys.required.contains(row.first);
+      });
+    }
+    return links.empty() ? "" : fmt::format("\nAlso the keys of {}.\n", fmt::join(links, " and "));
   }
 
   const ordered_json& kinds_;
   SchemaWords words_;
+  std::map<std::string, Choice> choices_;  // by kind
   std::string out_;
 };
 

@@ -109,7 +109,7 @@ export function Fields({schema, at, value, only, without = [], defaults = {}}) {
   const types = variants(schema);
   const s = types ? types[value?.type] ?? {} : branch(schema, value);
   const required = s.required ?? [];
-  const needs = (key) => s.if?.properties[key] && ((next) => {  // sets the key, and others that its new value requires
+  const needs = (key) => s.if?.properties?.[key] && ((next) => {  // sets the key, and others that its new value requires
     const chosen = {...value, [key]: next}, more = s.if.properties[key].const === next ? missing({...s, required: []}, chosen) : {};
     const gone = next === 'dielectric' && value.color !== undefined && !('ambient' in value || 'diffuse' in value) ? [{at: at + '/color'}] : [];  // glass has no colour
     store.edit([...gone, ...Object.entries({...more, [key]: next}).map(([name, v]) => ({at: join(at, name), value: v}))]);

@@ -5,7 +5,7 @@ const defs = () => store.state.schema.$defs;
 export const nameOf = (schema) => schema?.$ref?.replace('#/$defs/', '');
 
 /** The schema with its references resolved; keys beside a reference take precedence. */
-export function resolve(schema) {
+function refer(schema) {
   let out = schema ?? {};
   for (let i = 0; out.$ref && i < 10; ++i) {
     const {$ref, ...rest} = out;
@@ -13,13 +13,34 @@ export function resolve(schema) {
   }
   return out;
 }
+
+/** The choices of a schema that names them alone. */
+function namesOf(schema) {
+  const s = refer(schema);
+  return s.anyOf?.flatMap(namesOf) ?? s.enum ?? [s.const];
+}
+
+/** An object's schema with the rules of another one for the same object. */
+const joined = (s, more) => ({
+  ...more, ...s,
+  properties: {...s.properties, ...more.properties, ...s.properties},  // keys of `s` come first
+  required: [...(s.required ?? []), ...(more.required ?? [])],
+  dependentRequired: {...more.dependentRequired, ...s.dependentRequired},
+  not: s.not && more.not ? {anyOf: [...s.not.anyOf, ...more.not.anyOf]} : s.not ?? more.not,
+});
+
+/** The schema with its references resolved, and with what it takes in by "allOf", some of it only for a "type". */
+export function resolve(schema, type) {
+  const {allOf = [], ...own} = refer(schema);
+  return allOf.filter((one) => !one.if || namesOf(one.if.properties.type).includes(type))
+    .reduce((s, one) => joined(s, resolve(one.then ?? one, type)), own);
+}
 export const definition = (name) => resolve({$ref: '#/$defs/' + name});
 
 /** The variants of a schema whose objects differ by their "type": {sphere: schema, ...}; null for others. */
 export function variants(schema) {
-  const s = resolve(schema);
-  if (!s.allOf?.[0]?.if) return null;
-  return Object.fromEntries(s.allOf.map((one) => [one.if.properties.type.const, resolve(one.then)]));
+  if (!refer(schema).allOf?.some((one) => one.if)) return null;
+  return Object.fromEntries(namesOf(resolve(schema).properties.type).map((type) => [type, joined({properties: {type: {const: type}}}, resolve(schema, type))]));
 }
 
 const holds = (condition, value) => (condition.required ?? []).every((key) => key in value) &&
@@ -34,7 +55,7 @@ export function branch(schema, value = {}) {
 
 /** Whether a value fits a schema by its JSON type and limits, its required keys, and its known keys. */
 export function fits(schema, value) {
-  const s = resolve(schema);
+  const s = resolve(schema, value?.type), closed = s.additionalProperties === false || s.unevaluatedProperties === false;
   if (s.anyOf) return s.anyOf.some((one) => fits(one, value));
   if (s.enum) return s.enum.includes(value);
   if ('const' in s) return s.const === value;
@@ -44,7 +65,7 @@ export function fits(schema, value) {
   if (s.type === 'object' || s.properties)
     return value !== null && typeof value === 'object' && !Array.isArray(value) &&
       (s.required ?? []).every((key) => key in value) &&
-      (s.additionalProperties !== false || Object.keys(value).every((key) => key in (s.properties ?? {})));
+      (!closed || Object.keys(value).every((key) => key in (s.properties ?? {})));
   return !s.type || typeof value === s.type;
 }
 

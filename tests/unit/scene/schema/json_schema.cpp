@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -43,6 +44,28 @@ class Validator {
     if (!good) errors.push_back(place + ": " + keyword);
   }
 
+  /// Adds the keys that the schema, and those that it applies to the same value, have rules for.
+  void list_evaluated(const json& schema, const json& value, std::set<std::string>& keys) const {
+    for (const auto& [keyword, rule] : schema.items()) {
+      if (keyword == "properties") {
+        for (const auto& [key, member] : rule.items()) keys.insert(key);
+      } else if (keyword == "additionalProperties") {
+        for (const auto& [key, member] : value.items()) keys.insert(key);
+      } else if (keyword == "$ref") {
+        list_evaluated(refer(rule), value, keys);
+      } else if (keyword == "allOf") {
+        for (const json& part : rule) list_evaluated(part, value, keys);
+      } else if (keyword == "if") {
+        const char* branch = holds(rule, value) ? "then" : "else";
+        if (schema.contains(branch)) list_evaluated(schema.at(branch), value, keys);
+      }
+    }
+  }
+
+  const json& refer(const json& pointer) const {
+    return root_.at(json::json_pointer(pointer.get<std::string>().substr(1)));
+  }
+
   /// Keywords that apply other schemas to the same value.
   bool follow(const std::string& keyword, const json& rule, const json& schema, const json& value,
               const std::string& place) {
@@ -52,7 +75,7 @@ class Validator {
       return count;
     };
     if (keyword == "$ref") {
-      check(root_.at(json::json_pointer(rule.get<std::string>().substr(1))), value, place);
+      check(refer(rule), value, place);
     } else if (keyword == "allOf") {
       for (const json& option : rule) check(option, value, place);
     } else if (keyword == "anyOf") {
@@ -73,11 +96,18 @@ class Validator {
   /// Keywords about an object's members and an array's items.
   bool parts(const std::string& keyword, const json& rule, const json& schema, const json& value,
              const std::string& place) {
-    static const std::vector<std::string> known{
-        "properties", "additionalProperties", "required", "dependentRequired", "items", "minItems",
-        "maxItems"};
+    static const std::vector<std::string> known{"properties",
+                                                "additionalProperties",
+                                                "unevaluatedProperties",
+                                                "required",
+                                                "dependentRequired",
+                                                "items",
+                                                "minItems",
+                                                "maxItems"};
     if (std::find(known.begin(), known.end(), keyword) == known.end()) return false;
     if (value.is_object()) {
+      std::set<std::string> evaluated;
+      if (keyword == "unevaluatedProperties") list_evaluated(schema, value, evaluated);
       for (const auto& [key, member] : value.items()) {
         if (keyword == "properties" && rule.contains(key)) check(rule[key], member, place + "/" + key);
         if (keyword == "additionalProperties" && !schema.value("properties", json::object()).contains(key)) {
@@ -86,6 +116,8 @@ class Validator {
           else
             check(rule, member, place + "/" + key);
         }
+        if (keyword == "unevaluatedProperties")
+          require(evaluated.contains(key) || rule.get<bool>(), place + "/" + key, keyword);
         if (keyword == "dependentRequired" && rule.contains(key))
           check({{"required", rule[key]}}, value, place);
       }
@@ -142,18 +174,21 @@ class Defaults {
  public:
   explicit Defaults(const json& root) : root_(root) {}
 
-  void fill(const json& schema, json& value) const {
-    if (schema.contains("$ref")) fill(refer(schema), value);
-    if (schema.contains("if"))
-      fill(schema.value(holds(schema["if"], value) ? "then" : "else", json::object()), value);
-    for (const char* keyword : {"allOf", "anyOf"})
-      for (const json& option : schema.value(keyword, json::array())) fill_option(option, value);
-    if (value.is_array() && schema.contains("items"))
-      for (json& item : value) fill(schema["items"], item);
-    if (value.is_object()) fill_object(schema, value);
-  }
+  void fill(const json& schema, json& value) const { fill(schema, value, schema); }
 
  private:
+  /// `whole`: the schema, of which `schema` is a part, that the value obeys then too.
+  void fill(const json& schema, json& value, const json& whole) const {
+    if (schema.contains("$ref")) fill(refer(schema), value, whole);
+    if (schema.contains("if"))
+      fill(schema.value(holds(schema["if"], value) ? "then" : "else", json::object()), value, whole);
+    for (const char* keyword : {"allOf", "anyOf"})
+      for (const json& option : schema.value(keyword, json::array())) fill_option(option, value, whole);
+    if (value.is_array() && schema.contains("items"))
+      for (json& item : value) fill(schema["items"], item);
+    if (value.is_object()) fill_object(schema, value, whole);
+  }
+
   const json& refer(const json& schema) const {
     return root_.at(json::json_pointer(schema.at("$ref").get<std::string>().substr(1)));
   }
@@ -164,13 +199,13 @@ class Defaults {
     return validator.errors.empty();
   }
 
-  void fill_option(const json& option, json& value) const {
+  void fill_option(const json& option, json& value, const json& whole) const {
     if (option.contains("if") && !holds(option["if"], value)) return;
     const json& chosen = option.contains("if") ? option["then"] : option;
-    if (holds(chosen, value)) fill(chosen, value);
+    if (holds(chosen, value)) fill(chosen, value, whole);
   }
 
-  void fill_object(const json& schema, json& value) const {
+  void fill_object(const json& schema, json& value, const json& whole) const {
     const json properties = schema.value("properties", json::object());
     for (auto& [key, member] : value.items()) {
       if (properties.contains(key))
@@ -184,7 +219,7 @@ class Defaults {
       if (value.contains(key) || !named->contains("default")) continue;
       json filled = value;
       filled[key] = (*named)["default"];
-      if (holds(schema, filled)) value = std::move(filled);
+      if (holds(whole, filled)) value = std::move(filled);
     }
   }
 

@@ -18,13 +18,11 @@ namespace {
 
 /// The name of each choice by "type", with its link.
 const std::map<std::string, std::string>& choices() {
-  static const std::map<std::string, std::string> all{{"light", "[light](#lights)"},
-                                                      {"texture", "[texture](#textures)"},
-                                                      {"object", "[object](#objects)"},
-                                                      {"field", "[field](#distance-fields)"},
-                                                      {"step", "[step](#fractal-step)"},
-                                                      {"track", "[track](#animation)"},
-                                                      {"generate", "[ice block](#generate-ice-block)"}};
+  static const std::map<std::string, std::string> all{
+      {"light", "[light](#lights)"},          {"environment", "[environment](#environment)"},
+      {"texture", "[texture](#textures)"},    {"object", "[object](#objects)"},
+      {"field", "[field](#distance-fields)"}, {"step", "[step](#fractal-step)"},
+      {"track", "[track](#animation)"},       {"generate", "[ice block](#generate-ice-block)"}};
   return all;
 }
 
@@ -94,12 +92,22 @@ std::string link_to(const std::string& kind) {
 }
 
 bool has_keys(const ordered_json& kind) {
-  return kind.contains("properties") && kind.contains("additionalProperties") &&
-         kind["additionalProperties"] == false;
+  const auto closed = [&](const char* keyword) { return kind.contains(keyword) && kind[keyword] == false; };
+  return kind.contains("properties") && (closed("additionalProperties") || closed("unevaluatedProperties"));
 }
 
 const ordered_json& SchemaWords::target(const ordered_json& rule) const {
   return kinds_.at(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
+}
+
+std::vector<std::string> SchemaWords::names(const ordered_json& rule) const {
+  if (rule.contains("$ref")) return names(target(rule));
+  if (rule.contains("const")) return {rule["const"]};
+  std::vector<std::string> all = rule.value("enum", std::vector<std::string>());
+  if (rule.contains("anyOf"))
+    for (const ordered_json& option : rule["anyOf"])
+      for (const std::string& name : names(option)) all.push_back(name);
+  return all;
 }
 
 std::string SchemaWords::type(const ordered_json& rule) const {
@@ -107,12 +115,7 @@ std::string SchemaWords::type(const ordered_json& rule) const {
     return reference(rule.at("$ref").get<std::string>().substr(std::string("#/$defs/").size()));
   if (rule.contains("anyOf")) return options(rule["anyOf"]);
   if (rule.contains("if")) return options({rule["else"], rule["then"]});
-  if (rule.contains("enum")) {
-    std::vector<std::string> names;
-    for (const ordered_json& name : rule["enum"])
-      names.push_back(fmt::format("`{}`", name.get<std::string>()));
-    return fmt::format("{}", fmt::join(names, ", "));
-  }
+  if (rule.contains("enum")) return fmt::format("`{}`", fmt::join(names(rule), "`, `"));
   const std::string name = rule.at("type");
   if (name == "number" || name == "integer")
     return fmt::format("{}{}", name == "number" ? "number" : "whole number", limits_text(rule));
