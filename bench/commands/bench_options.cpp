@@ -21,7 +21,6 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "device/build_options.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -127,9 +126,7 @@ SceneDescription bench_description(const std::string& file, const BenchOptions& 
   if (!options.size.empty())
     for (const std::string& setting : parse_image_size(options.size)) overrides.push_back(setting);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  return load_and_check_outputs(options.all(), [&] {
-    return load_scene(file, overrides, with_streams({.outside_files = options.outside_files}));
-  });
+  return load_for_command(file, overrides, {.outside_files = options.outside_files}, options.all());
 }
 
 CompiledScene bench_scene(const std::string& file, const BenchOptions& options,

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 
 #include "app/options/option_helpers.h"
@@ -17,16 +16,24 @@
 #include "bench/rays/ray_sets.h"
 #include "bench/rays/ray_tracer.h"
 #include "bench/report/machine.h"
+#include "render/device/tuning.h"
 #include "render/film/hash.h"
 #include "scene/integrators.h"
 
 namespace sundog {
 namespace {
 
-constexpr std::array kernel_names{"render_whitted", "render_path", "trace_rays", "occluded_rays"};
+/// The integrators' kernels, each of which means a frame by the scene's own integrator, and the tracer's.
+std::vector<std::string> kernel_names() {
+  std::vector<std::string> names;
+  for (const Integrator& integrator : integrators) names.emplace_back(integrator.kernel);
+  names.insert(names.end(), {"trace_rays", "occluded_rays"});
+  return names;
+}
 
-/// Whether the name means a frame, which the scene's own integrator renders.
-bool is_frame(const std::string& kernel) { return kernel.starts_with("render_"); }
+bool is_frame(const std::string& kernel) {
+  return std::ranges::find(integrators, kernel, &Integrator::kernel) != integrators.end();
+}
 const char* integrator_kernel(const CompiledScene& scene) {
   return find_integrator(scene.integrator)->kernel;
 }
@@ -106,14 +113,14 @@ std::vector<WorkGroup> parse_sizes(const std::string& text) {
 
 /// The kernels to time; both names of the frame count as one.
 std::vector<std::string> timed_kernels(const std::vector<std::string>& wanted) {
-  if (wanted.empty()) return {"render_whitted", "trace_rays", "occluded_rays"};
+  if (wanted.empty()) return {frame_kernel, "trace_rays", "occluded_rays"};
+  const std::vector<std::string> known = kernel_names();
   std::vector<std::string> kernels;
   for (const std::string& name : wanted) {
-    if (std::ranges::count(kernel_names, name) == 0)
-      throw UsageError(
-          fmt::format("--kernel {}: {}", name,
-                      did_you_mean(name, {kernel_names.begin(), kernel_names.end()},
-                                   fmt::format("wanted one of {}", fmt::join(kernel_names, ", ")), "")));
+    if (std::ranges::count(known, name) == 0)
+      throw UsageError(fmt::format(
+          "--kernel {}: {}", name,
+          did_you_mean(name, known, fmt::format("wanted one of {}", fmt::join(known, ", ")), "")));
     const auto is_same = [&](const std::string& other) {
       return other == name || (is_frame(other) && is_frame(name));
     };
@@ -129,9 +136,10 @@ int bench_workgroup(const WorkgroupOptions& options) {
   BenchRun run("workgroup", "Times by work-group size", options);
   run.head().notes = {
       fmt::format(
-          "Medians of runs after one to warm up, all sizes in shuffled turn. render_whitted or "
-          "render_path is a whole frame with its transfers, the others are {}x{} camera rays through the "
-          "tracer alone. Each result was compared with the default's to the bit before its time counted.",
+          "Medians of runs after one to warm up, all sizes in shuffled turn. render_* is a whole frame with "
+          "its transfers, the others are {}x{} camera rays through the tracer alone. Each result was "
+          "compared "
+          "with the default's to the bit before its time counted.",
           options.rays, options.rays),
       "The size with the smallest median was run again in turn with the default. It is called best only if "
       "the interval of the median of its ratios to the default, run by run, lies below 1.",
@@ -171,7 +179,7 @@ void add_bench_workgroup(Arguments& bench, Command& chosen) {
                                      options, bench_workgroup);
   add_bench_size(app, *options);
   values(app, "--kernel", "NAME", options->kernels,
-         fmt::format("one of {}; the first two are the frame (default: all)", fmt::join(kernel_names, ", ")));
+         fmt::format("one of {}; render_* are the frame (default: all)", fmt::join(kernel_names(), ", ")));
   value(app, "--sizes", "N,WxH...", options->sizes,
         "work-groups to compare with the default (default: all that make sense)");
   value(app, "--budget", "SECONDS", options->budget,

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "render/device/local_worker.h"
+#include "render/frame/local_worker.h"
 
 namespace sundog {
 namespace {

@@ -49,12 +49,7 @@ core::LoadOptions options_of(const LoadOptions& options) {
       throw UsageError(fmt::format("size: wanted pixels, or 0 for the file's, found {}", pixels));
   if (options.frame && !std::isfinite(*options.frame))
     throw UsageError(fmt::format("frame: wanted a frame's number, found {}", *options.frame));
-  core::LoadOptions result;
-  result.frame = options.frame;
-  result.native_code = options.native_code;
-  result.outside_files = options.outside_files;
-  result.size = options.size;
-  return result;
+  return {options.frame, options.native_code, options.outside_files, options.size};
 }
 
 }  // namespace

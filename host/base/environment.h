@@ -54,6 +54,7 @@ struct HostEnvironment {
   std::shared_ptr<Faults> faults{};   // injected failures; null: none
   StartProgram start_program{};       // empty: everything runs in this process
   std::function<void()> step_back{};  // lowers the priority of a slow device's thread
+  std::function<const std::string&()> standard_input{};  // the scene "-"; empty: "-" is a file
   /// Drivers' variables: the user's values, and sundog's defaults for variables that are not set.
   std::map<std::string, std::string> drivers{};
 

@@ -22,7 +22,7 @@ constexpr std::array rules{
                .reports = "NVIDIA",
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -cl-nv-maxrregcount=128",
-               .of_tracer = "-cl-nv-maxrregcount=64",
+               .of_programs = {{{"entry/trace_rays.cl", "-cl-nv-maxrregcount=64"}}},
                .tries_compact = "-DNODE_LOOP=1 -DNODE_LOOP=2",
                .tries = "-cl-nv-maxrregcount=96 -cl-nv-maxrregcount=168 "
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
@@ -45,8 +45,8 @@ constexpr std::array rules{
                .of_gpus = true,
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 "
                           "-cl-intel-enable-auto-large-GRF-mode",
-               .of_tracer = "-cl-intel-256-GRF-per-thread",
-               .of_paths = "-cl-intel-256-GRF-per-thread",
+               .of_programs = {{{"entry/trace_rays.cl", "-cl-intel-256-GRF-per-thread"},
+                                {"entry/render_path.cl", "-cl-intel-256-GRF-per-thread"}}},
                .tries_compact = "-DNODE_LOOP=0 -DNODE_LOOP=1",
                .tries = "-cl-intel-256-GRF-per-thread "
                         "!-cl-intel-256-GRF-per-thread !-cl-intel-enable-auto-large-GRF-mode "
@@ -79,8 +79,8 @@ bool DeviceRule::matches(const DeviceInfo& device) const {
 }
 
 std::string_view DeviceRule::of_program(const KernelText& text) const {
-  if (text.entry == "entry/render_path.cl") return of_paths;
-  return text.entry == "entry/trace_rays.cl" ? of_tracer : std::string_view{};
+  const auto own = std::ranges::find(of_programs, text.entry, &ProgramOptions::entry);
+  return own == of_programs.end() ? std::string_view{} : own->options;
 }
 
 std::span<const DeviceRule> device_rules() { return rules; }

@@ -1,5 +1,6 @@
 // A table of lanes, compiler options and definitions for each kind of device, found by the names it reports.
 #pragma once
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -7,6 +8,11 @@
 #include "device/kernel_source.h"
 
 namespace sundog {
+
+/// A program's own options, by its entry.
+struct ProgramOptions {
+  std::string_view entry{}, options{};
+};
 
 /// A row of the table; the first row that matches a device decides.
 struct DeviceRule {
@@ -16,13 +22,11 @@ struct DeviceRule {
   bool calls = false;          // the compiler keeps function calls
   // A work-item takes 16 rays in vectors (lanes) if the device reports vectors; otherwise one.
   bool vectors = false;
-  std::string_view options{};        // compiler options, and definitions that override the kernels' defaults
-  std::string_view of_tracer{};      // for entry/trace_rays.cl; replace `options` of the same name
-  std::string_view of_paths{};       // for entry/render_path.cl; replace `options` of the same name
-  std::string_view tries_compact{};  // alternatives for `sundog tune` in the compact tracer, and
-  std::string_view tries{};          // in every program: options_to_try()
+  std::string_view options{};  // compiler options, and definitions that override the kernels' defaults
+  std::array<ProgramOptions, 2> of_programs{};  // add to `options` and replace those of the same name
+  std::string_view tries_compact{};             // alternatives for `sundog tune` in the compact tracer, and
+  std::string_view tries{};                     // in every program: options_to_try()
   bool matches(const DeviceInfo& device) const;
-  /// The program's own options, which add to `options` and replace those of the same name.
   std::string_view of_program(const KernelText& text) const;
 };
 

@@ -10,6 +10,7 @@ struct Integrator {
   std::string_view name;    // as in options and scene files
   const char* entry;        // kernel file
   const char* kernel;       // takes the scene, camera media, film, weights, counters and a Launch
+  std::string_view tuning;  // ends the kinds in classes of scenes that share a tuning (scene_class())
   bool needs_camera_media;  // needs the media that contain the camera
   unsigned most_run;        // maximum pixels per work-item; idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth
@@ -29,6 +30,7 @@ inline constexpr std::array integrators{
     Integrator{.name = "whitted",
                .entry = "entry/render_whitted.cl",
                .kernel = "render_whitted",
+               .tuning = "",
                .needs_camera_media = true,
                .most_run = 1,
                .depth = 8,
@@ -42,6 +44,7 @@ inline constexpr std::array integrators{
     Integrator{.name = "path",
                .entry = "entry/render_path.cl",
                .kernel = "render_path",
+               .tuning = "+paths",
                .needs_camera_media = true,
                .most_run = 16,
                .depth = depth_cap,

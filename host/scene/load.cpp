@@ -99,16 +99,17 @@ void read_model(SceneSource& source, const std::vector<std::string>& overrides, 
 SceneSource open_source(const fs::path& path, const std::vector<std::string>& overrides,
                         const LoadOptions& options) {
   SceneSource source{path, {}};
-  if (is_standard_input(path) && options.standard_input) {
+  const HostEnvironment& environment = value_of(options.environment);
+  if (is_standard_input(path) && environment.standard_input) {
     source.file = scene_file_name(path);
-    source.document = parse_json(options.standard_input(), source.file);
+    source.document = parse_json(environment.standard_input(), source.file);
   } else {
     require_readable(path, path, "");
     if (is_model_file(path)) {
       read_model(source, overrides, options.outside_files);
       return source;
     } else if (lower_extension(path) == ".json") {
-      source.document = read_json_file(path, options.faults);
+      source.document = read_json_file(path, environment.faults);
     } else {
       throw SceneError(path.string(), "",
                        "wanted a scene (.json) or a model (" SUNDOG_MODEL_EXTENSIONS

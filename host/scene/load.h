@@ -2,20 +2,18 @@
 #pragma once
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/environment.h"
 #include "base/error.h"
 #include "models/model.h"
 #include "scene/description.h"
 
 namespace sundog {
-
-class Faults;
 
 /// An error caused by a setting, or at a place that a setting changed.
 struct SettingError : SceneError {
@@ -27,8 +25,7 @@ struct LoadOptions {
   bool native_code = false;                    // allow OpenCL C in the scene; only if the user trusts it
   bool outside_files = false;                  // scene and models may name files outside their folders
   std::array<int, 2> size{};                   // image size for read_scene_document(); 0: as in the file
-  std::function<const std::string&()> standard_input{};  // text of the scene "-"; empty: "-" is a file
-  std::shared_ptr<Faults> faults{};                      // simulated when scene files are read
+  EnvironmentPtr environment{};                // has the standard input, and faults of reading
 };
 
 /// Whether the path is "-" or /dev/stdin.

@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/process/environment.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "compile/bvh/tangents.h"
 #include "models/model.h"
 #include "scene/json/parse.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -108,7 +107,7 @@ SceneDescription load_geometry(const std::string& file, bool outside_files) {
     scene.meshes = std::move(model.meshes);
     scene.objects = std::move(model.objects);
   } else {
-    scene = load_scene(file, {}, with_streams({.outside_files = outside_files}));
+    scene = load_for_command(file, {}, {.outside_files = outside_files});
   }
   for (const Object& object : scene.objects)
     if (std::holds_alternative<FieldShape>(object.shape))

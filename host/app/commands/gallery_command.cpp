@@ -12,7 +12,6 @@
 #include "app/options/devices.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/progress.h"
 #include "app/process/spawn_self.h"
@@ -25,7 +24,6 @@
 #include "bench/report/machine.h"
 #include "render/device/tuning.h"
 #include "render/session/render_session.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -97,10 +95,8 @@ std::vector<std::string> output_files(const GalleryOptions& options) {
 }
 
 GalleryPicture make_picture(const GalleryOptions& options, const std::string& scene, RenderSession& session) {
-  LoadOptions load;
-  load.outside_files = options.outside_files;
-  const SceneDescription description = load_and_check_outputs(
-      output_files(options), [&] { return load_scene(scene, overrides_of(options), with_streams(load)); });
+  const SceneDescription description = load_for_command(
+      scene, overrides_of(options), {.outside_files = options.outside_files}, output_files(options));
   if (!options.quiet) print_warnings(description.warnings);
   const auto flat = std::make_shared<const CompiledScene>(compile(description));
   ProgressBar bar(!options.quiet);

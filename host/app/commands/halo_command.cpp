@@ -13,7 +13,6 @@
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
 #include "app/options/picture_options.h"
-#include "app/process/environment.h"
 #include "app/process/exit_status.h"
 #include "app/process/standard_streams.h"
 #include "app/process/trace_halo_map.h"
@@ -24,7 +23,6 @@
 #include "base/json_text.h"
 #include "base/names.h"
 #include "compile/steps.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -53,10 +51,8 @@ EnvironmentDescription read_halo(const HaloOptions& options) {
     if (!options.overrides.empty()) throw UsageError("--set changes a scene: wanted a SCENE with it");
     return usual_halo();
   }
-  const SceneDescription scene = load_and_check_outputs({options.picture.out}, [&] {
-    return load_scene(options.scene, options.overrides,
-                      with_streams({.outside_files = options.outside_files}));
-  });
+  const SceneDescription scene = load_for_command(
+      options.scene, options.overrides, {.outside_files = options.outside_files}, {options.picture.out});
   print_warnings(scene.warnings);
   if (scene.environment.type != EnvironmentType::halo)
     throw SceneError(options.scene, "/environment", "wanted an environment of the type \"halo\"");

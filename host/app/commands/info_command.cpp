@@ -7,13 +7,12 @@
 #include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/options/option_values.h"
-#include "app/process/environment.h"
 #include "app/process/scene_figures.h"
 #include "app/process/warnings.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "scene/json/override.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -92,7 +91,7 @@ CompiledScene compile_overridden(const SceneDescription& scene, const InfoComman
 int print_figures(const InfoCommand& command) {
   for (const std::string& setting : command.overrides) check_override(setting);
   const SceneDescription scene =
-      load_scene(command.scene, command.overrides, with_streams({.outside_files = command.outside_files}));
+      load_for_command(command.scene, command.overrides, {.outside_files = command.outside_files});
   print_warnings(scene.warnings);
   const CompiledScene flat = compile_overridden(scene, command);
   json figures = scene_figures(scene, flat);

@@ -12,9 +12,9 @@
 #include "app/process/standard_streams.h"
 #include "base/error.h"
 #include "base/json_text.h"
-#include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/film/hash.h"
+#include "render/frame/local_worker.h"
 #include "render/remote/remote_values.h"
 #include "render/remote/remote_worker.h"
 #include "render/remote/worker_process.h"
@@ -54,11 +54,11 @@ std::shared_ptr<const SceneDescription> read_frame(const json& settings, SceneFr
 
 std::unique_ptr<SceneFrames> open_frames(const json& scene) {
   if (scene.at("text").is_string()) set_standard_input(scene["text"].get<std::string>());
-  const LoadOptions options{std::nullopt, scene.at("native_code").get<bool>(),
-                            scene.at("outside_files").get<bool>()};
+  const LoadOptions options{.native_code = scene.at("native_code").get<bool>(),
+                            .outside_files = scene.at("outside_files").get<bool>(),
+                            .environment = program_environment()};
   return std::make_unique<SceneFrames>(scene.at("file").get<std::string>(),
-                                       scene.at("overrides").get<std::vector<std::string>>(),
-                                       with_streams(options));
+                                       scene.at("overrides").get<std::vector<std::string>>(), options);
 }
 
 std::shared_ptr<const CompiledScene> load_flat(const json& settings) {

@@ -23,6 +23,7 @@ void end_process(const std::string& kind) {
 EnvironmentPtr read_program_environment() {
   HostEnvironment environment = read_environment(end_process);
   environment.start_program = start_self;
+  environment.standard_input = standard_input;
   environment.step_back = [] { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19); };
   return std::make_shared<const HostEnvironment>(std::move(environment));
 }
@@ -37,12 +38,6 @@ const EnvironmentPtr& program_environment() {
 const std::shared_ptr<DriverThreads>& driver_threads() {
   static const auto threads = std::make_shared<DriverThreads>();
   return threads;
-}
-
-LoadOptions with_streams(LoadOptions options) {
-  options.standard_input = standard_input;
-  options.faults = program_environment()->faults;
-  return options;
 }
 
 }  // namespace sundog

@@ -4,7 +4,6 @@
 
 #include "base/driver_threads.h"
 #include "base/environment.h"
-#include "scene/load.h"
 
 namespace sundog {
 
@@ -14,8 +13,5 @@ const EnvironmentPtr& program_environment();
 /// The threads left in drivers. While there are any, the process must end by _exit(), because static
 /// destructors and drivers' exit handlers would destroy what these threads use.
 const std::shared_ptr<DriverThreads>& driver_threads();
-
-/// Adds the standard input, for a scene named "-", and the environment's faults to the options.
-LoadOptions with_streams(LoadOptions options);
 
 }  // namespace sundog

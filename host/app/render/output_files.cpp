@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "app/options/option_values.h"
+#include "app/process/environment.h"
 #include "app/process/standard_streams.h"
 #include "app/process/warnings.h"
 #include "base/error.h"
@@ -115,6 +116,15 @@ void check_not_read(const std::vector<std::string>& outputs, const std::vector<R
     throw UsageError(fmt::format("{}: {}is read, and would be written over: give the output another name",
                                  output, link ? "is a link to " + name + ", which " : ""));
   }
+}
+
+SceneDescription load_for_command(const std::string& scene, const std::vector<std::string>& overrides,
+                                  LoadOptions options, const std::vector<std::string>& outputs) {
+  options.environment = program_environment();
+  const ReadLog log;
+  SceneDescription loaded = load_scene(scene, overrides, options);
+  check_not_read(outputs, log.files());
+  return loaded;
 }
 
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file) {

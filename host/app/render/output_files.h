@@ -6,6 +6,7 @@
 #include "app/options/options.h"
 #include "base/image_io.h"
 #include "base/input.h"
+#include "scene/load.h"
 
 namespace sundog {
 
@@ -35,13 +36,8 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
 /// Throws UsageError if an output is one of the files that were read, such as textures and models.
 void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
 
-/// Returns load(). Throws UsageError if it read one of the outputs.
-template <class Load>
-auto load_and_check_outputs(const std::vector<std::string>& outputs, const Load& load) {
-  const ReadLog log;
-  auto loaded = load();
-  check_not_read(outputs, log.files());
-  return loaded;
-}
+/// Loads a scene for a command that writes `outputs`. Throws UsageError if one of them was read.
+SceneDescription load_for_command(const std::string& scene, const std::vector<std::string>& overrides,
+                                  LoadOptions options, const std::vector<std::string>& outputs = {});
 
 }  // namespace sundog

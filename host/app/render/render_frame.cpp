@@ -21,12 +21,12 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "device/energy.h"
-#include "render/device/local_worker.h"
 #include "render/device/tuning.h"
 #include "render/device/view_warnings.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
 #include "render/frame/frame_loop.h"
+#include "render/frame/local_worker.h"
 #include "render/plan/passes.h"
 #include "render/plan/tiles.h"
 #include "scene/load.h"
@@ -90,11 +90,11 @@ std::vector<WorkerPlan> plan_workers(const RenderCommand& of_frame, const Loaded
   RenderCommand command = of_frame;
   command.moment = scene.moment;
   if (setup.job) return plan_job(*setup.job, command, setup.devices, scene.flat, setup.workers);
-  const std::uint64_t hash = command.isolate ? hash_scene(*scene.flat) : 0;
+  if (!command.isolate) return plan_local_workers(scene.flat, setup.devices);
+  const std::uint64_t hash = hash_scene(*scene.flat);
   std::vector<WorkerPlan> plans;
   for (const DeviceInfo& device : setup.devices)
-    plans.push_back(command.isolate ? plan_isolated(command, device, hash, setup.workers)
-                                    : plan_local(scene.flat, device));
+    plans.push_back(plan_isolated(command, device, hash, setup.workers));
   return plans;
 }
 
@@ -161,13 +161,13 @@ void stop_loses_nothing(const RenderCommand& command, const Setup& setup) {
 }
 
 LoadOptions load_options(const RenderCommand& command) {
-  return with_streams({command.frame, command.native_code, command.outside_files});
+  return {command.frame, command.native_code, command.outside_files, {}, program_environment()};
 }
 
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
                              TimeLedger& times) {
   LoadedScene scene;
-  scene.description = timed(times.load, [&] { return load_and_check_outputs(output_files(command), load); });
+  scene.description = timed(times.load, load);
   scene.flat = timed(times.compile_scene, [&] {
     trace_halo(command, scene.description, setup);
     return std::make_shared<const CompiledScene>(command.frame ? setup.compiler.compile(*scene.description)

@@ -79,8 +79,11 @@ std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
   std::vector<std::string> outputs = {frame_list(command)};
   for (const int frame : command.frames)
     for (std::string& file : output_files(frame_command(command, frame))) outputs.push_back(std::move(file));
+  const ReadLog log;
   auto frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
-  print_warnings(load_and_check_outputs(outputs, [&] { return frames->check(command.frames); })->warnings);
+  const auto first = frames->check(command.frames);
+  check_not_read(outputs, log.files());
+  print_warnings(first->warnings);
   return frames;
 }
 
@@ -220,7 +223,7 @@ class FrameRun {
   LoadedScene load(const RenderCommand& one, int frame, TimeLedger& times) {
     if (shutter_.open == 0) {
       const std::scoped_lock one_at_a_time(loading_);
-      return load_and_compile(one, [&] { return frames_->read(frame); }, setup_, times);
+      return load_and_compile(one, [&] { return read(one, frame); }, setup_, times);
     }
     std::int64_t seed = 0;
     LoadedScene scene = load_at(one, frame, 0, &seed, times);
@@ -231,21 +234,28 @@ class FrameRun {
     return scene;
   }
 
+  std::shared_ptr<const SceneDescription> read(const RenderCommand& one, double frame) {
+    const ReadLog log;
+    auto scene = frames_->read(frame);
+    check_not_read(output_files(one), log.files());
+    return scene;
+  }
+
   /// The scene at one moment while the shutter is open, with its share of the samples and its own seed.
   /// `seed`: the frame's seed, stored at the first moment.
   LoadedScene load_at(const RenderCommand& one, int frame, int time, std::int64_t* seed, TimeLedger& times) {
     Moment moment;
-    const auto read = [&] {
+    const auto read_moment = [&] {
       const auto& [open, steps] = shutter_;
       moment.frame = frame + open * (time + 0.5) / steps;
-      const auto scene = frames_->read(moment.frame);
+      const auto scene = read(one, moment.frame);
       if (time == 0) *seed = scene->render.seed;
       moment.seed = static_cast<int>((*seed * steps + time) & 0x7fffffff);
       moment.samples = (scene->render.samples + steps - 1) / steps;
       return at_moment(*scene, moment);
     };
     const std::scoped_lock one_at_a_time(loading_);
-    LoadedScene scene = load_and_compile(one, read, setup_, times);
+    LoadedScene scene = load_and_compile(one, read_moment, setup_, times);
     scene.moment = moment;
     return scene;
   }

@@ -24,7 +24,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "scene/load.h"
 
 namespace sundog {
 namespace {
@@ -94,7 +93,7 @@ int render_here(const RenderCommand& command, const StopOnSignal& stop, Mailbox*
     stop_loses_nothing(command, setup);
     const auto load = [&] {
       return std::make_shared<const SceneDescription>(
-          load_scene(command.scene, command.overrides, load_options(command)));
+          load_for_command(command.scene, command.overrides, load_options(command), output_files(command)));
     };
     scene = load_and_compile(command, load, setup, times);
     print_warnings(scene->description->warnings);

@@ -1,4 +1,4 @@
-// Collects the meshes that objects place, and compiles texture coordinates, alphas and tangents for textures.
+// Compiles texture coordinates, alphas and tangents for textures.
 #include <algorithm>
 
 #include "compile/bvh/mesh_groups.h"
@@ -7,17 +7,6 @@
 
 namespace sundog {
 namespace {
-
-/// The scene's meshes; null for a mesh that no object places.
-std::vector<const Mesh*> placed_meshes(const SceneDescription& scene) {
-  std::vector<const Mesh*> meshes(scene.meshes.size());
-  for (const Object& object : scene.objects)
-    if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
-      const auto mesh = static_cast<std::size_t>(shape->mesh);
-      meshes[mesh] = &scene.meshes[mesh];
-    }
-  return meshes;
-}
 
 /// Calls put(table vertex, mesh vertex) for each vertex that vertices.cpp creates.
 void each_vertex(const Mesh& mesh, std::size_t first_vertex, const auto& put) {
@@ -67,20 +56,6 @@ SharedTable<float> vertex_alphas(const MappingInputs& in) {
 }
 
 }  // namespace
-
-MeshInputs mesh_inputs(const SceneDescription& scene, const Surfaces& surfaces) {
-  MeshInputs in{.file = file_of(scene),
-                .spatial_splits = scene.render.spatial_splits,
-                .default_material = surfaces.default_material,
-                .material_count = scene.materials.size(),
-                .meshes = placed_meshes(scene),
-                .groups = mesh_groups(scene)};
-  in.places.value.resize(scene.meshes.size());
-  for (std::size_t i = scene.objects.size(); i-- > 0;)
-    if (const auto* shape = std::get_if<MeshShape>(&scene.objects[i].shape))
-      in.places.value[static_cast<std::size_t>(shape->mesh)] = scene.objects[i].place;
-  return in;
-}
 
 MappingInputs mapping_inputs(const SceneDescription& scene, const Known<Meshes>& meshes,
                              const Surfaces& surfaces) {

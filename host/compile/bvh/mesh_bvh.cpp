@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "compile/bvh/mesh_groups.h"
 #include "compile/bvh/vertices.h"
 #include "compile/bvh/wide_bvh.h"
 #include "compile/steps.h"
@@ -337,6 +338,20 @@ double mean_fill(const std::vector<Tree>& trees) {
 }
 
 }  // namespace
+
+MeshInputs mesh_inputs(const SceneDescription& scene, const Surfaces& surfaces) {
+  MeshInputs in{.file = file_of(scene),
+                .spatial_splits = scene.render.spatial_splits,
+                .default_material = surfaces.default_material,
+                .material_count = scene.materials.size(),
+                .meshes = placed_meshes(scene),
+                .groups = mesh_groups(scene)};
+  in.places.value.resize(scene.meshes.size());
+  for (std::size_t i = scene.objects.size(); i-- > 0;)
+    if (const auto* shape = std::get_if<MeshShape>(&scene.objects[i].shape))
+      in.places.value[static_cast<std::size_t>(shape->mesh)] = scene.objects[i].place;
+  return in;
+}
 
 Meshes compile_meshes(const MeshInputs& in) {
   Meshes out;

@@ -121,4 +121,14 @@ std::vector<std::vector<std::size_t>> mesh_groups(const SceneDescription& scene)
   return groups;
 }
 
+std::vector<const Mesh*> placed_meshes(const SceneDescription& scene) {
+  std::vector<const Mesh*> meshes(scene.meshes.size());
+  for (const Object& object : scene.objects)
+    if (const auto* shape = std::get_if<MeshShape>(&object.shape)) {
+      const auto mesh = static_cast<std::size_t>(shape->mesh);
+      meshes[mesh] = &scene.meshes[mesh];
+    }
+  return meshes;
+}
+
 }  // namespace sundog

@@ -1,4 +1,5 @@
-// Finds meshes that should share a BVH because they are nested, like liquid in ice.
+// Finds the meshes that objects place, and those that should share a BVH because they are nested, like liquid
+// in ice.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -11,5 +12,8 @@ namespace sundog {
 /// placed by a single object, with equal transforms and no motion, and their boxes overlap so much that
 /// nearly every ray would traverse both trees.
 std::vector<std::vector<std::size_t>> mesh_groups(const SceneDescription& scene);
+
+/// The scene's meshes; null for a mesh that no object places.
+std::vector<const Mesh*> placed_meshes(const SceneDescription& scene);
 
 }  // namespace sundog

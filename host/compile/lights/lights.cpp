@@ -27,6 +27,12 @@ void add_lights(const LightInputs& in, Lights& out) {
 
 }  // namespace
 
+Halo compile_halo(const HaloInputs& in) {
+  const EnvironmentDescription& e = *in.environment;
+  if (e.type != EnvironmentType::halo) return nullptr;
+  return e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
+}
+
 LightInputs light_inputs(const SceneDescription& scene, const dvec3& origin, const Known<Halo>& halo) {
   LightInputs in{.file = file_of(scene),
                  .origin = origin,
@@ -35,12 +41,6 @@ LightInputs light_inputs(const SceneDescription& scene, const dvec3& origin, con
                  .halo = halo};
   if (!fog_scatters(scene)) in.fog_color = scene.fog.color, in.fog_density = scene.fog.density;
   return in;
-}
-
-Halo compile_halo(const HaloInputs& in) {
-  const EnvironmentDescription& e = *in.environment;
-  if (e.type != EnvironmentType::halo) return nullptr;
-  return e.halo_map ? e.halo_map : std::make_shared<const HaloMap>(trace_halo(plan_halo(e)));
 }
 
 Lights compile_lights(const LightInputs& in) {

@@ -15,9 +15,7 @@
 #include "compile/placing/motion.h"
 #include "compile/shapes.h"
 #include "compile/surfaces/lobes.h"
-#include "compile/surfaces/textures.h"
 #include "compile/touching/near_fields.h"
-#include "compile/view/local_origin.h"
 
 namespace sundog {
 namespace {
@@ -87,13 +85,6 @@ Bounds interval_of(const FieldInterval& field) {
   }
   box.lower[3] = box.upper[3] = 0;
   return box;
-}
-
-/// The edge of a cell of the object's checkerboard; 0 without a checkerboard.
-double checker_size(const SceneDescription& scene, const Object& object) {
-  if (object.material < 0) return 0;
-  const MaterialDescription& material = scene.materials[static_cast<std::size_t>(object.material)];
-  return material.checker ? material.checker_size : 0;
 }
 
 /// Converts objects to instances, and notes the kernel features that their materials need.
@@ -312,21 +303,29 @@ std::vector<Placed> take_large_solids(std::vector<Placed>& bounded, const Bounds
   return {};
 }
 
+SurfaceFacts facts_of(const Material& material) {
+  u32 known = MATERIAL_SHADOW_OPAQUE | MATERIAL_THIN | MATERIAL_WALL | MATERIAL_FROSTED | MATERIAL_CATCHER;
+  for (const LobeRow& lobe : lobe_rows)
+    if (lobe.feature) known |= lobe.flags;
+  const float4& shines = material.emission;
+  return {material.flags & known, material.kind, shines.x != 0 || shines.y != 0 || shines.z != 0};
+}
+
 }  // namespace
 
-dmat4 place_of_plane(const SceneDescription& scene, const Object& object, const dvec3& origin) {
-  dmat4 result = object.world_from_object;
-  result[3] -= glm::dvec4(origin, 0);
-  if (object.material >= 0 && has_maps(scene.materials[static_cast<std::size_t>(object.material)]))
-    return result;
-  const dmat4 local_from_object = result;
-  const dvec3 here(glm::inverse(local_from_object)[3]);
-  for (const int axis : {0, 2}) {
-    const dvec3 along(local_from_object[axis]);
-    const double length = glm::length(along), period = 2 * checker_size(scene, object);
-    result[3] += glm::dvec4(far_part(here[axis] * length, period * length, scene.camera) / length * along, 0);
-  }
-  return result;
+InstanceInputs instance_inputs(const SceneDescription& scene, const dvec3& origin,
+                               const Known<Meshes>& meshes, const Surfaces& surfaces) {
+  InstanceInputs in{.file = file_of(scene),
+                    .origin = origin,
+                    .meshes = meshes,
+                    .default_material = surfaces.default_material,
+                    .objects = scene.objects};
+  for (const SdfDescription& field : scene.fields) in.fields.push_back({field.lower, field.upper});
+  for (const Object& object : scene.objects)
+    if (std::holds_alternative<PlaneShape>(object.shape))
+      in.planes.push_back(place_of_plane(scene, object, origin));
+  for (const Material& material : surfaces.materials) in.surfaces.push_back(facts_of(material));
+  return in;
 }
 
 Instances compile_instances(const InstanceInputs& in) {

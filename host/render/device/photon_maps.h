@@ -7,7 +7,7 @@
 #include "compile/compiled_scene.h"
 #include "render/device/frame_kernels.h"
 #include "render/device/launch_watch.h"
-#include "render/frame/device_worker.h"
+#include "render/values/tile.h"
 
 namespace sundog {
 

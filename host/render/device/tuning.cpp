@@ -25,8 +25,6 @@ namespace {
 using nlohmann::json;
 using enum WorkGroup::Kind;
 
-constexpr const char* of_paths = "+paths";
-
 json entry_json(const TuningEntry& entry) {
   json result{{"kernel", entry.kernel},
               {"class", entry.scene_class},
@@ -42,6 +40,15 @@ json entry_json(const TuningEntry& entry) {
               {"tuned_ms", entry.tuned_ms}};
   if (!entry.tuning.options.empty()) result["options"] = entry.tuning.options;
   return result;
+}
+
+std::string class_of(const CompiledScene& scene, const Integrator& integrator) {
+  const auto& shapes = scene.features.shapes;
+  std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
+  if (scene.tracer == Tracer::wide) kind += "+wide";
+  if (scene.tracer == Tracer::compact) kind += "+compact";
+  kind += integrator.tuning;
+  return scene.features.secondary_rays ? kind + "+rays" : kind;
 }
 
 }  // namespace
@@ -77,12 +84,7 @@ std::string tuning_text(const Tuning& tuning) {
 }
 
 std::string scene_class(const CompiledScene& scene) {
-  const auto& shapes = scene.features.shapes;
-  std::string kind = shapes[SHAPE_SDF] ? "fields" : shapes[SHAPE_MESH] ? "meshes" : "solids";
-  if (scene.tracer == Tracer::wide) kind += "+wide";
-  if (scene.tracer == Tracer::compact) kind += "+compact";
-  if (scene.integrator == "path") kind += of_paths;
-  return scene.features.secondary_rays ? kind + "+rays" : kind;
+  return class_of(scene, integrator_of(scene.integrator));
 }
 
 std::string kernels_hash(const HostEnvironment& environment) {
@@ -144,13 +146,11 @@ Tuning saved_tuning(const DeviceInfo& device, const CompiledScene& scene) {
   const std::optional<TuningFile> file = load_tuning(device);
   if (!file) return {};
   const std::string own = scene_class(scene);
-  // Used for paths too, except `options`, which whitted's tuning did not compare for paths.
-  std::string whitteds = own;
-  if (const std::size_t at = own.find(of_paths); at != std::string::npos)
-    whitteds.erase(at, std::string_view(of_paths).size());
+  // Used for others too, except `options`, which the first integrator's tuning did not compare for them.
+  const std::string of_first = class_of(scene, integrators.front());
   Tuning tuning;
   WorkGroup surfaces_group;
-  for (const std::string& wanted : {whitteds, own})
+  for (const std::string& wanted : {of_first, own})
     for (const TuningEntry& entry : file->entries) {
       if (entry.scene_class != wanted) continue;
       if (entry.kernel == surfaces_kernel)

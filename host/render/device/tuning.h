@@ -10,6 +10,7 @@
 #include "compile/compiled_scene.h"
 #include "device/devices.h"
 #include "render/values/tuning.h"
+#include "scene/integrators.h"
 #include "scene/json/value.h"
 
 namespace sundog {
@@ -23,7 +24,7 @@ std::optional<WorkGroup> work_group_of(std::string_view text);
 std::string tuning_text(const Tuning& tuning);
 
 /// The kernels that are tuned, each separately.
-constexpr const char* frame_kernel = "render_whitted";
+constexpr const char* frame_kernel = integrators.front().kernel;
 constexpr const char* surfaces_kernel = "first_surfaces";  // the AOV kernel; only its surfaces_group is tuned
 
 /// A kernel's Tuning with its measurements: the scene, and the milliseconds of the whole frame (frame_kernel)
@@ -41,7 +42,7 @@ struct TuningFile {
 };
 
 /// The class of scenes that share a tuning: "meshes", "solids", "fields"; plus "+wide" or "+compact" if the
-/// scene asks for a tracer, "+paths" for the integrator path, "+rays" for reflections or refractions.
+/// scene asks for a tracer, the integrator's own end, "+rays" for reflections or refractions.
 std::string scene_class(const CompiledScene& scene);
 
 /// The hash of all current kernel sources.

@@ -21,12 +21,16 @@ std::string scene_class_from(const JsonValue& value) {
   const std::string found = value.text();
   for (const char* kind : {"fields", "meshes", "solids"})
     for (const char* tracer : {"", "+wide", "+compact"})
-      for (const char* paths : {"", "+paths"})
+      for (const Integrator& integrator : integrators)
         for (const char* rays : {"", "+rays"})
-          if (found == std::string(kind) + tracer + paths + rays) return found;
+          if (found == fmt::format("{}{}{}{}", kind, tracer, integrator.tuning, rays)) return found;
+  std::string ends;
+  for (const Integrator& integrator : integrators)
+    if (!integrator.tuning.empty())
+      ends += fmt::format("{} for the integrator {}, ", integrator.tuning, integrator.name);
   value.wanted(
-      "a class of scenes: solids, meshes or fields, then +wide or +compact where a tracer was asked "
-      "for, +paths for the integrator path, then +rays where there are secondary rays");
+      "a class of scenes: solids, meshes or fields, then +wide or +compact where a tracer was asked for, " +
+      ends + "then +rays where there are secondary rays");
 }
 
 WorkGroup work_group_from(const JsonValue& value) {

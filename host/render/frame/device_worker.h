@@ -1,7 +1,6 @@
 // The interface of workers, which render tiles on a device of this process, in a worker process, or on
 // another machine.
 #pragma once
-#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,13 +28,6 @@ struct TileRequest : Samples {
 struct TileResult : Samples {
   Tile tile;
   RayCounts counts{};
-};
-
-/// Checked between launches: whether to return the part finished so far.
-struct StopFlags {
-  const std::atomic<bool>* stop = nullptr;       // the frame is over
-  const std::atomic<bool>* cancelled = nullptr;  // another device has finished the tile
-  bool set() const { return (stop && stop->load()) || (cancelled && cancelled->load()); }
 };
 
 /// A worker is used by one thread; overdue() and compiles() may be called by any.

@@ -1,16 +1,20 @@
-// A frame's steps: plan, passes, film, image. The threads of its workers (frame_loop.h: run_frame()) render
-// the passes between begin_frame() and finish_frame().
+// A frame's story: plan, passes, film. Between begin_frame() and finish_frame() the threads of its workers
+// render the passes (frame_loop.cpp), each tile by tile (frame_worker.cpp).
 #include "render/frame/frame.h"
 
 #include <algorithm>
 
-#include "render/frame/frame_checkpoint.h"
-#include "render/frame/frame_end.h"
-#include "render/frame/frame_plan.h"
-#include "render/frame/frame_worker.h"
+#include "render/frame/frame_loop.h"
 #include "render/plan/subsample.h"
 
 namespace sundog {
+
+RenderResult render_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& workers,
+                          const RenderOptions& options, bool wait) {
+  const std::shared_ptr<Frame> frame = begin_frame(scene, workers, options);
+  run_frame(frame, wait);
+  return finish_frame(*frame);
+}
 
 // The plan.
 
@@ -45,6 +49,12 @@ void begin_pass(Frame& frame, std::optional<Pass> next) {
   continue_pass(frame);
 }
 
+void begin_coarse(Frame& frame, int block) {
+  frame.coarse.block = block;
+  begin_pass(frame, block > 0 ? coarse_pass(frame.film.width, frame.film.height, block)
+                              : next_pass(frame.film, frame.plan));
+}
+
 void continue_pass(Frame& frame) {
   frame.since_pass = Stopwatch();
   frame.pass_pixels = frame.pass_film.done.size();
@@ -54,49 +64,24 @@ void continue_pass(Frame& frame) {
 
 namespace {
 
-/// Copies a tile, or its finished rows, into the film. The caller holds the frame's mutex.
-void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
-  if (frame.over || made.tile.height == 0) return;
-  frame.pixels_done += frame.pass_film.put(made.tile, made);
-  for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
-  frame.workers[i].report.pixels += pixel_count(made.tile);
-  if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
-  report_progress(frame);
-  stop_if_asked(frame);
-  stop_at_time_limit(frame);
+/// Ends a coarse pass, whose picture may now be displayed. Returns the next coarse pass, or nothing when the
+/// frame's own passes follow.
+std::optional<Pass> finer_pass(Frame& frame) {
+  CoarsePasses& coarse = frame.coarse;
+  coarse.picture.take(frame.pass, frame.pass_film, frame.film.width, frame.film.height, coarse.block);
+  ++coarse.count;
+  const double blocks = static_cast<double>(coarse.picture.colors.size());
+  coarse.pixel_seconds = expected_pixel_seconds(frame.since_pass.seconds() / blocks, coarse.pixel_seconds);
+  coarse.block = next_block(coarse.block, coarse.pixel_seconds, frame.film.pixels());
+  if (coarse.block == 0) return std::nullopt;
+  return coarse_pass(frame.film.width, frame.film.height, coarse.block);
 }
 
-/// Renders one tile; throws the worker's exceptions.
-void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
-  const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
-  const Stopwatch busy;
-  std::optional<TileRequest> request = request_of(frame, job.tile);
-  if (!request) return;
-  const TileResult made = render_in_picture(frame, *frame.workers[i].device, std::move(*request), flags);
-  const double seconds = busy.seconds();
-  const bool whole = made.tile == job.tile;
-  // Queue and film change under one lock: when the queue has no tiles left, the film has them all.
-  const std::lock_guard lock(frame.mutex);
-  const bool first = whole ? frame.queue.finished(i, job, seconds) : frame.queue.given_up(i, job);
-  if (first) keep_tile(frame, i, made);
-  (first ? frame.workers[i].report.tiles : frame.workers[i].report.outrun) += whole || !first;
+/// Records how long a pixel of the frame's first pass took.
+void measure_pixels(Frame& frame) {
+  if (frame.film.stage == 0)
+    frame.coarse.pixel_seconds = frame.since_pass.seconds() / static_cast<double>(frame.film.pixels());
 }
-
-}  // namespace
-
-void make_tiles(Frame& frame, std::size_t i) {
-  while (const std::optional<TileJob> job = frame.queue.take(i)) {
-    if (frame.between_tiles) frame.between_tiles(i);
-    try {
-      make_tile(frame, i, *job);
-      if (frame.live) take_figures(frame, i);
-    } catch (const DeviceError& error) {
-      if (!recover(frame, i, *job, error)) return;
-    }
-  }
-}
-
-namespace {
 
 /// Adds the complete pass to the film. Returns the next pass, as the film requires it.
 std::optional<Pass> following_pass(Frame& frame) {
@@ -128,22 +113,5 @@ void plan_next_pass(Frame& frame) {
 Film film_so_far(const Frame& frame) { return joined(frame, frame.film, frame.pass_film); }
 
 Film take_film(Frame& frame) { return joined(frame, std::move(frame.film), std::move(frame.pass_film)); }
-
-// The image.
-
-RenderResult finish_frame(Frame& frame) {
-  const std::lock_guard lock(frame.mutex);
-  RenderResult result;
-  note_end(frame, result);
-  const bool is_lost = result.failure && !(frame.options.keep_failed && has_pixels(frame));
-  keep_checkpoint(frame, result);
-  if (is_lost) std::rethrow_exception(result.failure);
-  // Drops the unfinished pass, with which parts of the picture would have twice the samples of others.
-  if (result.time_limited && frame.film.stage > 0) frame.pass_film = Film();
-  result.film = take_film(frame);
-  develop(frame, result);
-  note_figures(frame, result);
-  return result;
-}
 
 }  // namespace sundog

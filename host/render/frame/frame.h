@@ -78,13 +78,17 @@ inline const std::filesystem::path& checkpoint_path(const RenderOptions& options
 
 // frame.cpp
 
-/// Plans the frame and begins its first pass, or continues from its checkpoint. Throws the same exceptions as
-/// render() (render.h).
+/// Plans, runs and finishes a frame. Throws like render() (render.h). With `wait`, every thread has ended on
+/// return; otherwise DeviceInfo::threads takes over the threads inside a driver.
+RenderResult render_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& workers,
+                          const RenderOptions& options, bool wait);
+
+/// Plans the frame and begins its first pass, or continues from its checkpoint. Throws like render().
 std::shared_ptr<Frame> begin_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
                                    const RenderOptions& options);
 
-/// Gathers the result of a frame that is over. Rethrows the last device's failure if the frame is lost.
-RenderResult finish_frame(Frame& frame);
+/// Begins the frame with coarse passes before its own, starting with blocks of edge `block` (0: none).
+void begin_coarse(Frame& frame, int block);
 
 /// Plans the next pass if all tiles of the current one are done; without a next pass the frame is complete.
 /// Here and below, the caller holds the frame's mutex or has the only thread.
@@ -96,10 +100,6 @@ void begin_pass(Frame& frame, std::optional<Pass> next);
 /// Begins the rest of the current pass, whose finished pixels are in Frame::pass_film.
 void continue_pass(Frame& frame);
 
-/// Renders tiles with worker i until none are left, the frame is stopped, or the worker has failed too often
-/// (then throws its failure).
-void make_tiles(Frame& frame, std::size_t i);
-
 /// The film of the complete passes, plus the finished tiles of the current pass.
 Film film_so_far(const Frame& frame);
 
@@ -109,17 +109,37 @@ Film take_film(Frame& frame);
 /// Whether any pixel of the frame is finished.
 inline bool has_pixels(const Frame& frame) { return frame.pixels_done > 0 || frame.film.stage > 0; }
 
-// frame_coarse.cpp
+// frame_plan.cpp
 
-/// Begins the frame with coarse passes before its own, starting with blocks of edge `block` (0: none).
-void begin_coarse(Frame& frame, int block);
+/// Throws UsageError for options that no frame of the scene supports, DeviceError without devices.
+void check_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                 const RenderOptions& options);
 
-/// Ends a coarse pass, whose picture may now be displayed. Returns the next coarse pass, or nothing when the
-/// frame's own passes follow.
-std::optional<Pass> finer_pass(Frame& frame);
+/// Creates a frame with its plan of passes and tiles and its workers. No pass has begun.
+std::shared_ptr<Frame> plan_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& devices,
+                                  const RenderOptions& options);
 
-/// Records how long a pixel of the frame's first pass took.
-void measure_pixels(Frame& frame);
+// frame_checkpoint.cpp
+
+/// Continues the frame from its checkpoint. Returns false if there is none. Throws for a damaged one or one
+/// of another frame.
+bool continue_checkpoint(Frame& frame);
+
+/// Saves a checkpoint periodically, or when the caller asks, so that a killed process or a power failure
+/// loses little.
+void renew_checkpoint(Frame& frame);
+
+/// Saves an interrupted frame. Records a full disk in `result` instead of throwing, so that the image can
+/// still be written.
+void keep_checkpoint(const Frame& frame, RenderResult& result);
+
+// frame_watch.cpp
+
+/// Waits on the caller's thread for the frame's end: finished, stopped (options.stop), or out of workers.
+/// Meanwhile reports progress, shows the picture, saves checkpoints, retires workers that hang. With `wait`,
+/// every worker has left it on return; otherwise, after a short grace period, workers inside a driver are
+/// abandoned.
+void watch_frame(Frame& frame, bool wait);
 
 // frame_worker.cpp
 
@@ -147,5 +167,11 @@ void report_progress(Frame& frame);
 
 /// Retires workers whose launches are overdue.
 void retire_hanging(Frame& frame);
+
+/// The workers' reports, with their shares of the work. The caller holds the frame's mutex.
+std::vector<DeviceReport> reports(const Frame& frame);
+
+/// Gathers the result of a frame that is over. Rethrows the last device's failure if the frame is lost.
+RenderResult finish_frame(Frame& frame);
 
 }  // namespace sundog

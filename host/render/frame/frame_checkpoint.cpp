@@ -1,5 +1,5 @@
 // Continues a frame from its checkpoint, and renews the checkpoint while the frame is rendered.
-#include "render/frame/frame_checkpoint.h"
+#include "render/frame/frame.h"
 
 #include "base/error.h"
 #include "base/file.h"

@@ -1,5 +1,5 @@
 // Reports a frame's progress, ends it early if asked, and gathers its result.
-#include "render/frame/frame_end.h"
+#include "render/frame/frame.h"
 
 #include <fmt/format.h>
 
@@ -37,6 +37,38 @@ void cut_to(const Tile& area, RenderResult& result) {
   for (auto& [name, image] : result.aovs) cut(image);
 }
 
+/// Records whether the frame is complete, and if not, why.
+void note_end(const Frame& frame, RenderResult& result) {
+  const bool stopped = frame.options.stop && frame.options.stop->load();
+  result.key = frame.key;
+  result.complete = frame.queue.complete();
+  result.time_limited = frame.limited && !result.complete;
+  result.checkpoint_left = frame.checkpoint_left;
+  if (!result.complete && !stopped) result.failure = frame.last_error;
+}
+
+/// Develops the film into image and AOVs; crops them all to the frame's region.
+void make_images(const Frame& frame, RenderResult& result) {
+  const RenderOptions& options = frame.options;
+  if (options.channels > 0) {
+    result.image = result.film.develop(options.channels);
+    for (const std::string& name : options.aovs) result.aovs[name] = result.film.develop_aov(name);
+  }
+  if (options.region) cut_to(frame.inner, result);
+}
+
+/// Records times, ray counts, and each worker's share.
+void note_figures(const Frame& frame, RenderResult& result) {
+  result.devices = reports(frame);
+  result.efficiency = frame_efficiency(frame);
+  result.counts = frame.counts;
+  result.times = frame.times;
+  RenderTimes& times = result.times;
+  if (frame.timed) times.build_kernels += first_launch_seconds(frame.workers[*frame.timed].report.kernels);
+  times.readback = frame.readback;
+  times.render = std::max(0.0, frame.clock.seconds() - times.build_kernels - times.upload - frame.readback);
+}
+
 }  // namespace
 
 void report_progress(Frame& frame) {
@@ -69,15 +101,6 @@ void stop_if_asked(Frame& frame) {
   frame.queue.close();
 }
 
-void note_end(const Frame& frame, RenderResult& result) {
-  const bool stopped = frame.options.stop && frame.options.stop->load();
-  result.key = frame.key;
-  result.complete = frame.queue.complete();
-  result.time_limited = frame.limited && !result.complete;
-  result.checkpoint_left = frame.checkpoint_left;
-  if (!result.complete && !stopped) result.failure = frame.last_error;
-}
-
 std::vector<DeviceReport> reports(const Frame& frame) {
   std::vector<DeviceReport> result;
   std::uint64_t pixels = 0;
@@ -92,24 +115,19 @@ std::vector<DeviceReport> reports(const Frame& frame) {
   return result;
 }
 
-void note_figures(const Frame& frame, RenderResult& result) {
-  result.devices = reports(frame);
-  result.efficiency = frame_efficiency(frame);
-  result.counts = frame.counts;
-  result.times = frame.times;
-  RenderTimes& times = result.times;
-  if (frame.timed) times.build_kernels += first_launch_seconds(frame.workers[*frame.timed].report.kernels);
-  times.readback = frame.readback;
-  times.render = std::max(0.0, frame.clock.seconds() - times.build_kernels - times.upload - frame.readback);
-}
-
-void develop(const Frame& frame, RenderResult& result) {
-  const RenderOptions& options = frame.options;
-  if (options.channels > 0) {
-    result.image = result.film.develop(options.channels);
-    for (const std::string& name : options.aovs) result.aovs[name] = result.film.develop_aov(name);
-  }
-  if (options.region) cut_to(frame.inner, result);
+RenderResult finish_frame(Frame& frame) {
+  const std::lock_guard lock(frame.mutex);
+  RenderResult result;
+  note_end(frame, result);
+  const bool is_lost = result.failure && !(frame.options.keep_failed && has_pixels(frame));
+  keep_checkpoint(frame, result);
+  if (is_lost) std::rethrow_exception(result.failure);
+  // Drops the unfinished pass, with which parts of the picture would have twice the samples of others.
+  if (result.time_limited && frame.film.stage > 0) frame.pass_film = Film();
+  result.film = take_film(frame);
+  make_images(frame, result);
+  note_figures(frame, result);
+  return result;
 }
 
 }  // namespace sundog

@@ -1,6 +1,5 @@
 // Starts the threads, runs the current frame in each, and at the end leaves behind those inside a driver.
 #include "render/frame/frame_loop.h"
-#include "render/frame/frame_watch.h"
 
 namespace sundog {
 namespace {
@@ -135,13 +134,6 @@ void run_frame(const std::shared_ptr<Frame>& frame, bool wait) {
       loop->threads[i]->abandoned = frame->workers[i].report.abandoned;
   }
   loop->end();
-}
-
-RenderResult render_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& workers,
-                          const RenderOptions& options, bool wait) {
-  const std::shared_ptr<Frame> frame = begin_frame(scene, workers, options);
-  run_frame(frame, wait);
-  return finish_frame(*frame);
 }
 
 }  // namespace sundog

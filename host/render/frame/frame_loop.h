@@ -85,8 +85,4 @@ class FrameLoop : public std::enable_shared_from_this<FrameLoop> {
 /// ended on return; otherwise DeviceInfo::threads takes over the threads inside a driver.
 void run_frame(const std::shared_ptr<Frame>& frame, bool wait);
 
-/// Plans, runs and finishes a frame. Throws like render() (render.h).
-RenderResult render_frame(const CompiledScene& scene, const std::vector<WorkerPlan>& workers,
-                          const RenderOptions& options, bool wait);
-
 }  // namespace sundog

@@ -2,8 +2,7 @@
 // abandons the remaining threads.
 #include <algorithm>
 
-#include "render/frame/frame_checkpoint.h"
-#include "render/frame/frame_watch.h"
+#include "render/frame/frame.h"
 
 namespace sundog {
 namespace {

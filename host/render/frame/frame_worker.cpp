@@ -1,5 +1,6 @@
-// A worker's part in a frame, on its own thread: opening it, reopening it after failures, and leaving.
-#include "render/frame/frame_worker.h"
+// A worker's part in a frame, on its own thread: opens it, renders tiles into the film, reopens it after
+// failures, and leaves.
+#include "render/frame/frame.h"
 
 #include <algorithm>
 
@@ -71,8 +72,7 @@ void begin_work(Frame& frame, std::size_t i, const RenderTimes& times) {
   frame.workers[i].phase = Phase::working;
 }
 
-}  // namespace
-
+/// The request for a tile, with its pixels' earlier samples; nothing if the frame is over.
 std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   TileRequest request;
   request.tile = tile;
@@ -108,6 +108,7 @@ std::optional<TileRequest> request_of(Frame& frame, const Tile& tile) {
   return request;
 }
 
+/// Has the worker render a tile of the frame, translated to the frame's place in the picture.
 TileResult render_in_picture(const Frame& frame, DeviceWorker& worker, TileRequest request,
                              const StopFlags& flags) {
   if (!frame.options.region) return worker.render(request, flags);
@@ -121,6 +122,34 @@ TileResult render_in_picture(const Frame& frame, DeviceWorker& worker, TileReque
   return made;
 }
 
+/// Copies a tile, or its finished rows, into the film. The caller holds the frame's mutex.
+void keep_tile(Frame& frame, std::size_t i, const TileResult& made) {
+  if (frame.over || made.tile.height == 0) return;
+  frame.pixels_done += frame.pass_film.put(made.tile, made);
+  for (std::size_t c = 0; c < COUNTERS; ++c) frame.counts[c] += made.counts[c];
+  frame.workers[i].report.pixels += pixel_count(made.tile);
+  if (!frame.stop || !in_passes(frame.plan.settings)) plan_next_pass(frame);  // planning may take long
+  report_progress(frame);
+  stop_if_asked(frame);
+  stop_at_time_limit(frame);
+}
+
+/// Renders one tile; throws the worker's exceptions.
+void make_tile(Frame& frame, std::size_t i, const TileJob& job) {
+  const StopFlags flags{&frame.stop, &frame.queue.cancelled(i)};
+  const Stopwatch busy;
+  std::optional<TileRequest> request = request_of(frame, job.tile);
+  if (!request) return;
+  const TileResult made = render_in_picture(frame, *frame.workers[i].device, std::move(*request), flags);
+  const double seconds = busy.seconds();
+  const bool whole = made.tile == job.tile;
+  // Queue and film change under one lock: when the queue has no tiles left, the film has them all.
+  const std::lock_guard lock(frame.mutex);
+  const bool first = whole ? frame.queue.finished(i, job, seconds) : frame.queue.given_up(i, job);
+  if (first) keep_tile(frame, i, made);
+  (first ? frame.workers[i].report.tiles : frame.workers[i].report.outrun) += whole || !first;
+}
+
 void take_figures(Frame& frame, std::size_t i) {
   WorkerFigures figures = frame.workers[i].device->figures();
   const std::lock_guard lock(frame.mutex);
@@ -129,6 +158,9 @@ void take_figures(Frame& frame, std::size_t i) {
   static_cast<WorkerFigures&>(report) = std::move(figures);
 }
 
+/// Handles worker i's failure at a tile, in the handler that caught it: returns the tile to the queue and
+/// reopens the worker. Returns false if the frame is stopped. Rethrows the failure if the worker has failed
+/// too often.
 bool recover(Frame& frame, std::size_t i, const TileJob& job, const DeviceError& error) {
   const bool too_large = is_out_of_resources(error.status) && pixel_count(job.tile) > least_pixels;
   if (too_large) frame.queue.halve(i, job.tile);
@@ -139,17 +171,21 @@ bool recover(Frame& frame, std::size_t i, const TileJob& job, const DeviceError&
   return true;
 }
 
-void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
-  frame.queue.retire(i);
-  const std::lock_guard lock(frame.mutex);
-  Frame::Worker& worker = frame.workers[i];
-  if (worker.failed) return;
-  worker.failed = worker.report.retired = true;
-  if (worker.report.messages.empty() || worker.report.messages.back() != why)
-    worker.report.messages.push_back(why);
-  frame.last_error = std::move(error);
-  if (std::ranges::all_of(frame.workers, &Frame::Worker::failed)) frame.queue.close();
+/// Renders tiles with worker i until none are left, the frame is stopped, or the worker has failed too often
+/// (then throws its failure).
+void make_tiles(Frame& frame, std::size_t i) {
+  while (const std::optional<TileJob> job = frame.queue.take(i)) {
+    if (frame.between_tiles) frame.between_tiles(i);
+    try {
+      make_tile(frame, i, *job);
+      if (frame.live) take_figures(frame, i);
+    } catch (const DeviceError& error) {
+      if (!recover(frame, i, *job, error)) return;
+    }
+  }
 }
+
+}  // namespace
 
 void work_on_frame(Frame& frame, std::size_t i) {
   try {
@@ -164,6 +200,18 @@ void work_on_frame(Frame& frame, std::size_t i) {
     retire_worker(frame, i, error.what(), std::current_exception());
   }
   take_figures(frame, i);
+}
+
+void retire_worker(Frame& frame, std::size_t i, const std::string& why, std::exception_ptr error) {
+  frame.queue.retire(i);
+  const std::lock_guard lock(frame.mutex);
+  Frame::Worker& worker = frame.workers[i];
+  if (worker.failed) return;
+  worker.failed = worker.report.retired = true;
+  if (worker.report.messages.empty() || worker.report.messages.back() != why)
+    worker.report.messages.push_back(why);
+  frame.last_error = std::move(error);
+  if (std::ranges::all_of(frame.workers, &Frame::Worker::failed)) frame.queue.close();
 }
 
 void leave_frame(Frame& frame, std::size_t i, bool closes) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "render/film/group_names.h"
-#include "render/frame/frame_watch.h"
 #include "render/session/live_session.h"
 #include "scene/integrators.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "render/device/local_worker.h"
 #include "render/frame/frame.h"
+#include "render/frame/local_worker.h"
 #include "render/session/live_session.h"
 
 namespace sundog {

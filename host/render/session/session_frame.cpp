@@ -4,9 +4,6 @@
 
 #include <algorithm>
 
-#include "render/frame/frame_end.h"
-#include "render/frame/frame_plan.h"
-
 namespace sundog {
 namespace {
 
@@ -48,7 +45,7 @@ void balance_pixel(const Film& film, std::size_t i, std::span<const glm::vec3> b
   pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
 }
 
-Image develop(const Film& film, std::span<const glm::vec3> balance) {
+Image balanced_image(const Film& film, std::span<const glm::vec3> balance) {
   Image image = film.develop(4);
   for (std::size_t i = 0; i < film.done.size(); ++i)
     if (film.done[i]) balance_pixel(film, i, balance, image.data.data() + 4 * i);
@@ -123,10 +120,10 @@ FrameSamples samples_of(const Frame& frame, unsigned wanted) {
 Image picture_of(const Frame& frame, std::span<const glm::vec3> balance) {
   const Film& film = frame.film;
   const CoarsePasses& coarse = frame.coarse;
-  if (frame.pass_film.done.empty()) return develop(film, balance);
+  if (frame.pass_film.done.empty()) return balanced_image(film, balance);
   if (frame.plan.settings.subsample && coarse.block == 0 && film.stage > 0)
-    return develop(film_so_far(frame), balance);
-  Image image = film.stage > 0 ? develop(film, balance) : Image(film.width, film.height, 4);
+    return balanced_image(film_so_far(frame), balance);
+  Image image = film.stage > 0 ? balanced_image(film, balance) : Image(film.width, film.height, 4);
   if (film.stage == 0 && coarse.picture.block > 0) fill_coarse(coarse.picture, image);
   if (coarse.block == 0) fill_from_pass(frame, balance, image);
   return image;

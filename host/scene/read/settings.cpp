@@ -134,7 +134,7 @@ ToneMap read_tone_map(const JsonValue& value) {
   });
 }
 
-static ImageSettings read_image(const JsonValue& value) {
+static ImageSettings read_image_settings(const JsonValue& value) {
   return value.object("image", [](JsonObject& object) {
     ImageSettings image;
     read_members(object, image);
@@ -179,7 +179,7 @@ FogDescription read_fog(const JsonValue& value) {
 bool read_view_sections(const FindSection& find, SceneDescription& scene) {
   bool placed = false;
   const auto image = find("image"), render = find("render"), camera = find("camera"), lights = find("lights");
-  scene.image = image ? read_image(*image) : ImageSettings{};
+  scene.image = image ? read_image_settings(*image) : ImageSettings{};
   scene.render = render ? read_render(*render) : RenderSettings{};
   scene.camera = camera ? read_camera(*camera, scene.image, scene.unit, placed) : Camera{};
   scene.lights.clear();

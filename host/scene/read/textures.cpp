@@ -59,7 +59,7 @@ void read_wraps(JsonObject& object, TextureDescription& texture) {
 void TextureLibrary::read(const JsonValue& value, const std::string& name) {
   const std::string type = value.type();
   Entry entry = value.object("texture", [&](JsonObject& object) {
-    if (type == "image") return read_image(object);
+    if (type == "image") return read_image_texture(object);
     if (type == "vertex_color") return read_vertex_color(object);
     if (type == "ramp") return read_ramp(object);
     if (type == "product") return read_product(object);
@@ -226,7 +226,7 @@ TextureLibrary::Entry TextureLibrary::read_vertex_color(JsonObject& object) {
   return entry;
 }
 
-TextureLibrary::Entry TextureLibrary::read_image(JsonObject& object) const {
+TextureLibrary::Entry TextureLibrary::read_image_texture(JsonObject& object) const {
   Entry entry;
   TextureDescription& texture = entry.texture;
   texture.kind = TEXTURE_IMAGE;

@@ -42,7 +42,7 @@ class TextureLibrary {
     bool made = false;  // generated for a colour
     ImageEncoding encoding = ImageEncoding::automatic;
   };
-  Entry read_image(JsonObject& object) const;
+  Entry read_image_texture(JsonObject& object) const;
   static Entry read_vertex_color(JsonObject& object);
   Entry read_pattern(JsonObject& object, const std::string& type);
   Entry read_ramp(JsonObject& object);

@@ -18,5 +18,5 @@ typedef struct SlotValues {
 } SlotValues;
 static inline u32 place_of_slot(u32 slot) { return popcount(KEPT_SLOTS & ((1u << slot) - 1u)); }
 #include "plain/shade/bsdf.cl"
+#include "plain/shade/meet_interfaces.cl"
 #include "plain/shade/relief.cl"
-#include "plain/shade/relief_hits.cl"

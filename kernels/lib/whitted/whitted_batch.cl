@@ -28,7 +28,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
     const MASK again = next_listed(scene, lists, &rays.t_min, lanes, &last, &hits, &listed);
     if (any_lane(again)) push_shadows(stack, &rays, &paths, again);
     lanes &= ~again;
-    const MASK passing = lanes & reach_filter(scene, tile, &rays, &paths, &hits, counts, lanes);
+    const MASK passing = lanes & pass_or_end_shadow(scene, tile, &rays, &paths, &hits, counts, lanes);
     push_shadows(stack, &rays, &paths, passing & ~listed);
     lanes = passing & listed;
   } while (any_lane(lanes));
@@ -48,7 +48,7 @@ NEVER_INLINE void advance_shadows(const Scene* scene, const TileSamples* tile, u
     const MASK occluded = any_hits(scene, &rays, lanes, coherent, counts);
     hits.instance = select(hits.instance, NO_LANES, occluded);
   }
-  const MASK passing = lanes & reach_filter(scene, tile, &rays, &paths, &hits, counts, lanes);
+  const MASK passing = lanes & pass_or_end_shadow(scene, tile, &rays, &paths, &hits, counts, lanes);
   push_shadows(stack, &rays, &paths, passing);
 }
 #endif

@@ -44,7 +44,7 @@ static inline MASK follow_ray(const Scene* scene, const TileSamples* tile, Scene
   Encounters met CLEARED_ON_GPUS;
   const bool to_light = paths->depth == 0;
   next_hits(scene, rays, ALL_LANES, to_light, &met.hit, counts);
-  if (to_light) return reach_filter(scene, tile, rays, paths, &met.hit, counts, ALL_LANES);
+  if (to_light) return pass_or_end_shadow(scene, tile, rays, paths, &met.hit, counts, ALL_LANES);
   HAVING(HAS_PARALLAX, enter_relief(scene, rays, &met, counts, ALL_LANES);)
   MASK unseen = reach_interfaces(scene, rays, &met, counts, ALL_LANES);
   const MASK straight = ~unseen & is_from_camera(paths, ALL_LANES);

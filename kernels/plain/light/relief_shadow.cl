@@ -1,6 +1,6 @@
 // Shadows of reliefs below surfaces: on themselves (Brawley and Tatarchuk 2004, as in shade/parallax.cl), and
 // on what stands among them.
-#include "plain/shade/relief_hits.cl"
+#include "plain/shade/meet_interfaces.cl"
 
 #define PARALLAX_BIAS 0.01f  // of the depth: what heights must rise above a way to hold light off
 #define RELIEF_START 8.0f    // offsets above a relief at which a way from the light begins

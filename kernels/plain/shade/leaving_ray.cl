@@ -1,5 +1,5 @@
 // The ray that leaves a surface.
-#include "plain/shade/relief_hits.cl"
+#include "plain/shade/meet_interfaces.cl"
 
 // It goes in the direction d, above the surface or `below`, behind it. `way`: how far its start is from where
 // the relief lets it go.

@@ -1,7 +1,7 @@
 // Surfaces where rays meet them.
 #include "plain/shade/bsdf.cl"
+#include "plain/shade/meet_interfaces.cl"
 #include "plain/shade/relief.cl"
-#include "plain/shade/relief_hits.cl"
 
 // A shading normal may mirror the viewer's direction below the surface, where lobes about that are lost and
 // the surface is black. Then it is the one that mirrors it barely above. Perfect mirrors need none of it:

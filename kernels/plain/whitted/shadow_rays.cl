@@ -74,9 +74,11 @@ ENTRY static inline void cast_shadow(UNIFORM const Scene* scene, UNIFORM u32 ind
   push_shadow(tile, &to_light, &shadow);
 }
 
-// The shadow ray at what it has met: what reaches the light is added to its pixel. Whether it continues.
-ENTRY static inline bool reach_filter(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile,
-                                      SceneRay* ray, WaitingRay* path, SurfaceHit* hit, UNIFORM u32* counts) {
+// Takes a shadow ray through the filter that it has met, or ends it: what reaches the light is added to its
+// pixel. Returns whether the ray continues.
+ENTRY static inline bool pass_or_end_shadow(UNIFORM const Scene* scene, UNIFORM const TileSamples* tile,
+                                            SceneRay* ray, WaitingRay* path, SurfaceHit* hit,
+                                            UNIFORM u32* counts) {
   if (HAS_SHADOW_FILTERS) {
     if (pass_filter(scene, ray, hit, &path->throughput, counts)) return !passed_most(ray, counts);
     add_light(tile, path->pixel, path->throughput);

@@ -9,7 +9,7 @@
 #include "device/choice.h"
 #include "devices.h"
 #include "new_formula.h"
-#include "render/device/tile_renderer.h"
+#include "render/frame/tile_renderer.h"
 #include "render/session/render_session.h"
 #include "same_bits.h"
 #include "scene/integrators.h"

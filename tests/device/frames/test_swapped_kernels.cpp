@@ -5,7 +5,7 @@
 #include "compile/compiled_scene.h"
 #include "devices.h"
 #include "new_formula.h"
-#include "render/device/tile_renderer.h"
+#include "render/frame/tile_renderer.h"
 #include "scene/integrators.h"
 #include "scenes.h"
 #include "wait_for_builder.h"

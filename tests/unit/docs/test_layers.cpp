@@ -35,7 +35,7 @@ const std::map<std::string, Names> allowed = {
 /// The folders of a layer in their order: each includes only itself and those before it. Files of the layer's
 /// own folder come after all of them.
 const std::map<std::string, std::vector<std::string>> folders = {
-    {"host/render", {"values", "film", "plan", "frame", "device", "remote", "session"}},
+    {"host/render", {"values", "film", "plan", "device", "frame", "remote", "session"}},
     {"bench",
      {"plain", "report", "runs", "rays", "roofline", "frames", "quality", "tune", "commands", "peers"}},
     {"host/app", {"process", "options", "job", "render", "bake", "commands", "serve"}},

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "render/device/launch_sizer.h"
+#include "render/frame/launch_sizer.h"
 
 using namespace sundog;
 

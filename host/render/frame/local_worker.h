@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "render/device/launch_watch.h"
-#include "render/device/tile_renderer.h"
 #include "render/frame/device_worker.h"
 #include "render/frame/result.h"
+#include "render/frame/tile_renderer.h"
 
 namespace sundog {
 
@@ -55,7 +55,9 @@ class LocalWorker : public SceneWorker {
   WorkerFigures closed_;        // from previously opened renderers
 };
 
-/// Plans a worker for a device of this process.
+/// Plans a worker for a device of this process, or for each of several.
 WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceInfo& device);
+std::vector<WorkerPlan> plan_local_workers(const std::shared_ptr<const CompiledScene>& scene,
+                                           const std::vector<DeviceInfo>& devices);
 
 }  // namespace sundog

@@ -1,5 +1,5 @@
 // Opens the device for a scene, renders tiles with it, and totals its figures over reopenings.
-#include "render/device/local_worker.h"
+#include "render/frame/local_worker.h"
 
 #include <utility>
 
@@ -108,6 +108,13 @@ WorkerPlan plan_local(std::shared_ptr<const CompiledScene> scene, const DeviceIn
           [scene = std::move(scene), device](const RenderOptions& options) {
             return std::make_shared<LocalWorker>(device, scene, options);
           }};
+}
+
+std::vector<WorkerPlan> plan_local_workers(const std::shared_ptr<const CompiledScene>& scene,
+                                           const std::vector<DeviceInfo>& devices) {
+  std::vector<WorkerPlan> plans;
+  for (const DeviceInfo& device : devices) plans.push_back(plan_local(scene, device));
+  return plans;
 }
 
 }  // namespace sundog

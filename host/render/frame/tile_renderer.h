@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "render/device/frame_kernels.h"
-#include "render/device/launch_sizer.h"
 #include "render/device/launch_watch.h"
 #include "render/device/photon_maps.h"
 #include "render/film/film.h"
 #include "render/frame/device_worker.h"
+#include "render/frame/launch_sizer.h"
 #include "render/values/options.h"
 #include "render/values/report.h"
 

@@ -1,6 +1,6 @@
 // Renders a tile: writes its initial values, launches samples, reads the sums. After a failure it restarts
 // the tile with smaller launches.
-#include "render/device/tile_renderer.h"
+#include "render/frame/tile_renderer.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Each launch's time determines the next launch's size, aiming at 50 ms; failures permanently reduce samples,
 // work-groups or sizes.
-#include "render/device/launch_sizer.h"
+#include "render/frame/launch_sizer.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
-// Objects in the relief of another surface: rays that have hit a surface with heights below it continue to
-// these heights, and hits on the way come first. Also how rays leave a relief.
+// Takes rays to their next interface, also to objects in the relief of another surface: rays that have hit a
+// surface with heights below it continue to these heights, and hits on the way come first. Also how rays
+// leave a relief.
 #include "plain/path/segment.cl"
 #include "plain/shade/parallax.cl"
 
