@@ -46,6 +46,7 @@ constexpr std::array rules{
                .options = "-DDEVICE_INLINES_ALL -DNODE_LOOP=2 -DDEVICE_SUBGROUP=16 "
                           "-cl-intel-enable-auto-large-GRF-mode",
                .of_programs = {{{"entry/trace_rays.cl", "-cl-intel-256-GRF-per-thread"},
+                                {"entry/trace_photons.cl", "-cl-intel-256-GRF-per-thread"},
                                 {"entry/render_path.cl", "-cl-intel-256-GRF-per-thread"}}},
                .tries_compact = "-DNODE_LOOP=0 -DNODE_LOOP=1",
                .tries = "-cl-intel-256-GRF-per-thread "

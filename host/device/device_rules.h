@@ -23,7 +23,7 @@ struct DeviceRule {
   // A work-item takes 16 rays in vectors (lanes) if the device reports vectors; otherwise one.
   bool vectors = false;
   std::string_view options{};  // compiler options, and definitions that override the kernels' defaults
-  std::array<ProgramOptions, 2> of_programs{};  // add to `options` and replace those of the same name
+  std::array<ProgramOptions, 3> of_programs{};  // add to `options` and replace those of the same name
   std::string_view tries_compact{};             // alternatives for `sundog tune` in the compact tracer, and
   std::string_view tries{};                     // in every program: options_to_try()
   bool matches(const DeviceInfo& device) const;

@@ -30,6 +30,7 @@ TEST_CASE("paths get more registers by Intel's own driver, and nothing by others
   const DeviceInfo own = gpu("Intel(R) Corporation", "Intel(R) OpenCL Graphics");
   const std::string paths = options_of(own, "render_path");
   CHECK_THAT(paths, ContainsSubstring("-cl-intel-256-GRF-per-thread"));
+  CHECK_THAT(options_of(own, "trace_photons"), ContainsSubstring("-cl-intel-256-GRF-per-thread"));
   CHECK_THAT(options_of(own, "render_whitted"), !ContainsSubstring("-cl-intel-256-GRF-per-thread"));
   CHECK_THAT(options_of(own, "trace_rays"),
              ContainsSubstring("-DDEVICE_SUBGROUP=16") && ContainsSubstring("-cl-intel-256-GRF-per-thread"));
