@@ -1,9 +1,10 @@
 // One stage: the Whitted image of a rectangle of pixels. A work-item takes TILE_W x TILE_H pixels, whose
 // place in the image is a multiple of the tile, so that the pixels it works on together are the same however
 // the frame is cut.
-#include "lib/path/items.cl"
 #include "lib/whitted/whitted_batch.cl"
 #include "lib/whitted/whitted_single.cl"
+
+#include "lib/path/items.cl"  // takes their follow_camera_rays()
 
 // Reads the scene; adds samples [first_sample, first_sample + sample_count) of the pixels of work-items
 // [first_item, last_item) of the rectangle (x0, y0, width, height), or of the image's pixels that it stands
