@@ -170,15 +170,17 @@ class Page {
     }
   }
 
-  /// All keys of a kind, its own first.
+  /// All keys of a kind, in the schema's order; its own rules count before those of its choice.
   Keys keys_of(const std::string& name) const {
-    Keys keys;
-    take_in(kinds_.at(name), "", keys);
-    if (const auto found = choices_.find(name); found != choices_.end()) {
-      const auto& [among, type, alone] = found->second;
-      if (alone) keys.rules.emplace_back("type", ordered_json{{"const", type}});
-      take_in(kinds_.at(among), type, keys);
-    }
+    Keys own, keys;
+    take_in(kinds_.at(name), "", own);
+    const auto found = choices_.find(name);
+    if (found == choices_.end()) return own;
+    const auto& [among, type, alone] = found->second;
+    if (alone) own.rules.emplace_back("type", ordered_json{{"const", type}});
+    take_in(kinds_.at(among), type, keys);
+    for (auto& [key, rule] : keys.rules)
+      if (const ordered_json* better = own.find(key)) rule = *better;
     return keys;
   }
 
