@@ -80,8 +80,9 @@ bool may_be_tuned(std::string_view options) {
 
 std::string portable_options(const DeviceInfo& device, const std::string& options) {
   const DeviceRule& rule = rule_of(device);
-  const std::vector<std::string> own = words(fmt::format(
-      "{} {} {} {}", rule.options, rule.of_programs[0].options, rule.of_programs[1].options, rule.tries));
+  std::string all = fmt::format("{} {}", rule.options, rule.tries);
+  for (const ProgramOptions& program : rule.of_programs) all += fmt::format(" {}", program.options);
+  const std::vector<std::string> own = words(all);
   std::string kept;
   for (const std::string& option : words(options))
     if (!option.starts_with("-cl-") || std::ranges::count(own, option) == 0)

@@ -28,8 +28,7 @@ constexpr std::array rules{
                         "!-cl-nv-maxrregcount !-DDEVICE_INLINES_ALL"},
     // Testing four boxes at a time, the traversal needs 79 registers instead of 103, so 16 waves fit instead
     // of 12. Ten waves (RDNA 3 and newer) spill nothing in plain scenes; textures, layers or rough glass
-    // spill
-    // up to 240 registers, where 5 to 9 waves would fit without spills.
+    // spill up to 240 registers, where 5 to 9 waves would fit without spills.
     DeviceRule{.name = "amd",
                .reports = "Advanced Micro Devices",
                .of_gpus = true,
@@ -38,7 +37,8 @@ constexpr std::array rules{
                .tries = "-DDEVICE_WAVES=8 -DDEVICE_WAVES=12 !-DDEVICE_WAVES "
                         "!-DDEVICE_INLINES_ALL"},
     // Intel's own driver. If the GPU offers 256 registers per thread instead of 128, at half the threads, the
-    // compiler uses them for programs that spill. render_path and the tracer always get them; the tracer then
+    // compiler uses them for programs that spill. Paths, photons and the tracer always get them; the tracer
+    // then
     // takes 16 rays per thread without spills, where the compiler would choose 8. Other GPUs ignore these.
     DeviceRule{.name = "intel",
                .reports = "Intel(R) OpenCL",

@@ -1,10 +1,11 @@
 // Plans a worker for each device, and renders the frame with them.
 #include "render/render.h"
 
-#include "render/frame/frame_loop.h"
+#include "render/frame/frame.h"
 #include "render/frame/local_worker.h"
 
 namespace sundog {
+
 RenderResult render(const CompiledScene& scene, const std::vector<DeviceInfo>& devices,
                     const RenderOptions& options) {
   const std::shared_ptr<const CompiledScene> borrowed(std::shared_ptr<const CompiledScene>(), &scene);

@@ -10,7 +10,7 @@ struct Integrator {
   std::string_view name;    // as in options and scene files
   const char* entry;        // kernel file
   const char* kernel;       // takes the scene, camera media, film, weights, counters and a Launch
-  std::string_view tuning;  // ends the kinds in classes of scenes that share a tuning (scene_class())
+  std::string_view tuning;  // a part of scene_class(), by which scenes share a tuning
   bool needs_camera_media;  // needs the media that contain the camera
   unsigned most_run;        // maximum pixels per work-item; idle lanes take the next pixel
   int depth, most_depth;    // default and maximum depth

@@ -45,11 +45,10 @@ LampAxes pack_flat(const NamedLight& named, double part, Light& row) {
 }
 
 LampBounds flat_bounds(const Light& row, const glm::vec3& lower, const glm::vec3& upper) {
-  return {xyz(row.position) + lower, xyz(row.position) + upper, row.direction.w,
-          luminance(row) * row.direction.w};
+  return {lower, upper, row.direction.w, luminance(row) * row.direction.w};
 }
 
-/// The code of one kind. A light without an extent has neither bounds nor a shape.
+/// The code of one kind. Area lights have bounds, those with a direction axes, those that rays meet a shape.
 struct Kind {
   /// Adds to the row what is not common to all kinds.
   void (*pack)(const NamedLight& named, const dvec3& origin, Light& row);
@@ -100,8 +99,9 @@ void pack_rectangle(const NamedLight& named, const dvec3& origin, Light& row) {
   row.position = pack(named.light.position - (axes.u + axes.v) / 2.0 - origin);
 }
 LampBounds rectangle_bounds(const Light& row) {
-  const glm::vec3 u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
-  return flat_bounds(row, glm::min(u, none) + glm::min(v, none), glm::max(u, none) + glm::max(v, none));
+  const glm::vec3 p = xyz(row.position), u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
+  return flat_bounds(row, p + glm::min(u, none) + glm::min(v, none),
+                     p + glm::max(u, none) + glm::max(v, none));
 }
 constexpr Kind rectangle_light{
     .pack = pack_rectangle,
@@ -111,8 +111,8 @@ constexpr Kind rectangle_light{
     .shape = [](const LightDescription& light) -> Shape { return RectangleShape{light.size / 2.0}; }};
 
 LampBounds disk_bounds(const Light& row) {
-  const glm::vec3 half = glm::abs(xyz(row.edge_u)) + glm::abs(xyz(row.edge_v));
-  return flat_bounds(row, -half, half);
+  const glm::vec3 p = xyz(row.position), u = glm::abs(xyz(row.edge_u)), v = glm::abs(xyz(row.edge_v));
+  return flat_bounds(row, p - u - v, p + u + v);
 }
 constexpr Kind disk_light{
     .pack = [](const NamedLight& named, const dvec3&, Light& row) { pack_flat(named, pi, row); },
@@ -140,6 +140,16 @@ constexpr Kind sphere_light{
 /// By LIGHT_* constant.
 constexpr std::array kinds{LIGHTS(KIND_OF_LIGHT_ROW)};
 #undef KIND_OF_LIGHT_ROW
+
+constexpr bool is_complete(const Kind& kind, bool placed, bool aimed, LightExtent extent) {
+  const bool area = extent != LightExtent::none;
+  return (!placed || kind.power) && (!area || kind.bounds) && (!area || !aimed || kind.axes) &&
+         (extent != LightExtent::met || kind.shape);
+}
+#define COMPLETE_LIGHT(constant, name, placed, aimed, extent) \
+  static_assert(is_complete(name##_light, placed, aimed, LightExtent::extent), "the light " #name);
+LIGHTS(COMPLETE_LIGHT)
+#undef COMPLETE_LIGHT
 
 /// Throws std::logic_error for an ambient light, which has no row in the table.
 std::size_t row_kind(const LightDescription& light) {
@@ -193,8 +203,8 @@ Light pack_light(const NamedLight& named, const dvec3& origin) {
 
 LampBounds lamp_bounds(const Light& row) {
   if (row.kind == LIGHT_TRIANGLE) {
-    const glm::vec3 u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
-    return flat_bounds(row, glm::min(none, glm::min(u, v)), glm::max(none, glm::max(u, v)));
+    const glm::vec3 p = xyz(row.position), u = xyz(row.edge_u), v = xyz(row.edge_v), none(0);
+    return flat_bounds(row, p + glm::min(none, glm::min(u, v)), p + glm::max(none, glm::max(u, v)));
   }
   if (row.kind >= kinds.size() || !kinds.at(row.kind).bounds)
     throw std::logic_error("a light without an extent has no bounds");

@@ -63,7 +63,7 @@ struct Light {
   double angle = 30;           ///< spot: half angle of the cone in degrees, (0, 90)
   double radius = 0.5;         ///< disk, sphere: in scene units, above 0
   std::array<double, 2> size{1, 1};  ///< rectangle: width, height in scene units, above 0
-  int samples = 1;                   ///< area lights: shadow rays from each surface point, 1..1024
+  int samples = 1;  ///< area and directional lights: shadow rays from each surface point, 1..1024
   /// Other numeric keys of scene files, such as {"inner_angle", 10} for a spot; applied last.
   std::map<std::string, double> more{};
 };

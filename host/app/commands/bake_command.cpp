@@ -91,10 +91,7 @@ int bake_map(const BakeOptions& options) {
   check_output_files({options.out}, {options.high, options.low});
   check_map_name(options.out);
   const auto load = [&](const std::string& file) {
-    const ReadLog log;
-    SceneDescription scene = load_geometry(file, options.outside_files);
-    check_not_read({options.out}, log.files());
-    return scene;
+    return read_apart_from({options.out}, [&] { return load_geometry(file, options.outside_files); });
   };
   const SceneDescription low = load(options.low);
   const std::vector<LowTriangle> triangles = low_triangles(low);

@@ -10,6 +10,7 @@
 #include "app/options/command.h"
 #include "app/options/option_helpers.h"
 #include "app/process/environment.h"
+#include "app/render/output_files.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/input.h"
@@ -64,7 +65,7 @@ std::string made_text(const KernelsCommand& c) {
 std::string write_programs(const KernelsCommand& c) {
   const DeviceInfo device = typical_gpu(c.gpu);
   const HostEnvironment& environment = value_of(program_environment());
-  const SceneDescription scene = load_scene(c.scene);
+  const SceneDescription scene = load_for_command(c.scene, {}, {});
   std::vector<SceneProgram> programs = scene_programs(compile(scene), device);
   if (scene.environment.type == EnvironmentType::halo) programs.push_back(halo_program(device));
   std::error_code failed;

@@ -121,10 +121,7 @@ void check_not_read(const std::vector<std::string>& outputs, const std::vector<R
 SceneDescription load_for_command(const std::string& scene, const std::vector<std::string>& overrides,
                                   LoadOptions options, const std::vector<std::string>& outputs) {
   options.environment = program_environment();
-  const ReadLog log;
-  SceneDescription loaded = load_scene(scene, overrides, options);
-  check_not_read(outputs, log.files());
-  return loaded;
+  return read_apart_from(outputs, [&] { return load_scene(scene, overrides, options); });
 }
 
 void warn_of_halves(const std::filesystem::path& path, const Image& image, const FileOptions& file) {

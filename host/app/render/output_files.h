@@ -1,4 +1,5 @@
-// Checks of output files before a command runs: their formats, and that no output overwrites an input.
+// Output files of commands: their formats and options, and that no output overwrites a file that was read,
+// such as the scene, which is loaded here.
 #pragma once
 #include <string>
 #include <vector>
@@ -36,7 +37,16 @@ void check_output_files(const std::vector<std::string>& outputs, const std::vect
 /// Throws UsageError if an output is one of the files that were read, such as textures and models.
 void check_not_read(const std::vector<std::string>& outputs, const std::vector<ReadFile>& files);
 
-/// Loads a scene for a command that writes `outputs`. Throws UsageError if one of them was read.
+/// Returns read(). Throws UsageError if it has read one of the outputs.
+template <class Read>
+auto read_apart_from(const std::vector<std::string>& outputs, const Read& read) {
+  const ReadLog log;
+  auto result = read();
+  check_not_read(outputs, log.files());
+  return result;
+}
+
+/// Loads a scene for a command that writes `outputs`, which must not be read.
 SceneDescription load_for_command(const std::string& scene, const std::vector<std::string>& overrides,
                                   LoadOptions options, const std::vector<std::string>& outputs = {});
 

@@ -79,12 +79,11 @@ std::unique_ptr<SceneFrames> open_frames(const RenderCommand& command) {
   std::vector<std::string> outputs = {frame_list(command)};
   for (const int frame : command.frames)
     for (std::string& file : output_files(frame_command(command, frame))) outputs.push_back(std::move(file));
-  const ReadLog log;
-  auto frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
-  const auto first = frames->check(command.frames);
-  check_not_read(outputs, log.files());
-  print_warnings(first->warnings);
-  return frames;
+  return read_apart_from(outputs, [&] {
+    auto frames = std::make_unique<SceneFrames>(command.scene, command.overrides, load_options(command));
+    print_warnings(frames->check(command.frames)->warnings);
+    return frames;
+  });
 }
 
 enum class Outcome { rendered, kept, elsewhere };
@@ -235,10 +234,7 @@ class FrameRun {
   }
 
   std::shared_ptr<const SceneDescription> read(const RenderCommand& one, double frame) {
-    const ReadLog log;
-    auto scene = frames_->read(frame);
-    check_not_read(output_files(one), log.files());
-    return scene;
+    return read_apart_from(output_files(one), [&] { return frames_->read(frame); });
   }
 
   /// The scene at one moment while the shutter is open, with its share of the samples and its own seed.

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "app/render/render_frame.h"
+#include "app/render/draw_frame.h"
 
 namespace sundog {
 

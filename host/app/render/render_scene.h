@@ -1,6 +1,6 @@
 // Runs `sundog render`: reads a scene, renders it, and writes the image and the other outputs.
 #pragma once
-#include "app/render/render_frame.h"
+#include "app/render/draw_frame.h"
 
 namespace sundog {
 

@@ -42,7 +42,7 @@ struct TuningFile {
 };
 
 /// The class of scenes that share a tuning: "meshes", "solids", "fields"; plus "+wide" or "+compact" if the
-/// scene asks for a tracer, the integrator's own end, "+rays" for reflections or refractions.
+/// scene asks for a tracer, the integrator's Integrator::tuning, "+rays" for reflections or refractions.
 std::string scene_class(const CompiledScene& scene);
 
 /// The hash of all current kernel sources.

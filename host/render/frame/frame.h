@@ -1,5 +1,5 @@
 // A frame from its plan to its image: one thread per worker takes tiles from the queue, while another watches
-// for the end, interrupts and hanging drivers. Internal to the render layer.
+// for the end, interrupts and hanging drivers. Outside the render layer only render_frame() is used.
 #pragma once
 #include <condition_variable>
 #include <exception>

@@ -93,7 +93,7 @@ void LaunchSizer::begin(const Tile& tile, unsigned samples) {
   const unsigned width = static_cast<unsigned>(tile.width), height = static_cast<unsigned>(tile.height);
   const unsigned item_pixels = limits_.tile_w * limits_.tile_h;
   grid_ = work_group().kind == WorkGroup::Kind::fixed && work_group().y > 1;
-  // A row of items covers tiles, or blocks of 8x4 pixels (lane_pixel() in render_whitted.cl).
+  // A row of items covers tiles, or blocks of 8x4 pixels (lane_pixel() in lib/path/tile.cl).
   const bool blocks = item_pixels == 1 && !grid_;
   row_height_ = blocks ? 4 : limits_.tile_h;
   columns_ = blocks ? divide_up(width, 8) * 32 : divide_up(width, limits_.tile_w);

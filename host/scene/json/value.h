@@ -116,7 +116,7 @@ class JsonValue {
   std::vector<std::pair<std::string, JsonValue>> members(std::string_view what) const;
   /// A required member; not recorded as requested.
   JsonValue member(std::string_view key, std::string_view what) const;
-  /// The required "type" of an object whose alternatives have no other keys in common.
+  /// The required "type", which chooses an object's keys.
   std::string type() const;
 
   /// Passes this value, which must be an object, to `read(JsonObject&)`, then rejects unread keys. `kind` is

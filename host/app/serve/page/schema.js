@@ -33,7 +33,10 @@ const joined = (s, more) => ({
 export function resolve(schema, type) {
   const {allOf = [], ...own} = refer(schema);
   return allOf.filter((one) => !one.if || namesOf(one.if.properties.type).includes(type))
-    .reduce((s, one) => joined(s, resolve(one.then ?? one, type)), own);
+    .reduce((s, one) => {
+      const more = resolve(one.then ?? one, type);
+      return {...joined(s, more), ...(one.then && {description: more.description})};
+    }, own);
 }
 export const definition = (name) => resolve({$ref: '#/$defs/' + name});
 

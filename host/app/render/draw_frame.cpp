@@ -1,5 +1,5 @@
 // Loads, compiles, draws, saves and reports one frame, each step in a function.
-#include "app/render/render_frame.h"
+#include "app/render/draw_frame.h"
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@
 #include "render/device/view_warnings.h"
 #include "render/film/group_names.h"
 #include "render/film/hash.h"
-#include "render/frame/frame_loop.h"
+#include "render/frame/frame.h"
 #include "render/frame/local_worker.h"
 #include "render/plan/passes.h"
 #include "render/plan/tiles.h"
@@ -161,7 +161,10 @@ void stop_loses_nothing(const RenderCommand& command, const Setup& setup) {
 }
 
 LoadOptions load_options(const RenderCommand& command) {
-  return {command.frame, command.native_code, command.outside_files, {}, program_environment()};
+  return {.frame = command.frame,
+          .native_code = command.native_code,
+          .outside_files = command.outside_files,
+          .environment = program_environment()};
 }
 
 LoadedScene load_and_compile(const RenderCommand& command, const LoadScene& load, Setup& setup,
